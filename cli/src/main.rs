@@ -1,0 +1,5 @@
+//! The drillsweep command.
+
+fn main() -> anyhow::Result<()> {
+    anyhow::bail!("no command yet")
+}

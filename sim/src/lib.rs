@@ -1,10 +1,17 @@
 //! The dynamics of a drillstring in a 3D well, with mud, borehole contact and friction.
 //!
-//! The crate reads as one sentence: a [`scenario`] becomes a [`model`] (mesh and matrices of the effects in
-//! play), the model has an equilibrium ([`statics`]), the equilibrium a hydraulic profile ([`mud`]), and from
-//! there a [`transient`] yields records, from which orbits and full spectra are cut ([`signal`]).
+//! The crate reads as one sentence: a [`scenario`] becomes a `model` (mesh and matrices of the effects in
+//! play), the model has an equilibrium (`statics`), the equilibrium a hydraulic profile ([`mud`]), and from
+//! there a `transient` yields records, from which orbits and full spectra are cut ([`signal`]).
 //!
 //! SI units throughout. Nothing here knows of files, clocks, threads, SQL or HTTP: the same scenario gives
 //! the same bits wherever it runs.
 
+pub mod beam;
+pub mod contact;
+pub mod linalg;
+pub mod mud;
 pub mod scenario;
+pub mod signal;
+pub mod string;
+pub mod well;

@@ -1,17 +1,11 @@
 //! A scenario: everything that decides the numbers of one run.
 //!
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
-//! refused. The types say what can be written down; [`Scenario::validate`] says what can be simulated.
+//! refused. The types say what can be written down; `Scenario::validate` says what can be simulated.
 
 mod effects;
-mod format;
-mod preset;
-mod validate;
 
 pub use effects::{Effect, Effects, Switch};
-pub use format::{FormatError, SetError};
-pub use preset::{PRESETS, preset};
-pub use validate::{Problem, Problems};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,1 @@
+//! Timoshenko beam elements.

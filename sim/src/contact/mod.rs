@@ -1,0 +1,1 @@
+//! Borehole contact and friction.

@@ -1,0 +1,1 @@
+//! Block-tridiagonal kernels over a lane type.

@@ -1,0 +1,1 @@
+//! The mud: friction, viscosity, pressures.

@@ -1,0 +1,1 @@
+//! The string's mesh: elements, nodes, gauges, masses.

@@ -1,0 +1,1 @@
+//! The well path: survey, curvature, frames.

@@ -1,1 +1,21 @@
 //! Block-tridiagonal kernels over a lane type.
+//!
+//! A string is a chain, so every matrix of it couples a node to its two neighbours only: a
+//! [`BlockTridiagonal`] of 6 x 6 [`Block`]s, factored once by [`Factor`]. All kernels are written over a
+//! [`Lane`]: one `f64`, or several sweep points side by side, with the same operations in the same order.
+
+mod block;
+mod factor;
+mod lane;
+mod tridiagonal;
+
+#[cfg(test)]
+mod tests;
+
+pub use block::{Block, DOFS};
+pub use factor::{Factor, SingularBlock};
+pub use lane::{Lane, Mask};
+pub use tridiagonal::BlockTridiagonal;
+
+/// One row of six values for every node.
+pub type BlockVector<L> = Vec<[L; DOFS]>;

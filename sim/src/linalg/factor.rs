@@ -1,0 +1,186 @@
+//! Block elimination from both ends to the middle.
+
+use super::block::{Block, DOFS};
+use super::lane::{Lane, Mask};
+use super::tridiagonal::BlockTridiagonal;
+
+/// A factored [`BlockTridiagonal`], ready to solve.
+///
+/// The elimination is twisted: rows are eliminated from both ends towards the middle one, which gives two
+/// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
+/// matrix can be regular and still fail; [`Factor::growth`] tells how much was lost.
+#[derive(Debug, Clone)]
+pub struct Factor<L> {
+    /// From the top end, in the order of elimination.
+    top: Chain<L>,
+    /// From the bottom end, in the order of elimination.
+    bottom: Chain<L>,
+    middle: Elimination<L>,
+    /// `-S^-1 U` of the middle row, S its pivot block.
+    middle_from_below: Block<L>,
+    growth: L,
+}
+
+/// A pivot block could not be inverted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the pivot block of row {row} is singular (lane {lane})")]
+pub struct SingularBlock {
+    /// Block row, counted from 0.
+    pub row: usize,
+    /// The first lane in which it is singular.
+    pub lane: usize,
+}
+
+/// Rows eliminated one after the other from one end.
+#[derive(Debug, Clone)]
+struct Chain<L> {
+    eliminations: Vec<Elimination<L>>,
+    /// `-S^-1` times the coupling to the next row inwards.
+    inward: Vec<Block<L>>,
+}
+
+/// What eliminating a row leaves for the way inwards; S is its pivot block.
+#[derive(Debug, Clone, Copy)]
+struct Elimination<L> {
+    /// `S^-1`.
+    inverse: Block<L>,
+    /// `-S^-1` times the coupling to the row before.
+    outward: Block<L>,
+}
+
+impl<L: Lane> Factor<L> {
+    /// Factors a matrix of at least one row.
+    ///
+    /// # Errors
+    /// The row whose pivot block is singular to working precision, or holds values that are not finite.
+    pub fn new(matrix: &BlockTridiagonal<L>) -> Result<Self, SingularBlock> {
+        let rows = matrix.rows();
+        assert!(rows > 0, "a matrix without rows");
+        let middle = rows / 2;
+        let mut growth = L::splat(0.0);
+
+        let mut top = Chain::with_capacity(middle);
+        let mut inward = Block::zero();
+        for row in 0..middle {
+            let pivot = matrix.lower[row].multiply_block_add(&inward, &matrix.diagonal[row]);
+            let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
+            inward = top.push(inverse, &matrix.lower[row], &matrix.upper[row]);
+        }
+        let from_above = inward;
+
+        let mut bottom = Chain::with_capacity(rows - 1 - middle);
+        let mut inward = Block::zero();
+        for row in (middle + 1..rows).rev() {
+            let pivot = matrix.upper[row].multiply_block_add(&inward, &matrix.diagonal[row]);
+            let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
+            inward = bottom.push(inverse, &matrix.upper[row], &matrix.lower[row]);
+        }
+
+        let pivot = matrix.lower[middle].multiply_block_add(&from_above, &matrix.diagonal[middle]);
+        let pivot = matrix.upper[middle].multiply_block_add(&inward, &pivot);
+        let inverse = invert(&pivot, middle, &matrix.diagonal[middle], &mut growth)?;
+        let coupling = |block: &Block<L>| inverse.multiply_block_add(&block.negated(), &Block::zero());
+        Ok(Factor {
+            middle: Elimination { inverse, outward: coupling(&matrix.lower[middle]) },
+            middle_from_below: coupling(&matrix.upper[middle]),
+            top,
+            bottom,
+            growth,
+        })
+    }
+
+    /// Number of block rows.
+    pub fn rows(&self) -> usize {
+        self.top.inward.len() + 1 + self.bottom.inward.len()
+    }
+
+    /// Largest ratio of an entry of a pivot block to the largest entry of the matrix' own diagonal block in
+    /// that row. About one in time stepping; the solution loses that factor of its precision.
+    pub fn growth(&self) -> L {
+        self.growth
+    }
+
+    /// Solves `A x = b`.
+    pub fn solve_into(&self, b: &[[L; DOFS]], x: &mut [[L; DOFS]]) {
+        x.copy_from_slice(b);
+        self.solve_in_place(x);
+    }
+
+    /// Replaces a right-hand side by the solution.
+    pub fn solve_in_place(&self, x: &mut [[L; DOFS]]) {
+        assert_eq!(x.len(), self.rows());
+        let (above, rest) = x.split_at_mut(self.top.inward.len());
+        let [middle, below @ ..] = rest else { unreachable!("the middle row exists") };
+
+        let mut from_top = [L::splat(0.0); DOFS];
+        let mut from_bottom = [L::splat(0.0); DOFS];
+        let mut bottom_rows = self.bottom.eliminations.iter().zip(below.iter_mut().rev());
+        for (elimination, x) in self.top.eliminations.iter().zip(above.iter_mut()) {
+            from_top = elimination.apply(x, &from_top);
+            *x = from_top;
+            if let Some((elimination, x)) = bottom_rows.next() {
+                from_bottom = elimination.apply(x, &from_bottom);
+                *x = from_bottom;
+            }
+        }
+
+        let centre = self.middle.apply(middle, &from_top);
+        let centre = self.middle_from_below.multiply_add(&from_bottom, centre);
+        *middle = centre;
+
+        let mut to_top = centre;
+        let mut to_bottom = centre;
+        let mut bottom_rows = self.bottom.inward.iter().rev().zip(below.iter_mut());
+        for (inward, x) in self.top.inward.iter().rev().zip(above.iter_mut().rev()) {
+            to_top = inward.multiply_add(&to_top, *x);
+            *x = to_top;
+            if let Some((inward, x)) = bottom_rows.next() {
+                to_bottom = inward.multiply_add(&to_bottom, *x);
+                *x = to_bottom;
+            }
+        }
+    }
+}
+
+impl<L: Lane> Chain<L> {
+    fn with_capacity(rows: usize) -> Self {
+        Chain { eliminations: Vec::with_capacity(rows), inward: Vec::with_capacity(rows) }
+    }
+
+    /// Adds a row and returns its inward block.
+    fn push(&mut self, inverse: Block<L>, outward: &Block<L>, inward: &Block<L>) -> Block<L> {
+        let outward = inverse.multiply_block_add(&outward.negated(), &Block::zero());
+        let inward = inverse.multiply_block_add(&inward.negated(), &Block::zero());
+        self.eliminations.push(Elimination { inverse, outward });
+        self.inward.push(inward);
+        inward
+    }
+}
+
+impl<L: Lane> Elimination<L> {
+    /// `S^-1 b - S^-1 (coupling) previous`.
+    #[inline(always)]
+    fn apply(&self, b: &[L; DOFS], previous: &[L; DOFS]) -> [L; DOFS] {
+        let sum = self.inverse.multiply_add(b, [L::splat(0.0); DOFS]);
+        self.outward.multiply_add(previous, sum)
+    }
+}
+
+/// The inverse of a pivot block; counts its growth over the matrix' own block.
+fn invert<L: Lane>(
+    pivot: &Block<L>,
+    row: usize,
+    original: &Block<L>,
+    growth: &mut L,
+) -> Result<Block<L>, SingularBlock> {
+    let largest = pivot.largest();
+    let (inverse, smallest_pivot) = pivot.inverse();
+    let regular =
+        smallest_pivot.greater_than(largest * L::splat(DOFS as f64 * f64::EPSILON)) & inverse.is_finite();
+    if (!regular).any() {
+        let lane = (0..L::LANES).position(|lane| !regular.lane(lane)).unwrap_or(0);
+        return Err(SingularBlock { row, lane });
+    }
+    *growth = growth.max(largest / original.largest());
+    Ok(inverse)
+}

@@ -1,0 +1,206 @@
+//! The number type of the kernels.
+
+use std::fmt::Debug;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// One value for each of [`Lane::LANES`] sweep points.
+///
+/// Every operation acts on each lane alone and rounds as the same operation of one `f64` does, so a lane's
+/// bits do not depend on how many others lie beside it. Code over lanes chooses by [`Lane::select`] and may
+/// branch on [`Mask::any`] only to skip work that would change nothing.
+pub trait Lane:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Number of lanes.
+    const LANES: usize;
+
+    /// One truth value for each lane.
+    type Mask: Mask;
+
+    /// The same value in every lane.
+    fn splat(value: f64) -> Self;
+
+    /// The value of one lane; `lane` is below [`Lane::LANES`].
+    fn lane(self, lane: usize) -> f64;
+
+    /// Sets the value of one lane; `lane` is below [`Lane::LANES`].
+    fn set_lane(&mut self, lane: usize, value: f64);
+
+    /// `self * factor + addend`, rounded once.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Absolute value.
+    fn abs(self) -> Self;
+
+    /// The magnitude of `self` with the sign of `sign`.
+    fn copysign(self, sign: Self) -> Self;
+
+    /// Lanes where `self < other`.
+    fn less_than(self, other: Self) -> Self::Mask;
+
+    /// `if_true` in the lanes of the mask, `if_false` in the others.
+    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+
+    /// Lanes where `self > other`.
+    #[inline(always)]
+    fn greater_than(self, other: Self) -> Self::Mask {
+        other.less_than(self)
+    }
+
+    /// The smaller value; `other` where one is not a number.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.less_than(other), self, other)
+    }
+
+    /// The larger value; `other` where one is not a number.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.less_than(self), self, other)
+    }
+
+    /// Arctangent \[rad\] without branches: the rational approximation of Moshier's Cephes library
+    /// (`atan.c`), whose relative error is below 3e-16.
+    #[inline(always)]
+    fn atan(self) -> Self {
+        let one = Self::splat(1.0);
+        let magnitude = self.abs();
+        let steep = magnitude.greater_than(Self::splat(TANGENT_OF_THREE_EIGHTHS_PI));
+        let middle = magnitude.greater_than(Self::splat(0.66)) & !steep;
+
+        // Reduced to [-0.66, 0.66] by atan x = pi/2 - atan(1/x) and atan x = pi/4 + atan((x-1)/(x+1)).
+        let numerator = Self::select(steep, -one, Self::select(middle, magnitude - one, magnitude));
+        let denominator = Self::select(steep, magnitude, Self::select(middle, magnitude + one, one));
+        let reduced = numerator / denominator;
+        let zero = Self::splat(0.0);
+        let offset = Self::select(
+            steep,
+            Self::splat(std::f64::consts::FRAC_PI_2),
+            Self::select(middle, Self::splat(std::f64::consts::FRAC_PI_4), zero),
+        );
+        let offset_tail = Self::select(
+            steep,
+            Self::splat(PI_HALF_TAIL),
+            Self::select(middle, Self::splat(0.5 * PI_HALF_TAIL), zero),
+        );
+
+        let square = reduced * reduced;
+        let horner = |coefficients: &[f64], leading: Self| {
+            coefficients.iter().fold(leading, |sum, c| sum.mul_add(square, Self::splat(*c)))
+        };
+        let p = horner(&ATAN_P[1..], Self::splat(ATAN_P[0]));
+        let q = horner(&ATAN_Q, one);
+        let correction = square * p / q;
+        let angle = offset + (reduced.mul_add(correction, reduced) + offset_tail);
+        angle.copysign(self)
+    }
+}
+
+/// Truth values of the lanes.
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The same truth value in every lane.
+    fn splat(value: bool) -> Self;
+
+    /// Whether any lane is true.
+    fn any(self) -> bool;
+
+    /// The truth value of one lane.
+    fn lane(self, lane: usize) -> bool;
+}
+
+const TANGENT_OF_THREE_EIGHTHS_PI: f64 = 2.414_213_562_373_095;
+/// pi/2 less its nearest `f64`.
+const PI_HALF_TAIL: f64 = 6.123_233_995_736_766e-17;
+const ATAN_P: [f64; 5] = [
+    -8.750_608_600_031_904e-1,
+    -1.615_753_718_733_365e1,
+    -7.500_855_792_314_705e1,
+    -1.228_866_684_490_136_2e2,
+    -6.485_021_904_942_025e1,
+];
+const ATAN_Q: [f64; 5] = [
+    2.485_846_490_142_306_3e1,
+    1.650_270_098_316_988_5e2,
+    4.328_810_604_912_902_7e2,
+    4.853_903_996_359_137e2,
+    1.945_506_571_482_614e2,
+];
+
+impl Lane for f64 {
+    const LANES: usize = 1;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn lane(self, _lane: usize) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _lane: usize, value: f64) {
+        *self = value;
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        f64::mul_add(self, factor, addend)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        f64::copysign(self, sign)
+    }
+
+    #[inline(always)]
+    fn less_than(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
+        if mask { if_true } else { if_false }
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn splat(value: bool) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn lane(self, _lane: usize) -> bool {
+        self
+    }
+}

@@ -1,0 +1,185 @@
+use nalgebra::{DMatrix, DVector};
+
+use super::*;
+
+/// Values in [-1, 1) that look random, the same on every machine.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn block(&mut self, diagonal: f64) -> Block<f64> {
+        Block::from_fn(|row, column| self.next() + if row == column { diagonal } else { 0.0 })
+    }
+
+    /// Nonsymmetric; block diagonally dominant from a `diagonal` of about 20.
+    fn matrix(&mut self, rows: usize, diagonal: f64) -> BlockTridiagonal<f64> {
+        let mut matrix = BlockTridiagonal::zeros(rows);
+        for row in 0..rows {
+            matrix.add_block(row, row, &self.block(diagonal));
+            if row > 0 {
+                matrix.add_block(row, row - 1, &self.block(0.0));
+                matrix.add_block(row - 1, row, &self.block(0.0));
+            }
+        }
+        matrix
+    }
+
+    fn vector(&mut self, rows: usize) -> BlockVector<f64> {
+        (0..rows).map(|_| std::array::from_fn(|_| self.next())).collect()
+    }
+}
+
+const ROW_COUNTS: [usize; 8] = [1, 2, 3, 4, 5, 17, 18, 64];
+
+fn dense(matrix: &BlockTridiagonal<f64>) -> DMatrix<f64> {
+    let rows = matrix.rows();
+    DMatrix::from_fn(DOFS * rows, DOFS * rows, |i, j| {
+        let place = (i % DOFS, j % DOFS);
+        match (i / DOFS, j / DOFS) {
+            (row, column) if row == column => matrix.diagonal[row][place],
+            (row, column) if row == column + 1 => matrix.lower[row][place],
+            (row, column) if row + 1 == column => matrix.upper[row][place],
+            _ => 0.0,
+        }
+    })
+}
+
+fn flat(vector: &[[f64; DOFS]]) -> DVector<f64> {
+    DVector::from_row_slice(vector.as_flattened())
+}
+
+fn relative_difference(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    (a - b).amax() / b.amax()
+}
+
+#[test]
+fn products_equal_dense_products() {
+    let mut numbers = Numbers(1);
+    for rows in ROW_COUNTS {
+        let (a, b) = (numbers.matrix(rows, 2.0), numbers.matrix(rows, 1.0));
+        let (x, y) = (numbers.vector(rows), numbers.vector(rows));
+        let (dense_ax, dense_by) = (dense(&a) * flat(&x), dense(&b) * flat(&y));
+
+        let mut out = numbers.vector(rows);
+        a.multiply_into(&x, &mut out);
+        assert!(relative_difference(&flat(&out), &dense_ax) < 1e-14, "{rows} rows");
+
+        a.multiply_add(&x, &mut out);
+        assert!(relative_difference(&flat(&out), &(&dense_ax * 2.0)) < 1e-14, "{rows} rows");
+
+        BlockTridiagonal::multiply_two_into(&a, &x, &b, &y, &mut out);
+        assert!(relative_difference(&flat(&out), &(&dense_ax + &dense_by)) < 1e-14, "{rows} rows");
+    }
+}
+
+#[test]
+fn combination_equals_the_dense_one() {
+    let mut numbers = Numbers(2);
+    let (a, b, c) = (numbers.matrix(5, 2.0), numbers.matrix(5, 1.0), numbers.matrix(5, 0.0));
+    let combined = dense(&BlockTridiagonal::combine(0.5, &a, -3.0, &b, 7.0, &c));
+    let expected = dense(&a) * 0.5 - dense(&b) * 3.0 + dense(&c) * 7.0;
+    assert!((combined - &expected).amax() < 1e-15 * expected.amax() * 4.0);
+}
+
+#[test]
+fn solutions_equal_dense_solutions() {
+    let mut numbers = Numbers(3);
+    for rows in ROW_COUNTS {
+        let matrix = numbers.matrix(rows, 20.0);
+        let b = numbers.vector(rows);
+        let factor = Factor::new(&matrix).expect("diagonally dominant");
+        assert_eq!(factor.rows(), rows);
+
+        let mut x = numbers.vector(rows);
+        factor.solve_into(&b, &mut x);
+        let expected = dense(&matrix).lu().solve(&flat(&b)).expect("diagonally dominant");
+        assert!(relative_difference(&flat(&x), &expected) < 1e-13, "{rows} rows");
+        assert!(relative_difference(&(dense(&matrix) * flat(&x)), &flat(&b)) < 1e-13, "{rows} rows");
+
+        let mut in_place = b.clone();
+        factor.solve_in_place(&mut in_place);
+        assert_eq!(in_place, x);
+    }
+}
+
+/// A permutation has no non-zero diagonal: only pivoting inside the block inverts it.
+#[test]
+fn blocks_are_inverted_with_pivoting() {
+    let permutation = Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
+    let (inverse, smallest_pivot) = permutation.inverse();
+    assert_eq!(inverse, Block::from_fn(|row, column| permutation[(column, row)]));
+    assert_eq!(smallest_pivot, 1.0);
+}
+
+#[test]
+fn a_singular_pivot_block_is_reported_with_its_row() {
+    for singular in [0, 1, 3, 4, 5, 8] {
+        let mut numbers = Numbers(4);
+        let mut matrix = numbers.matrix(9, 20.0);
+        // Decoupled, the row's own block is its pivot block.
+        matrix.lower[singular] = Block::zero();
+        matrix.upper[singular] = Block::zero();
+        let block = &mut matrix.diagonal[singular];
+        for row in 0..DOFS {
+            block[(row, 5)] = block[(row, 0)] - 3.0 * block[(row, 2)];
+        }
+        let error = Factor::new(&matrix).expect_err("two columns depend");
+        assert_eq!(error, SingularBlock { row: singular, lane: 0 });
+    }
+}
+
+#[test]
+fn values_that_are_not_finite_are_reported() {
+    for value in [f64::NAN, f64::INFINITY] {
+        let mut matrix = Numbers(5).matrix(6, 20.0);
+        matrix.diagonal[2][(3, 1)] = value;
+        assert_eq!(Factor::new(&matrix).expect_err("not finite").row, 2);
+    }
+}
+
+/// A regular matrix whose leading block is nearly singular: block elimination without pivoting across blocks
+/// loses what `growth` says.
+#[test]
+fn growth_measures_the_loss_of_precision() {
+    let mut numbers = Numbers(6);
+    let mut matrix = numbers.matrix(2, 0.0);
+    assert!(Factor::new(&numbers.matrix(17, 20.0)).expect("diagonally dominant").growth() < 2.0);
+
+    let small = 1e-9;
+    matrix.diagonal[0] = Block::from_fn(|row, column| if row == column { small } else { 0.0 });
+    let factor = Factor::new(&matrix).expect("regular, though nearly not");
+    assert!(factor.growth() > 0.1 / small && factor.growth() < 10.0 * DOFS as f64 / small);
+    let b = numbers.vector(2);
+    let mut x = b.clone();
+    factor.solve_in_place(&mut x);
+    let residual = relative_difference(&(dense(&matrix) * flat(&x)), &flat(&b));
+    assert!(residual < 1e3 * factor.growth() * f64::EPSILON);
+}
+
+#[test]
+fn arctangent_equals_the_system_library() {
+    let mut worst = 0.0f64;
+    for exponent in -1074..1024 {
+        for significand in [1.0, 1.1, 1.3247, 1.5, 1.653, 1.999] {
+            let x = significand * 2f64.powi(exponent);
+            worst = worst.max((Lane::atan(x) - f64::atan(x)).abs() / f64::atan(x));
+            assert_eq!(Lane::atan(-x), -Lane::atan(x));
+        }
+    }
+    for step in 1..40_000 {
+        let x = f64::from(step) * 1e-4;
+        worst = worst.max((Lane::atan(x) - f64::atan(x)).abs() / f64::atan(x));
+    }
+    // Moshier's own figure is 1.8e-16; the system's result is itself rounded.
+    assert!(worst < 3e-16, "{worst:e}");
+
+    assert_eq!(Lane::atan(f64::INFINITY), std::f64::consts::FRAC_PI_2);
+    assert_eq!(Lane::atan(f64::NEG_INFINITY), -std::f64::consts::FRAC_PI_2);
+    assert!(Lane::atan(0.0f64) == 0.0 && Lane::atan(0.0f64).is_sign_positive());
+    assert!(Lane::atan(-0.0f64) == 0.0 && Lane::atan(-0.0f64).is_sign_negative());
+    assert!(Lane::atan(f64::NAN).is_nan());
+}

@@ -1,0 +1,109 @@
+//! Matrices that couple each node to its two neighbours.
+
+use super::block::{Block, DOFS};
+use super::lane::Lane;
+
+/// A square matrix of n x n blocks, zero but on three diagonals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockTridiagonal<L> {
+    /// `lower[i]` stands at (i, i - 1); `lower[0]` takes no part.
+    pub lower: Vec<Block<L>>,
+    /// `diagonal[i]` stands at (i, i).
+    pub diagonal: Vec<Block<L>>,
+    /// `upper[i]` stands at (i, i + 1); the last one takes no part.
+    pub upper: Vec<Block<L>>,
+}
+
+impl<L: Lane> BlockTridiagonal<L> {
+    /// The zero matrix of `rows` block rows.
+    pub fn zeros(rows: usize) -> Self {
+        let zero = vec![Block::zero(); rows];
+        BlockTridiagonal { lower: zero.clone(), diagonal: zero.clone(), upper: zero }
+    }
+
+    /// Number of block rows.
+    pub fn rows(&self) -> usize {
+        self.diagonal.len()
+    }
+
+    /// Adds a block at (row, column).
+    ///
+    /// # Panics
+    /// When the place is outside the three diagonals.
+    pub fn add_block(&mut self, row: usize, column: usize, block: &Block<L>) {
+        assert!(row < self.rows() && column < self.rows(), "block ({row}, {column}) of {} rows", self.rows());
+        if row == column {
+            self.diagonal[row].add(block);
+        } else if column + 1 == row {
+            self.lower[row].add(block);
+        } else if row + 1 == column {
+            self.upper[row].add(block);
+        } else {
+            panic!("block ({row}, {column}) is outside the three diagonals");
+        }
+    }
+
+    /// `a A + b B + c C`.
+    pub fn combine(a: L, matrix_a: &Self, b: L, matrix_b: &Self, c: L, matrix_c: &Self) -> Self {
+        let blocks = |a_blocks: &[Block<L>], b_blocks: &[Block<L>], c_blocks: &[Block<L>]| {
+            let rows = a_blocks.iter().zip(b_blocks).zip(c_blocks);
+            rows.map(|((block_a, block_b), block_c)| {
+                Block::from_fn(|row, column| {
+                    let place = (row, column);
+                    block_c[place].mul_add(c, block_b[place].mul_add(b, block_a[place] * a))
+                })
+            })
+            .collect()
+        };
+        BlockTridiagonal {
+            lower: blocks(&matrix_a.lower, &matrix_b.lower, &matrix_c.lower),
+            diagonal: blocks(&matrix_a.diagonal, &matrix_b.diagonal, &matrix_c.diagonal),
+            upper: blocks(&matrix_a.upper, &matrix_b.upper, &matrix_c.upper),
+        }
+    }
+
+    /// `y = A x`.
+    pub fn multiply_into(&self, x: &[[L; DOFS]], y: &mut [[L; DOFS]]) {
+        self.for_rows(x, y, |_, product| product);
+    }
+
+    /// `y = y + A x`.
+    pub fn multiply_add(&self, x: &[[L; DOFS]], y: &mut [[L; DOFS]]) {
+        self.for_rows(x, y, |y, product| std::array::from_fn(|dof| y[dof] + product[dof]));
+    }
+
+    /// `out = A x + B y` in one pass.
+    pub fn multiply_two_into(a: &Self, x: &[[L; DOFS]], b: &Self, y: &[[L; DOFS]], out: &mut [[L; DOFS]]) {
+        let rows = out.len();
+        assert!(a.rows() == rows && b.rows() == rows && x.len() == rows && y.len() == rows);
+        for (row, out) in out.iter_mut().enumerate() {
+            *out = a.row_product(row, x, b.row_product(row, y, [L::splat(0.0); DOFS]));
+        }
+    }
+
+    #[inline(always)]
+    fn for_rows(
+        &self,
+        x: &[[L; DOFS]],
+        y: &mut [[L; DOFS]],
+        finish: impl Fn([L; DOFS], [L; DOFS]) -> [L; DOFS],
+    ) {
+        let rows = y.len();
+        assert!(self.rows() == rows && x.len() == rows);
+        for (row, y) in y.iter_mut().enumerate() {
+            *y = finish(*y, self.row_product(row, x, [L::splat(0.0); DOFS]));
+        }
+    }
+
+    #[inline(always)]
+    fn row_product(&self, row: usize, x: &[[L; DOFS]], sum: [L; DOFS]) -> [L; DOFS] {
+        let mut sum = self.diagonal[row].multiply_add(&x[row], sum);
+        if row > 0 {
+            sum = self.lower[row].multiply_add(&x[row - 1], sum);
+        }
+        if row + 1 < x.len() {
+            sum = self.upper[row].multiply_add(&x[row + 1], sum);
+        }
+        sum
+    }
+}

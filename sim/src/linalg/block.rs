@@ -74,20 +74,41 @@ impl<L: Lane> Block<L> {
         sum
     }
 
-    /// `sum + self other`.
+    /// `sum = sum + self other`.
     #[inline(always)]
-    pub(super) fn multiply_block_add(&self, other: &Self, sum: &Self) -> Self {
-        Block { columns: std::array::from_fn(|c| self.multiply_add(&other.columns[c], sum.columns[c])) }
+    pub(super) fn multiply_block_add(&self, other: &Self, sum: &mut Self) {
+        for (sum, column) in sum.columns.iter_mut().zip(&other.columns) {
+            *sum = self.multiply_add(column, *sum);
+        }
+    }
+
+    /// `self other`.
+    #[inline(always)]
+    pub(super) fn multiply_block(&self, other: &Self) -> Self {
+        let mut product = Self::zero();
+        self.multiply_block_add(other, &mut product);
+        product
     }
 
     /// `-self`.
+    #[inline(always)]
     pub(super) fn negated(&self) -> Self {
-        Block { columns: self.columns.map(|column| column.map(|entry| -entry)) }
+        let mut negated = *self;
+        for entry in negated.columns.as_flattened_mut() {
+            *entry = -*entry;
+        }
+        negated
     }
 
     /// The largest magnitude of an entry that is a number.
     pub(super) fn largest(&self) -> L {
-        self.columns.as_flattened().iter().fold(L::splat(0.0), |largest, entry| entry.abs().max(largest))
+        let mut rows = [L::splat(0.0); DOFS];
+        for column in &self.columns {
+            for (largest, entry) in rows.iter_mut().zip(column) {
+                *largest = entry.abs().max(*largest);
+            }
+        }
+        rows.into_iter().fold(L::splat(0.0), L::max)
     }
 
     /// Lanes whose entries are all finite.
@@ -102,33 +123,53 @@ impl<L: Lane> Block<L> {
     /// Each lane swaps its own rows by selection. A singular block gives a pivot of zero (or not a number) in
     /// its lane and no usable inverse there.
     pub(super) fn inverse(&self) -> (Self, L) {
-        let mut left = self.columns;
-        let mut right = Self::identity().columns;
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let mut columns = self.columns;
+        let mut swaps = [[L::Mask::splat(false); DOFS]; DOFS];
         let mut smallest_pivot = L::splat(f64::INFINITY);
         for pivot in 0..DOFS {
             for row in pivot + 1..DOFS {
-                let swap = left[pivot][row].abs().greater_than(left[pivot][pivot].abs());
+                let swap = columns[pivot][row].abs().greater_than(columns[pivot][pivot].abs());
+                swaps[pivot][row] = swap;
                 if swap.any() {
-                    for column in left[pivot..].iter_mut().chain(&mut right) {
+                    for column in &mut columns {
                         let (upper, lower) = (column[pivot], column[row]);
                         column[pivot] = L::select(swap, lower, upper);
                         column[row] = L::select(swap, upper, lower);
                     }
                 }
             }
-            smallest_pivot = left[pivot][pivot].abs().min(smallest_pivot);
+            smallest_pivot = columns[pivot][pivot].abs().min(smallest_pivot);
             // What the pivot row, scaled to a pivot of one, adds to every row; itself in place of the pivot row.
-            let mut multipliers = left[pivot].map(|entry| -entry);
-            multipliers[pivot] = L::splat(1.0);
-            let reciprocal = L::splat(1.0) / left[pivot][pivot];
-            for column in left[pivot + 1..].iter_mut().chain(&mut right) {
+            let mut multipliers = columns[pivot];
+            for multiplier in &mut multipliers {
+                *multiplier = -*multiplier;
+            }
+            multipliers[pivot] = one;
+            let reciprocal = one / columns[pivot][pivot];
+            // The eliminated column makes room for the inverse's, which starts as the identity's.
+            columns[pivot] = [zero; DOFS];
+            columns[pivot][pivot] = one;
+            for column in &mut columns {
                 let scaled = column[pivot] * reciprocal;
-                column[pivot] = L::splat(0.0);
+                column[pivot] = zero;
                 for (entry, multiplier) in column.iter_mut().zip(&multipliers) {
                     *entry = multiplier.mul_add(scaled, *entry);
                 }
             }
         }
-        (Block { columns: right }, smallest_pivot)
+        // Rows swapped on the way in are columns of the inverse to swap back.
+        for pivot in (0..DOFS).rev() {
+            for other in (pivot + 1..DOFS).rev() {
+                let swap = swaps[pivot][other];
+                if swap.any() {
+                    let (before, after) = columns.split_at_mut(other);
+                    for (left, right) in before[pivot].iter_mut().zip(&mut after[0]) {
+                        (*left, *right) = (L::select(swap, *right, *left), L::select(swap, *left, *right));
+                    }
+                }
+            }
+        }
+        (Block { columns }, smallest_pivot)
     }
 }

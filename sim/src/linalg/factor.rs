@@ -60,29 +60,31 @@ impl<L: Lane> Factor<L> {
         let mut growth = L::splat(0.0);
 
         let mut top = Chain::with_capacity(middle);
-        let mut inward = Block::zero();
+        let mut from_above = Block::zero();
         for row in 0..middle {
-            let pivot = matrix.lower[row].multiply_block_add(&inward, &matrix.diagonal[row]);
+            let mut pivot = matrix.diagonal[row];
+            matrix.lower[row].multiply_block_add(&from_above, &mut pivot);
             let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
-            inward = top.push(inverse, &matrix.lower[row], &matrix.upper[row]);
+            from_above = top.push(inverse, &matrix.lower[row], &matrix.upper[row]);
         }
-        let from_above = inward;
 
         let mut bottom = Chain::with_capacity(rows - 1 - middle);
-        let mut inward = Block::zero();
+        let mut from_below = Block::zero();
         for row in (middle + 1..rows).rev() {
-            let pivot = matrix.upper[row].multiply_block_add(&inward, &matrix.diagonal[row]);
+            let mut pivot = matrix.diagonal[row];
+            matrix.upper[row].multiply_block_add(&from_below, &mut pivot);
             let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
-            inward = bottom.push(inverse, &matrix.upper[row], &matrix.lower[row]);
+            from_below = bottom.push(inverse, &matrix.upper[row], &matrix.lower[row]);
         }
 
-        let pivot = matrix.lower[middle].multiply_block_add(&from_above, &matrix.diagonal[middle]);
-        let pivot = matrix.upper[middle].multiply_block_add(&inward, &pivot);
+        let mut pivot = matrix.diagonal[middle];
+        matrix.lower[middle].multiply_block_add(&from_above, &mut pivot);
+        matrix.upper[middle].multiply_block_add(&from_below, &mut pivot);
         let inverse = invert(&pivot, middle, &matrix.diagonal[middle], &mut growth)?;
-        let coupling = |block: &Block<L>| inverse.multiply_block_add(&block.negated(), &Block::zero());
+        let negated = inverse.negated();
         Ok(Factor {
-            middle: Elimination { inverse, outward: coupling(&matrix.lower[middle]) },
-            middle_from_below: coupling(&matrix.upper[middle]),
+            middle: Elimination { inverse, outward: negated.multiply_block(&matrix.lower[middle]) },
+            middle_from_below: negated.multiply_block(&matrix.upper[middle]),
             top,
             bottom,
             growth,
@@ -149,9 +151,9 @@ impl<L: Lane> Chain<L> {
 
     /// Adds a row and returns its inward block.
     fn push(&mut self, inverse: Block<L>, outward: &Block<L>, inward: &Block<L>) -> Block<L> {
-        let outward = inverse.multiply_block_add(&outward.negated(), &Block::zero());
-        let inward = inverse.multiply_block_add(&inward.negated(), &Block::zero());
-        self.eliminations.push(Elimination { inverse, outward });
+        let negated = inverse.negated();
+        let inward = negated.multiply_block(inward);
+        self.eliminations.push(Elimination { inverse, outward: negated.multiply_block(outward) });
         self.inward.push(inward);
         inward
     }

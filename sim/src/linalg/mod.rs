@@ -10,6 +10,8 @@ mod lane;
 mod tridiagonal;
 
 #[cfg(test)]
+pub(crate) mod four;
+#[cfg(test)]
 mod tests;
 
 pub use block::{Block, DOFS};

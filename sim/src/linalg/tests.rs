@@ -1,5 +1,6 @@
 use nalgebra::{DMatrix, DVector};
 
+use super::four::Four;
 use super::*;
 
 /// Values in [-1, 1) that look random, the same on every machine.
@@ -182,4 +183,73 @@ fn arctangent_equals_the_system_library() {
     assert!(Lane::atan(0.0f64) == 0.0 && Lane::atan(0.0f64).is_sign_positive());
     assert!(Lane::atan(-0.0f64) == 0.0 && Lane::atan(-0.0f64).is_sign_negative());
     assert!(Lane::atan(f64::NAN).is_nan());
+}
+
+/// Four different matrices side by side; their weak diagonals make each lane swap its own rows.
+#[test]
+fn a_lane_has_the_bits_of_a_run_alone() {
+    let mut numbers = Numbers(7);
+    let rows = 9;
+    let alone: [_; 4] = std::array::from_fn(|_| {
+        (numbers.matrix(rows, 1.0), numbers.matrix(rows, 1.0), numbers.vector(rows), numbers.vector(rows))
+    });
+    let matrix = |choose: &dyn Fn(usize) -> BlockTridiagonal<f64>| {
+        let lanes: [_; 4] = std::array::from_fn(choose);
+        let blocks = |side: &dyn Fn(&BlockTridiagonal<f64>) -> &Vec<Block<f64>>| {
+            let entry = |row: usize, i, j| Four(std::array::from_fn(|lane| side(&lanes[lane])[row][(i, j)]));
+            (0..rows).map(|row| Block::from_fn(|i, j| entry(row, i, j))).collect()
+        };
+        BlockTridiagonal {
+            lower: blocks(&|matrix| &matrix.lower),
+            diagonal: blocks(&|matrix| &matrix.diagonal),
+            upper: blocks(&|matrix| &matrix.upper),
+        }
+    };
+    let vector = |choose: &dyn Fn(usize) -> BlockVector<f64>| -> BlockVector<Four> {
+        let lanes: [_; 4] = std::array::from_fn(choose);
+        let value = |row: usize, dof: usize| Four(std::array::from_fn(|lane| lanes[lane][row][dof]));
+        (0..rows).map(|row| std::array::from_fn(|dof| value(row, dof))).collect()
+    };
+    let (a, b) = (matrix(&|lane| alone[lane].0.clone()), matrix(&|lane| alone[lane].1.clone()));
+    let (x, y) = (vector(&|lane| alone[lane].2.clone()), vector(&|lane| alone[lane].3.clone()));
+
+    let mut products = y.clone();
+    BlockTridiagonal::multiply_two_into(&a, &x, &b, &y, &mut products);
+    let mut solutions = y.clone();
+    let splat = Four::splat;
+    let combined = BlockTridiagonal::combine(splat(0.3), &a, splat(-0.7), &b, splat(0.11), &a);
+    Factor::new(&combined).expect("random blocks are regular").solve_into(&x, &mut solutions);
+
+    for (lane, (a, b, x, y)) in alone.iter().enumerate() {
+        let mut product = y.clone();
+        BlockTridiagonal::multiply_two_into(a, x, b, y, &mut product);
+        assert_eq!(lane_of(&products, lane), product);
+        let mut solution = y.clone();
+        let combined = BlockTridiagonal::combine(0.3, a, -0.7, b, 0.11, a);
+        Factor::new(&combined).expect("random blocks are regular").solve_into(x, &mut solution);
+        assert_eq!(lane_of(&solutions, lane), solution);
+    }
+}
+
+#[test]
+fn a_singular_lane_is_named() {
+    let mut matrix = BlockTridiagonal::<Four>::zeros(3);
+    for row in 0..3 {
+        matrix.add_block(row, row, &Block::identity());
+    }
+    matrix.diagonal[1][(2, 2)].set_lane(3, 0.0);
+    assert_eq!(Factor::new(&matrix).expect_err("a zero row"), SingularBlock { row: 1, lane: 3 });
+}
+
+#[test]
+fn arctangent_of_a_lane_has_the_bits_of_one_alone() {
+    let values = [0.3, -0.9, 57.0, f64::NEG_INFINITY];
+    let together = Four(values).atan();
+    for (lane, value) in values.into_iter().enumerate() {
+        assert_eq!(together.lane(lane), Lane::atan(value));
+    }
+}
+
+fn lane_of(vector: &[[Four; DOFS]], lane: usize) -> BlockVector<f64> {
+    vector.iter().map(|row| row.map(|value| value.lane(lane))).collect()
 }

@@ -4,8 +4,10 @@
 //! refused. The types say what can be written down; `Scenario::validate` says what can be simulated.
 
 mod effects;
+mod preset;
 
 pub use effects::{Effect, Effects, Switch};
+pub use preset::{PRESETS, preset};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,101 @@
+//! Where the string must have nodes.
+
+use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
+use crate::scenario::{DrillString, Mesh, Section, SectionKind};
+
+/// A stretch of one kind and one cross-section, with nodes forced at both ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stretch {
+    /// Measured depth of the upper end \[m\].
+    pub(super) top: f64,
+    /// Measured depth of the lower end \[m\].
+    pub(super) bottom: f64,
+    pub(super) kind: ElementKind,
+    pub(super) outer_diameter: f64,
+    pub(super) inner_diameter: f64,
+    /// Target element length \[m\].
+    pub(super) target: f64,
+}
+
+/// The stretches of the string as its sections give them, from the top down.
+pub(super) fn stretches(string: &DrillString, mesh: &Mesh) -> Result<Vec<Stretch>, MeshError> {
+    let mut stretches = Vec::new();
+    let mut section_top = 0.0;
+    for (index, section) in string.sections.iter().enumerate() {
+        let is_length = |length: f64| length.is_finite() && length > 0.0;
+        if !is_length(section.length) || section.count == 0 {
+            return Err(MeshError::NoLength { section: index });
+        }
+        let per_piece = if section.tool_joint.is_some() { 3 } else { 1 };
+        if stretches.len() + per_piece * section.count as usize > MAX_ELEMENTS {
+            return Err(MeshError::TooManyElements);
+        }
+        if let Some(joint) = &section.tool_joint
+            && (!is_length(joint.length) || 2.0 * joint.length >= section.length)
+        {
+            return Err(MeshError::NoRoomForToolJoints { section: index });
+        }
+        for piece in 0..section.count {
+            // A multiple of the length, not a running sum: depths carry no accumulated rounding.
+            let top = section_top + f64::from(piece) * section.length;
+            let bottom = section_top + f64::from(piece + 1) * section.length;
+            push_piece(&mut stretches, section, mesh, top, bottom);
+        }
+        section_top += f64::from(section.count) * section.length;
+    }
+    if stretches.is_empty() {
+        return Err(MeshError::NoSections);
+    }
+    Ok(stretches)
+}
+
+/// One piece of pipe: tool joint, body, tool joint; or the body alone.
+fn push_piece(stretches: &mut Vec<Stretch>, section: &Section, mesh: &Mesh, top: f64, bottom: f64) {
+    let (kind, target) = match section.kind {
+        SectionKind::Drillpipe => (ElementKind::DrillpipeBody, mesh.drillpipe),
+        SectionKind::Collar => (ElementKind::Collar, mesh.collar),
+        SectionKind::Stabilizer => (ElementKind::Stabilizer, mesh.stabilizer),
+        SectionKind::Bit => (ElementKind::Bit, mesh.bit),
+    };
+    let body = Stretch {
+        top,
+        bottom,
+        kind,
+        outer_diameter: section.outer_diameter,
+        inner_diameter: section.inner_diameter,
+        target,
+    };
+    let Some(joint) = &section.tool_joint else {
+        stretches.push(body);
+        return;
+    };
+    let joint_stretch = Stretch {
+        kind: ElementKind::ToolJoint,
+        outer_diameter: joint.outer_diameter,
+        inner_diameter: joint.inner_diameter,
+        target: mesh.tool_joint,
+        ..body
+    };
+    let (body_top, body_bottom) = (top + joint.length, bottom - joint.length);
+    stretches.push(Stretch { bottom: body_top, ..joint_stretch });
+    stretches.push(Stretch { top: body_top, bottom: body_bottom, ..body });
+    stretches.push(Stretch { top: body_bottom, ..joint_stretch });
+}
+
+/// Splits the stretches at each of `places` \[m\], in the order of depth. A place nearer to an end of its
+/// stretch than [`SNAP_FRACTION`] of the target length splits nothing: that end stands for it.
+pub(super) fn split(mut stretches: Vec<Stretch>, places: &[f64]) -> Vec<Stretch> {
+    let mut places = places.to_vec();
+    places.sort_by(f64::total_cmp);
+    for place in places {
+        let below = stretches.partition_point(|stretch| stretch.bottom <= place);
+        let Some(&stretch) = stretches.get(below) else { continue };
+        let snap = SNAP_FRACTION * stretch.target;
+        if place - stretch.top < snap || stretch.bottom - place < snap {
+            continue;
+        }
+        stretches[below].bottom = place;
+        stretches.insert(below + 1, Stretch { top: place, ..stretch });
+    }
+    stretches
+}

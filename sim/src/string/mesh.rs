@@ -1,0 +1,406 @@
+//! Elements and nodes.
+
+use super::boundaries;
+use crate::scenario::{NodeChoice, Scenario};
+
+/// A string of more elements than this is refused.
+pub const MAX_ELEMENTS: usize = 20_000;
+
+/// A gauge or mass nearer to a boundary than this part of the target element length is put on the boundary:
+/// an element that short would cost accuracy and stiffness for nothing.
+pub const SNAP_FRACTION: f64 = 0.05;
+
+/// Depths may overshoot the ends of the string by this much \[m\]: its length is a sum and carries rounding.
+const DEPTH_ROUNDING: f64 = 1e-9;
+
+/// A string that cannot be cut into elements. Sections, gauges and masses are counted from 0.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// There is no section.
+    #[error("the string has no sections")]
+    NoSections,
+    /// A section without pieces or with pieces without length.
+    #[error("section {section} has no length")]
+    NoLength {
+        /// The section.
+        section: usize,
+    },
+    /// Two tool joints leave nothing of the piece's body, or have no length.
+    #[error("section {section} has no room for a body between its tool joints")]
+    NoRoomForToolJoints {
+        /// The section.
+        section: usize,
+    },
+    /// A target element length that is not a positive number.
+    #[error("the target element length {0} m is not a positive number")]
+    Target(f64),
+    /// More than [`MAX_ELEMENTS`] elements.
+    #[error("the mesh has more than {MAX_ELEMENTS} elements")]
+    TooManyElements,
+    /// A gauge or mass above the top or below the bit.
+    #[error("{what} {index} at {measured_depth} m is not on the string")]
+    OffString {
+        /// "gauge" or "unbalance mass".
+        what: &'static str,
+        /// Its place in the list.
+        index: usize,
+        /// Its measured depth \[m\].
+        measured_depth: f64,
+    },
+}
+
+/// What an element is a part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ElementKind {
+    /// Body of a drillpipe.
+    DrillpipeBody,
+    /// Tool joint.
+    ToolJoint,
+    /// Drill collar.
+    Collar,
+    /// Stabilizer.
+    Stabilizer,
+    /// Bit.
+    Bit,
+}
+
+/// One element, between nodes `i` and `i + 1` of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshElement {
+    /// Measured depth of the upper node \[m\].
+    pub top: f64,
+    /// Length along the hole \[m\].
+    pub length: f64,
+    /// What it is a part of.
+    pub kind: ElementKind,
+    /// Outer diameter of the body D_o \[m\].
+    pub outer_diameter: f64,
+    /// Inner diameter of the body D_i \[m\].
+    pub inner_diameter: f64,
+}
+
+/// One unbalance mass at a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeUnbalance {
+    /// Mass times distance from the axis, m_u d \[kg m\].
+    pub moment: f64,
+    /// Phase alpha_u at t = 0, from e1 towards e2 \[rad\].
+    pub phase: f64,
+}
+
+/// One node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshNode {
+    /// Measured depth \[m\].
+    pub measured_depth: f64,
+    /// Radial clearance j0 \[m\]: the gauge's, or half the difference of the hole's diameter and the larger
+    /// outer diameter of the adjoining elements.
+    pub clearance: f64,
+    /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
+    pub contact_radius: f64,
+    /// Whether the clearance is a gauge's.
+    pub is_gauge: bool,
+    /// The masses put here.
+    pub unbalance: Vec<NodeUnbalance>,
+}
+
+/// The mesh of a string: nodes from the top down and the elements between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StringMesh {
+    /// Nodes, one more than there are elements.
+    pub nodes: Vec<MeshNode>,
+    /// Elements; element `i` joins nodes `i` and `i + 1`.
+    pub elements: Vec<MeshElement>,
+}
+
+impl StringMesh {
+    /// Cuts the string of a scenario into elements (physics.md section 9 and the scenario's mesh). Every change
+    /// of section, tool joint, gauge and unbalance mass is a node; each stretch between two of these becomes the
+    /// fewest equal elements no longer than its target.
+    ///
+    /// Gauges and masses within [`SNAP_FRACTION`] of the target length of a boundary are moved to it. Where two
+    /// gauges meet at one node, the smaller clearance holds.
+    ///
+    /// # Errors
+    /// Sections without length, targets that are not positive, more than [`MAX_ELEMENTS`] elements, gauges or
+    /// masses that are not on the string.
+    pub fn new(scenario: &Scenario) -> Result<Self, MeshError> {
+        let string = &scenario.string;
+        let stretches = boundaries::stretches(string, &scenario.mesh)?;
+        let length = stretches.last().map_or(0.0, |stretch| stretch.bottom);
+        let gauges = string.gauges.iter().map(|gauge| gauge.measured_depth);
+        let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
+        on_string("gauge", gauges.clone(), length)?;
+        on_string("unbalance mass", masses.clone(), length)?;
+        let places: Vec<f64> = gauges.chain(masses).collect();
+        let elements = cut(&boundaries::split(stretches, &places))?;
+
+        let mut mesh = Self { nodes: bare_nodes(&elements, length, scenario.well.hole_diameter), elements };
+        for gauge in &string.gauges {
+            let index = mesh.nearest_node(gauge.measured_depth);
+            let node = &mut mesh.nodes[index];
+            node.clearance =
+                if node.is_gauge { node.clearance.min(gauge.clearance) } else { gauge.clearance };
+            node.contact_radius = 0.5 * scenario.well.hole_diameter - node.clearance;
+            node.is_gauge = true;
+        }
+        for mass in &string.unbalance {
+            let index = mesh.nearest_node(mass.measured_depth);
+            mesh.nodes[index]
+                .unbalance
+                .push(NodeUnbalance { moment: mass.mass * mass.radius, phase: mass.phase_deg.to_radians() });
+        }
+        Ok(mesh)
+    }
+
+    /// Measured depths of the nodes \[m\], increasing.
+    pub fn depths(&self) -> Vec<f64> {
+        self.nodes.iter().map(|node| node.measured_depth).collect()
+    }
+
+    /// Length of the string \[m\].
+    pub fn length(&self) -> f64 {
+        self.nodes.last().map_or(0.0, |node| node.measured_depth)
+    }
+
+    /// Index (from 0) of the node nearest to a measured depth \[m\]; of two equally near, the upper one.
+    pub fn nearest_node(&self, measured_depth: f64) -> usize {
+        let below = self.nodes.partition_point(|node| node.measured_depth < measured_depth);
+        if below == 0 {
+            return 0;
+        }
+        let Some(lower) = self.nodes.get(below) else { return self.nodes.len() - 1 };
+        let upper = &self.nodes[below - 1];
+        let upper_is_nearer = measured_depth - upper.measured_depth <= lower.measured_depth - measured_depth;
+        if upper_is_nearer { below - 1 } else { below }
+    }
+
+    /// Index (from 0) of a chosen node, or `None` if the string has no such number or depth.
+    pub fn chosen_node(&self, choice: NodeChoice) -> Option<usize> {
+        match choice {
+            NodeChoice::Node(number) => {
+                let index = (number as usize).checked_sub(1)?;
+                (index < self.nodes.len()).then_some(index)
+            }
+            NodeChoice::Depth(depth) => is_on_string(depth, self.length()).then(|| self.nearest_node(depth)),
+        }
+    }
+}
+
+/// Refuses places above the top or below the end of the string.
+fn on_string(what: &'static str, places: impl Iterator<Item = f64>, length: f64) -> Result<(), MeshError> {
+    for (index, measured_depth) in places.enumerate() {
+        if !is_on_string(measured_depth, length) {
+            return Err(MeshError::OffString { what, index, measured_depth });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a measured depth \[m\] lies on a string of `length` \[m\].
+pub(crate) fn is_on_string(measured_depth: f64, length: f64) -> bool {
+    (-DEPTH_ROUNDING..=length + DEPTH_ROUNDING).contains(&measured_depth)
+}
+
+/// Cuts each stretch into equal elements.
+fn cut(stretches: &[boundaries::Stretch]) -> Result<Vec<MeshElement>, MeshError> {
+    let mut elements = Vec::new();
+    for stretch in stretches {
+        if !(stretch.target.is_finite() && stretch.target > 0.0) {
+            return Err(MeshError::Target(stretch.target));
+        }
+        let length = stretch.bottom - stretch.top;
+        // A length that is a multiple of the target but for rounding must not gain an element.
+        let pieces = (length / stretch.target - 1e-9).ceil().max(1.0);
+        if elements.len() as f64 + pieces > MAX_ELEMENTS as f64 {
+            return Err(MeshError::TooManyElements);
+        }
+        let depth = |i: f64| if i == pieces { stretch.bottom } else { stretch.top + length * i / pieces };
+        for i in 0..pieces as u32 {
+            let (top, bottom) = (depth(f64::from(i)), depth(f64::from(i + 1)));
+            elements.push(MeshElement {
+                top,
+                length: bottom - top,
+                kind: stretch.kind,
+                outer_diameter: stretch.outer_diameter,
+                inner_diameter: stretch.inner_diameter,
+            });
+        }
+    }
+    Ok(elements)
+}
+
+/// The nodes of the elements, before gauges and masses.
+fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<MeshNode> {
+    (0..=elements.len())
+        .map(|i| {
+            let above = i.checked_sub(1).map_or(0.0, |above| elements[above].outer_diameter);
+            let below = elements.get(i).map_or(0.0, |below| below.outer_diameter);
+            let outer_diameter = above.max(below);
+            MeshNode {
+                measured_depth: elements.get(i).map_or(length, |below| below.top),
+                clearance: 0.5 * (hole_diameter - outer_diameter),
+                contact_radius: 0.5 * outer_diameter,
+                is_gauge: false,
+                unbalance: Vec::new(),
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Gauge, UnbalanceMass, preset};
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    fn paper_mesh() -> StringMesh {
+        StringMesh::new(&paper()).unwrap()
+    }
+
+    #[test]
+    fn paper_case_has_the_papers_nodes_and_elements() {
+        // Section 4.1 of the paper: 296 elements, 297 nodes, 1782 dof; nodes 10, 49 and 282 at 11.72, 57.73
+        // and 192.5 m, to the printed digits.
+        let mesh = paper_mesh();
+        assert_eq!((mesh.elements.len(), mesh.nodes.len()), (296, 297));
+        let upper = |e: &&MeshElement| matches!(e.kind, ElementKind::DrillpipeBody | ElementKind::ToolJoint);
+        assert_eq!(mesh.elements.iter().filter(upper).count(), 75);
+        assert_eq!(mesh.elements.iter().filter(|e| e.kind == ElementKind::ToolJoint).count(), 18);
+        for (number, depth, half_digit) in [(10, 11.72, 0.005), (49, 57.73, 0.005), (282, 192.5, 0.05)] {
+            let found = mesh.nodes[number - 1].measured_depth;
+            assert!((found - depth).abs() <= half_digit, "node {number} is at {found} m");
+            assert_eq!(mesh.nearest_node(depth), number - 1);
+        }
+    }
+
+    #[test]
+    fn places_of_the_paper_case_are_nodes_to_all_digits() {
+        let mesh = paper_mesh();
+        let mut forced = vec![0.0, 4.0, 13.5, 23.0, 51.5, 80.0, 89.5, 123.5, 165.5, 199.5, 200.0];
+        forced.extend((0..14).map(|i| 93.5 + 7.5 * f64::from(i)));
+        for depth in forced {
+            let found = mesh.nodes[mesh.nearest_node(depth)].measured_depth;
+            assert!((found - depth).abs() < 1e-12, "{depth} m became {found} m");
+        }
+    }
+
+    #[test]
+    fn elements_follow_each_other_without_gap() {
+        let mesh = paper_mesh();
+        for (i, element) in mesh.elements.iter().enumerate() {
+            assert_eq!(element.top, mesh.nodes[i].measured_depth);
+            assert!((element.top + element.length - mesh.nodes[i + 1].measured_depth).abs() < 1e-13);
+        }
+        let steel: f64 =
+            mesh.elements.iter().filter(|e| e.kind == ElementKind::ToolJoint).map(|e| e.length).sum();
+        assert!((steel - 18.0 * 0.3).abs() < 1e-11);
+    }
+
+    #[test]
+    fn clearances_come_from_the_larger_neighbour_or_the_gauge() {
+        let mesh = paper_mesh();
+        let node = |depth: f64| &mesh.nodes[mesh.nearest_node(depth)];
+        // Body 0.127 m, tool joint 0.1619 m and collar 0.159 m in the hole of 0.2159 m.
+        for (depth, clearance) in
+            [(0.0, 0.04445), (4.0, 0.027), (4.3, 0.027), (13.5, 0.027), (100.0, 0.02845)]
+        {
+            assert!((node(depth).clearance - clearance).abs() < 1e-15, "at {depth} m");
+            assert!((node(depth).contact_radius - (0.10795 - clearance)).abs() < 1e-15);
+            assert!(!node(depth).is_gauge);
+        }
+        let gauges: Vec<f64> = mesh.nodes.iter().filter(|n| n.is_gauge).map(|n| n.measured_depth).collect();
+        assert_eq!(gauges, [123.5, 165.5, 200.0]);
+        for depth in gauges {
+            // physics.md section 6: the blades touch at 0.10785 m.
+            assert_eq!(node(depth).clearance, 1e-4);
+            assert!((node(depth).contact_radius - 0.10785).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn masses_of_the_paper_case_add_up_to_table_6() {
+        let mesh = paper_mesh();
+        let loaded: Vec<&MeshNode> = mesh.nodes.iter().filter(|n| !n.unbalance.is_empty()).collect();
+        assert_eq!(loaded.len(), 17);
+        let total: f64 = loaded.iter().flat_map(|n| &n.unbalance).map(|m| m.moment).sum();
+        assert!((total - 1.769).abs() < 5e-4);
+        assert!((loaded[0].unbalance[0].moment - 0.1024).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_place_inside_a_stretch_splits_it() {
+        let mut scenario = paper();
+        let before = StringMesh::new(&scenario).unwrap().elements.len();
+        // 2.3 m in the 4.0 m stretch: 2.3 m in 2 and 1.7 m in 2 instead of 3.
+        let mass = UnbalanceMass { measured_depth: 2.3, mass: 1.0, radius: 0.05, phase_deg: 90.0 };
+        scenario.string.unbalance.push(mass);
+        let mesh = StringMesh::new(&scenario).unwrap();
+        assert_eq!(mesh.elements.len(), before + 1);
+        let node = &mesh.nodes[2];
+        assert_eq!(node.measured_depth, 2.3);
+        assert_eq!(node.unbalance, [NodeUnbalance { moment: 0.05, phase: std::f64::consts::FRAC_PI_2 }]);
+    }
+
+    #[test]
+    fn a_place_next_to_a_boundary_moves_to_it() {
+        let mut scenario = paper();
+        // Within 5 % of 1.5 m of the end of the first stretch, from either side; and just beyond it.
+        scenario.string.gauges.push(Gauge { measured_depth: 3.93, clearance: 0.01 });
+        let snapped = StringMesh::new(&scenario).unwrap();
+        assert_eq!(snapped.elements.len(), 296);
+        assert!(snapped.nodes[3].is_gauge && snapped.nodes[3].measured_depth == 4.0);
+        scenario.string.gauges.last_mut().unwrap().measured_depth = 3.92;
+        let split = StringMesh::new(&scenario).unwrap();
+        assert_eq!(split.elements.len(), 297);
+        assert!(split.nodes[3].is_gauge && split.nodes[3].measured_depth == 3.92);
+    }
+
+    #[test]
+    fn coinciding_gauges_keep_the_smaller_clearance() {
+        let mut scenario = paper();
+        scenario.string.gauges.push(Gauge { measured_depth: 200.0, clearance: 5e-3 });
+        assert_eq!(StringMesh::new(&scenario).unwrap().nodes[296].clearance, 1e-4);
+    }
+
+    #[test]
+    fn chosen_nodes_count_from_one_or_go_by_depth() {
+        let mesh = paper_mesh();
+        assert_eq!(mesh.chosen_node(NodeChoice::Node(1)), Some(0));
+        assert_eq!(mesh.chosen_node(NodeChoice::Node(297)), Some(296));
+        assert_eq!(mesh.chosen_node(NodeChoice::Node(0)), None);
+        assert_eq!(mesh.chosen_node(NodeChoice::Node(298)), None);
+        assert_eq!(mesh.chosen_node(NodeChoice::Depth(57.7)), Some(48));
+        assert_eq!(mesh.chosen_node(NodeChoice::Depth(200.1)), None);
+        assert_eq!(mesh.chosen_node(NodeChoice::Depth(f64::NAN)), None);
+    }
+
+    #[test]
+    fn unusable_strings_are_refused() {
+        let refused = |change: &dyn Fn(&mut Scenario)| {
+            let mut scenario = paper();
+            change(&mut scenario);
+            StringMesh::new(&scenario).unwrap_err()
+        };
+        assert_eq!(refused(&|s| s.string.sections.clear()), MeshError::NoSections);
+        assert_eq!(refused(&|s| s.string.sections[2].length = -1.0), MeshError::NoLength { section: 2 });
+        assert_eq!(
+            refused(&|s| s.string.sections[1].length = 0.6),
+            MeshError::NoRoomForToolJoints { section: 1 }
+        );
+        assert_eq!(refused(&|s| s.mesh.collar = 0.0), MeshError::Target(0.0));
+        assert_eq!(refused(&|s| s.mesh.collar = 1e-9), MeshError::TooManyElements);
+        assert_eq!(refused(&|s| s.string.sections[1].count = u32::MAX), MeshError::TooManyElements);
+        assert!(matches!(
+            refused(&|s| s.string.gauges[1].measured_depth = 201.0),
+            MeshError::OffString { what: "gauge", index: 1, .. }
+        ));
+        assert!(matches!(
+            refused(&|s| s.string.unbalance[0].measured_depth = -0.1),
+            MeshError::OffString { what: "unbalance mass", index: 0, .. }
+        ));
+    }
+}

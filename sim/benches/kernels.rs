@@ -1,10 +1,12 @@
-//! The block-tridiagonal kernels at the size of the 200 m case: 296 free nodes.
+//! The block-tridiagonal kernels and the contact law at the size of the 200 m case: 296 free nodes.
 //! Run: `cargo bench -p drillsweep-sim --bench kernels`
 
 use std::hint::black_box;
 
 use divan::Bencher;
+use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
 use drillsweep_sim::linalg::{Block, BlockTridiagonal, BlockVector, Factor};
+use drillsweep_sim::scenario::{Adhesion, ContactLaw, Effects};
 
 const ROWS: usize = 296;
 
@@ -52,4 +54,33 @@ fn factor(bencher: Bencher) {
 fn solve(bencher: Bencher) {
     let (factor, b, mut x) = (Factor::new(&matrix(0.1)).expect("regular"), vector(0.2), vector(0.3));
     bencher.bench_local(|| factor.solve_into(black_box(&b), black_box(&mut x)));
+}
+
+/// Every second node against the wall.
+#[divan::bench]
+fn contact(bencher: Bencher) {
+    let law = ContactLaw {
+        stiffness: 1e7,
+        damping: 1e4,
+        stiffness_sharpness: 7e7,
+        damping_sharpness: 7e4,
+        adhesion: Adhesion::Allowed,
+        static_friction: 0.3,
+        dynamic_friction: 0.2,
+        friction_reference_speed: 0.033,
+    };
+    let law = ContactParameters::<f64>::new(&law, &Effects::default());
+    let node = ContactNode { clearance: 0.04, contact_radius: 0.0635 };
+    let (mut x, v, mut force) = (vector(0.2), vector(0.3), vector(0.4));
+    for (row, x) in x.iter_mut().enumerate() {
+        let radius = if row % 2 == 0 { 0.04005 } else { 0.035 };
+        (x[0], x[1]) = (radius * (row as f64).cos(), radius * (row as f64).sin());
+    }
+    bencher.bench_local(|| {
+        for ((force, x), v) in black_box(&mut force).iter_mut().zip(black_box(&x)).zip(black_box(&v)) {
+            let motion = LateralMotion { u: x[0], v: x[1], u_rate: v[0], v_rate: v[1], theta_z_rate: v[5] };
+            let wall = dynamic_contact(&law, &node, &motion, 12.566);
+            *force = [wall.force_u, wall.force_v, 0.0, 0.0, 0.0, wall.torque_z];
+        }
+    });
 }

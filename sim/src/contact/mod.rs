@@ -1,1 +1,25 @@
-//! Borehole contact and friction.
+//! Borehole contact and friction (physics.md section 6, equations (10) to (14) and (36)).
+//!
+//! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
+//! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
+//! force in motion is [`dynamic_contact`], at rest [`static_contact`].
+
+mod law;
+mod motion;
+mod rest;
+
+#[cfg(test)]
+mod tests;
+
+pub use law::ContactParameters;
+pub use motion::{ContactForce, LateralMotion, dynamic_contact};
+pub use rest::{StaticContactForce, static_contact};
+
+/// What contact needs to know of a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactNode<L> {
+    /// Radial clearance j0 \[m\].
+    pub clearance: L,
+    /// Radius R_e at which the string touches the wall \[m\].
+    pub contact_radius: L,
+}

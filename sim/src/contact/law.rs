@@ -1,0 +1,153 @@
+//! The laws of normal force and friction of one node.
+
+use std::f64::consts::PI;
+
+use crate::linalg::Lane;
+use crate::scenario::{Adhesion, ContactLaw, Effects};
+
+/// A [`ContactLaw`] with its switches, ready to evaluate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactParameters<L> {
+    stiffness: Saturating<L>,
+    damping: Saturating<L>,
+    /// Least normal force \[N\]: zero without adhesion, minus infinity with it.
+    least_normal_force: L,
+    /// mu_s.
+    static_friction: L,
+    /// 1 / (2 v_ref) \[s/m\]; zero without friction.
+    half_slope: L,
+    /// xi of (14).
+    xi: L,
+    /// Decay a of (14) \[s/m\].
+    decay: L,
+    /// 1 where friction pushes along the wall, 0 where that is switched off.
+    pub(super) tangential_share: L,
+    /// 1 where friction turns the string, 0 where that is switched off.
+    pub(super) torque_share: L,
+}
+
+/// A coefficient that rises by an arctangent from half its limit at P = 0 (11).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Saturating<L> {
+    half_limit: L,
+    limit_over_pi: L,
+    /// pi lambda \[1/m\].
+    sharpness: L,
+}
+
+impl<L: Lane> ContactParameters<L> {
+    /// The same law in every lane.
+    ///
+    /// `friction` off drops the force along the wall and `friction_torque` off the torque about the axis, each
+    /// on its own. Whether there is contact at all is for the caller to ask.
+    pub fn new(law: &ContactLaw, effects: &Effects) -> Self {
+        let (static_friction, dynamic_friction) = (law.static_friction, law.dynamic_friction);
+        let frictionless = static_friction == 0.0;
+        let ratio = if frictionless { 1.0 } else { dynamic_friction / static_friction };
+        let xi = (1.0 - ratio).sqrt();
+        let half_slope = if frictionless { 0.0 } else { 0.5 / law.friction_reference_speed };
+        // a = (1 - xi) / (2 v_ref mu_d); 1 - xi = (mu_d/mu_s) / (1 + xi) spares the quotient 0/0 of mu_d = 0.
+        let decay = if frictionless { 0.0 } else { half_slope / (static_friction * (1.0 + xi)) };
+        let share = |is_on: bool| L::splat(if is_on { 1.0 } else { 0.0 });
+        ContactParameters {
+            stiffness: Saturating::new(law.stiffness, law.stiffness_sharpness),
+            damping: Saturating::new(law.damping, law.damping_sharpness),
+            least_normal_force: L::splat(match law.adhesion {
+                Adhesion::Allowed => f64::NEG_INFINITY,
+                Adhesion::None => 0.0,
+            }),
+            static_friction: L::splat(static_friction),
+            half_slope: L::splat(half_slope),
+            xi: L::splat(xi),
+            decay: L::splat(decay),
+            tangential_share: share(effects.friction.is_on()),
+            torque_share: share(effects.friction_torque.is_on()),
+        }
+    }
+
+    /// Stiffness K_c(P) \[N/m\], (11).
+    #[inline(always)]
+    pub fn stiffness(&self, penetration: L) -> L {
+        self.stiffness.at(penetration)
+    }
+
+    /// Damping C_c(P) \[N s/m\], (11).
+    #[inline(always)]
+    pub fn damping(&self, penetration: L) -> L {
+        self.damping.at(penetration)
+    }
+
+    /// Normal force F_n \[N\] of a node that touches (P > 0), (10): positive pushes the string off the wall.
+    /// `elastic` is its part K_c P.
+    #[inline(always)]
+    pub fn normal_force(&self, penetration: L, penetration_rate: L, elastic: L) -> L {
+        self.damping(penetration).mul_add(penetration_rate, elastic).max(self.least_normal_force)
+    }
+
+    /// Friction coefficient mu(v_g) of (14), odd in the sliding speed \[m/s\]: slope 1 / v_ref at rest, mu_s
+    /// at its peak 2 v_ref mu_d / (xi (1 - xi)), mu_d for fast sliding.
+    #[inline(always)]
+    pub fn friction_coefficient(&self, sliding_speed: L) -> L {
+        let one = L::splat(1.0);
+        let fade = one / self.decay.mul_add(sliding_speed.abs(), one);
+        let shape = (one + self.xi).mul_add(fade, one - self.xi) * fade;
+        sliding_speed * self.half_slope * shape
+    }
+
+    /// Static friction coefficient mu_s.
+    pub fn static_friction(&self) -> L {
+        self.static_friction
+    }
+
+    /// Energy \[J\] stored by the contact stiffness, the integral of K_c(p) p from 0 to P; zero out of contact.
+    pub fn potential_energy(&self, penetration: L) -> L {
+        let p = penetration.max(L::splat(0.0));
+        self.stiffness.first_moment(p)
+    }
+
+    /// d(K_c(P) P)/dP.
+    #[inline(always)]
+    pub(super) fn elastic_slope(&self, penetration: L) -> L {
+        let saturation = self.stiffness.sharpness * penetration;
+        let rise = self.stiffness.limit_over_pi * saturation / saturation.mul_add(saturation, L::splat(1.0));
+        self.stiffness(penetration) + rise
+    }
+}
+
+impl<L: Lane> Saturating<L> {
+    fn new(limit: f64, sharpness: f64) -> Self {
+        Saturating {
+            half_limit: L::splat(0.5 * limit),
+            limit_over_pi: L::splat(limit / PI),
+            sharpness: L::splat(PI * sharpness),
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, penetration: L) -> L {
+        (self.sharpness * penetration).atan().mul_add(self.limit_over_pi, self.half_limit)
+    }
+
+    /// The integral of the coefficient times p from 0 to P >= 0.
+    ///
+    /// With y = sharpness P, the integral of p atan(sharpness p) is ((1 + y^2) atan y - y) / (2 sharpness^2);
+    /// where y is small that bracket is 2 y^3 (1/3 - y^2/15 + y^4/35 - ...), summed here as a series.
+    fn first_moment(&self, penetration: L) -> L {
+        let y = self.sharpness * penetration;
+        let y_squared = y * y;
+        let terms = (1..=SERIES_TERMS).rev().map(|k| {
+            let k = k as f64;
+            let sign = if k % 2.0 == 1.0 { 1.0 } else { -1.0 };
+            sign / ((2.0 * k - 1.0) * (2.0 * k + 1.0))
+        });
+        let series = terms.fold(L::splat(0.0), |sum, term| sum.mul_add(y_squared, L::splat(term)));
+        let small = y * series;
+        let large = L::splat(0.5) * (y.atan() + (y.atan() - y) / y_squared);
+        let bend = L::select(y.less_than(L::splat(SERIES_LIMIT)), small, large);
+        penetration * penetration * self.limit_over_pi.mul_add(bend, L::splat(0.5) * self.half_limit)
+    }
+}
+
+/// Below this y the series is summed; what 9 terms leave out is below y^18.
+const SERIES_LIMIT: f64 = 0.1;
+const SERIES_TERMS: u32 = 9;

@@ -1,0 +1,416 @@
+use std::f64::consts::{PI, TAU};
+
+use super::*;
+use crate::linalg::Lane;
+use crate::linalg::four::Four;
+use crate::scenario::{Adhesion, ContactLaw, Effects, Switch};
+
+/// The law of the 200 m base case (physics.md section 9).
+const BASE: ContactLaw = ContactLaw {
+    stiffness: 1e7,
+    damping: 1e4,
+    stiffness_sharpness: 7e7,
+    damping_sharpness: 7e4,
+    adhesion: Adhesion::Allowed,
+    static_friction: 0.3,
+    dynamic_friction: 0.2,
+    friction_reference_speed: 0.033,
+};
+
+/// A law soft enough that differences and quadratures resolve its arctangents.
+const SOFT: ContactLaw = ContactLaw { stiffness_sharpness: 1e4, damping_sharpness: 3e3, ..BASE };
+
+const FRICTIONLESS: ContactLaw = ContactLaw { static_friction: 0.0, dynamic_friction: 0.0, ..BASE };
+
+const NODE: ContactNode<f64> = ContactNode { clearance: 0.04, contact_radius: 0.0635 };
+
+fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
+    ContactParameters::new(law, &Effects::default())
+}
+
+/// K_c P by (11) with the system's arctangent.
+fn elastic_force(law: &ContactLaw, p: f64) -> f64 {
+    0.5 * law.stiffness * (2.0 / PI * (PI * law.stiffness_sharpness * p).atan() + 1.0) * p
+}
+
+/// C_c by (11) with the system's arctangent.
+fn damping(law: &ContactLaw, p: f64) -> f64 {
+    0.5 * law.damping * (2.0 / PI * (PI * law.damping_sharpness * p).atan() + 1.0)
+}
+
+fn assert_close(actual: f64, expected: f64, relative: f64) {
+    assert!((actual - expected).abs() <= relative * expected.abs(), "{actual:e} instead of {expected:e}");
+}
+
+#[test]
+fn stiffness_and_damping_rise_by_their_arctangents() {
+    let law = parameters(&BASE);
+    // atan(1) = pi/4 at P = 1 / (pi lambda): three quarters of the limit.
+    assert_close(law.stiffness(1.0 / (PI * 7e7)), 7.5e6, 1e-14);
+    assert_close(law.damping(1.0 / (PI * 7e4)), 7.5e3, 1e-14);
+    // atan(sqrt 3) = pi/3: five sixths.
+    assert_close(law.stiffness(3f64.sqrt() / (PI * 7e7)), 1e7 * 5.0 / 6.0, 1e-14);
+    // Half at the wall, all of it deep inside: 1 - atan-tail 1 / (pi y).
+    assert_close(law.stiffness(0.0), 5e6, 1e-15);
+    assert_close(law.damping(0.0), 5e3, 1e-15);
+    let y = PI * 7e7 * 5e-5;
+    assert_close(law.stiffness(5e-5), 1e7 * (1.0 - 1.0 / (PI * y)), 1e-12);
+}
+
+#[test]
+fn the_damper_pulls_only_with_adhesion() {
+    let leaving = LateralMotion { u: 0.0401, v: 0.0, u_rate: -1.0, v_rate: 0.0, theta_z_rate: 0.0 };
+    // K_c P = 1 kN less C_c = 10 kN at 1 m/s.
+    let expected = elastic_force(&BASE, 1e-4) - damping(&BASE, 1e-4);
+    let pulled = dynamic_contact(&parameters(&FRICTIONLESS), &NODE, &leaving, 0.0);
+    assert!(expected < -8e3);
+    assert_close(pulled.normal, expected, 1e-12);
+    assert_close(pulled.force_u, -expected, 1e-12);
+
+    let clamped = ContactLaw { adhesion: Adhesion::None, ..BASE };
+    let free = dynamic_contact(&parameters(&clamped), &NODE, &leaving, 12.0);
+    assert_eq!((free.normal, free.force_u, free.force_v, free.torque_z), (0.0, 0.0, 0.0, 0.0));
+    let arriving = LateralMotion { u_rate: 1.0, ..leaving };
+    let pushed = dynamic_contact(&parameters(&clamped), &NODE, &arriving, 0.0);
+    assert_close(pushed.normal, elastic_force(&BASE, 1e-4) + damping(&BASE, 1e-4), 1e-12);
+}
+
+/// Physics.md section 6: friction uses |F_n|, so a pulling wall still brakes.
+#[test]
+fn friction_of_a_pulling_wall_still_brakes() {
+    let leaving = LateralMotion { u: 0.0401, v: 0.0, u_rate: -1.0, v_rate: 0.0, theta_z_rate: 0.0 };
+    let force = dynamic_contact(&parameters(&BASE), &NODE, &leaving, 12.0);
+    assert!(force.normal < 0.0 && force.force_v < 0.0 && force.torque_z < 0.0);
+}
+
+#[test]
+fn the_wall_pushes_back_and_brakes_at_eight_angles_and_both_senses() {
+    let law = parameters(&BASE);
+    let (radius, rate) = (0.0402, 0.3);
+    let penetration = radius - NODE.clearance;
+    let normal = elastic_force(&BASE, penetration) + damping(&BASE, penetration) * rate;
+    for eighth in 0..8 {
+        let (sin, cos) = (f64::from(eighth) * TAU / 8.0 + 0.1).sin_cos();
+        for (rotation_speed, whirl_speed) in [(12.6, 0.05), (-12.6, 0.05), (12.6, -3.0), (-12.6, -0.05)] {
+            let motion = LateralMotion {
+                u: radius * cos,
+                v: radius * sin,
+                u_rate: rate * cos - whirl_speed * sin,
+                v_rate: rate * sin + whirl_speed * cos,
+                theta_z_rate: 0.4,
+            };
+            let force = dynamic_contact(&law, &NODE, &motion, rotation_speed);
+            let sliding = whirl_speed + (rotation_speed + 0.4) * NODE.contact_radius;
+            let friction = law.friction_coefficient(sliding) * normal;
+            assert!(friction * sliding > 0.0);
+            assert_close(force.penetration, penetration, 1e-12);
+            assert_close(force.penetration_rate, rate, 1e-13);
+            assert_close(force.sliding_speed, sliding, 1e-12);
+            assert_close(force.normal, normal, 1e-12);
+            assert_close(force.force_u, -normal * cos + friction * sin, 1e-11);
+            assert_close(force.force_v, -normal * sin - friction * cos, 1e-11);
+            assert_close(force.torque_z, -friction * NODE.contact_radius, 1e-11);
+        }
+    }
+}
+
+#[test]
+fn there_is_no_force_short_of_the_wall() {
+    let law = parameters(&BASE);
+    let motion = LateralMotion { u: 0.0, v: 0.0, u_rate: 1.0, v_rate: -1.0, theta_z_rate: 0.0 };
+    for radius in [0.0, 0.02, NODE.clearance] {
+        let at = LateralMotion { u: radius, ..motion };
+        assert_eq!(dynamic_contact(&law, &NODE, &at, 12.0), ContactForce::none());
+        assert_eq!(static_contact(&law, &NODE, radius, 0.0, 12.0), StaticContactForce::default());
+    }
+    let no_clearance = ContactNode { clearance: 0.0, ..NODE };
+    assert_eq!(dynamic_contact(&law, &no_clearance, &motion, 12.0), ContactForce::none());
+    assert_eq!(static_contact(&law, &no_clearance, 0.0, 0.0, 12.0), StaticContactForce::default());
+}
+
+#[test]
+fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
+    for (mu_s, mu_d, v_ref) in [(0.3, 0.2, 0.033), (0.5, 0.1, 0.001), (0.25, 0.24, 0.2)] {
+        let scenario = ContactLaw {
+            static_friction: mu_s,
+            dynamic_friction: mu_d,
+            friction_reference_speed: v_ref,
+            ..BASE
+        };
+        let law = parameters(&scenario);
+        let mu = |v: f64| law.friction_coefficient(v);
+        let xi = (1.0 - mu_d / mu_s).sqrt();
+        let peak = 2.0 * v_ref * mu_d / (xi * (1.0 - xi));
+        assert_close(mu(peak), mu_s, 1e-14);
+        assert!((1..1000).all(|i| mu(peak * f64::from(i) / 100.0) <= mu_s * (1.0 + 1e-14)));
+        assert!(mu(0.9 * peak) < mu_s && mu(1.1 * peak) < mu_s);
+        // What is left of the peak falls as 1/v, here by a factor of up to 32.
+        assert_close(mu(1e13 * v_ref), mu_d, 1e-11);
+        // Second-order one-sided: the law is odd, with a kink in its second derivative at rest.
+        let step = 1e-6 * v_ref;
+        assert_close((4.0 * mu(step) - mu(2.0 * step)) / (2.0 * step), 1.0 / v_ref, 1e-10);
+        assert_eq!(mu(0.0), 0.0);
+        assert_eq!(mu(-0.7 * peak), -mu(0.7 * peak));
+    }
+}
+
+/// 0.054 m/s is the peak's place in the base case (hydraulics.md section 7, item 14).
+#[test]
+fn friction_of_the_base_case_peaks_where_published() {
+    let law = parameters(&BASE);
+    let peak = (1..2000)
+        .map(|i| f64::from(i) * 1e-4)
+        .max_by(|a, b| law.friction_coefficient(*a).total_cmp(&law.friction_coefficient(*b)));
+    assert!((peak.expect("speeds") - 0.054).abs() < 5e-4);
+}
+
+#[test]
+fn friction_limits_without_falling_branch_without_dynamic_part_and_without_friction() {
+    let of = |static_friction, dynamic_friction| {
+        parameters(&ContactLaw { static_friction, dynamic_friction, ..BASE })
+    };
+    // mu_s = mu_d: mu = mu_s [1 - 1/(1 + a v)^2], a = 1/(2 v_ref mu_d), rises without a peak.
+    let equal = of(0.3, 0.3);
+    let a = 1.0 / (2.0 * 0.033 * 0.3);
+    for v in [0.001, 0.1, 10.0] {
+        assert_close(equal.friction_coefficient(v), 0.3 * (1.0 - (1.0 + a * v).powi(-2)), 1e-12);
+    }
+    // mu_d = 0: mu = (v / v_ref) / (1 + a v)^2, a = 1/(4 v_ref mu_s), peaks at mu_s for a v = 1 and dies out.
+    let falling = of(0.3, 0.0);
+    assert_close(falling.friction_coefficient(4.0 * 0.033 * 0.3), 0.3, 1e-14);
+    assert!(falling.friction_coefficient(1e6) < 1e-6);
+    let none = of(0.0, 0.0);
+    assert!([-1.0, 0.0, 1.0, 1e6].iter().all(|v| none.friction_coefficient(*v) == 0.0));
+}
+
+#[test]
+fn friction_force_and_friction_torque_switch_off_separately() {
+    let motion = LateralMotion { u: 0.0402, v: 0.0, u_rate: 0.0, v_rate: 0.1, theta_z_rate: 0.0 };
+    let with = |friction, friction_torque| {
+        let law = ContactParameters::new(&BASE, &Effects { friction, friction_torque, ..Effects::default() });
+        let moving = dynamic_contact(&law, &NODE, &motion, 12.0);
+        let resting = static_contact(&law, &NODE, 0.0402, 0.0, 12.0);
+        [moving.force_v, moving.torque_z, resting.force_v, resting.torque_z].map(|force| force != 0.0)
+    };
+    assert_eq!(with(Switch::On, Switch::On), [true, true, true, true]);
+    assert_eq!(with(Switch::Off, Switch::On), [false, true, false, true]);
+    assert_eq!(with(Switch::On, Switch::Off), [true, false, true, false]);
+    assert_eq!(with(Switch::Off, Switch::Off), [false, false, false, false]);
+}
+
+#[test]
+fn static_friction_acts_in_the_sense_of_rotation() {
+    let law = parameters(&BASE);
+    let (sin, cos) = 0.7f64.sin_cos();
+    let force = |speed| static_contact(&law, &NODE, 0.0402 * cos, 0.0402 * sin, speed);
+    let normal = elastic_force(&BASE, 0.0402 - 0.04);
+    for (speed, friction) in [(12.6, 0.3), (-12.6, -0.3), (0.0, 0.0)] {
+        let force = force(speed);
+        assert_close(force.normal, normal, 1e-11);
+        assert_close(force.force_u, normal * (-cos + friction * sin), 1e-11);
+        assert_close(force.force_v, normal * (-sin - friction * cos), 1e-11);
+        assert_close(force.torque_z, -friction * normal * NODE.contact_radius, 1e-11);
+    }
+}
+
+/// The error of a central difference falls by four with half the step, until rounding takes over.
+#[test]
+fn static_tangent_is_the_derivative_to_second_order() {
+    let law = parameters(&SOFT);
+    for (angle, rotation_speed) in [(0.3f64, 12.6), (2.0, -12.6), (4.4, 12.6), (5.5, 0.0)] {
+        let (u, v) = (0.04003 * angle.cos(), 0.04003 * angle.sin());
+        let at = |u, v| {
+            let force = static_contact(&law, &NODE, u, v, rotation_speed);
+            [force.force_u, force.force_v, force.torque_z]
+        };
+        let tangent = static_contact(&law, &NODE, u, v, rotation_speed).tangent;
+        let scale = tangent.as_flattened().iter().fold(0.0f64, |largest, entry| largest.max(entry.abs()));
+        let error = |step: f64| {
+            let by_u = [at(u + step, v), at(u - step, v)];
+            let by_v = [at(u, v + step), at(u, v - step)];
+            let mut largest = 0.0f64;
+            for row in 0..3 {
+                for (column, [ahead, behind]) in [by_u, by_v].iter().enumerate() {
+                    let difference = (ahead[row] - behind[row]) / (2.0 * step);
+                    largest = largest.max((difference - tangent[row][column]).abs());
+                }
+            }
+            largest / scale
+        };
+        let order = (error(2e-6) / error(1e-6)).log2();
+        assert!((order - 2.0).abs() < 0.05, "order {order}");
+        assert!(error(1e-8) < 1e-6);
+    }
+}
+
+#[test]
+fn potential_energy_is_the_integral_of_the_elastic_force() {
+    for law in [SOFT, BASE] {
+        let parameters = parameters(&law);
+        let width = 1.0 / (PI * law.stiffness_sharpness);
+        for saturation in [1e-6, 1e-3, 0.0999, 0.1001, 0.3, 1.0, 5.0, 40.0] {
+            let p = saturation * width;
+            // Gauss-Legendre with 5 points on 400 pieces: exact to rounding for a piece below a tenth of the width.
+            let integral = gauss(0.0, p, 400, |p| elastic_force(&law, p));
+            assert_close(parameters.potential_energy(p), integral, 2e-14);
+        }
+    }
+    let law = parameters(&BASE);
+    assert_eq!(law.potential_energy(0.0), 0.0);
+    assert_eq!(law.potential_energy(-1e-3), 0.0);
+    // Deep inside, by atan y = pi/2 - 1/y + ...: k_c (P^2/2 - P/(pi s) + 1/(4 s^2)) with s = pi lambda_k.
+    let (p, s) = (1e-4, PI * 7e7);
+    assert_close(law.potential_energy(p), 1e7 * (0.5 * p * p - p / (PI * s) + 0.25 / (s * s)), 1e-12);
+}
+
+fn gauss(from: f64, to: f64, pieces: u32, f: impl Fn(f64) -> f64) -> f64 {
+    let half = 0.5 * (to - from) / f64::from(pieces);
+    let (inner, outer) = ((10.0f64 / 7.0).sqrt(), 70.0f64.sqrt());
+    let points = [
+        (0.0, 128.0 / 225.0),
+        ((5.0 - 2.0 * inner).sqrt() / 3.0, (322.0 + 13.0 * outer) / 900.0),
+        ((5.0 + 2.0 * inner).sqrt() / 3.0, (322.0 - 13.0 * outer) / 900.0),
+    ];
+    let piece = |i: u32| {
+        let centre = from + half * f64::from(2 * i + 1);
+        let sum = |(x, weight): &(f64, f64)| {
+            if *x == 0.0 {
+                weight * f(centre)
+            } else {
+                weight * (f(centre - x * half) + f(centre + x * half))
+            }
+        };
+        half * points.iter().map(sum).sum::<f64>()
+    };
+    (0..pieces).map(piece).sum()
+}
+
+/// One mass thrown at the wall, integrated by Runge-Kutta from touch to parting.
+struct Bounce {
+    /// Speed of parting [m/s], positive.
+    speed: f64,
+    /// Work of the damper [J], integrated alongside from the law as printed.
+    damper_work: f64,
+    /// Largest error of kinetic plus potential plus dissipated energy on the way [J].
+    largest_imbalance: f64,
+}
+
+const MASS: f64 = 60.0;
+const ARRIVAL_SPEED: f64 = 0.5;
+
+fn bounce(law: &ContactLaw, step: f64) -> Bounce {
+    let parameters = parameters(law);
+    let (cos, sin) = (0.6, 0.8);
+    let rates = |[p, speed, _]: [f64; 3]| {
+        let r = NODE.clearance + p;
+        let motion = LateralMotion {
+            u: r * cos,
+            v: r * sin,
+            u_rate: speed * cos,
+            v_rate: speed * sin,
+            theta_z_rate: 0.0,
+        };
+        let force = dynamic_contact(&parameters, &NODE, &motion, 0.0);
+        [speed, (force.force_u * cos + force.force_v * sin) / MASS, damping(law, p) * speed * speed]
+    };
+    let advanced = |state: [f64; 3], rate: [f64; 3], step: f64| -> [f64; 3] {
+        std::array::from_fn(|i| state[i] + step * rate[i])
+    };
+    let runge_kutta = |state: [f64; 3], step: f64| {
+        let k1 = rates(state);
+        let k2 = rates(advanced(state, k1, 0.5 * step));
+        let k3 = rates(advanced(state, k2, 0.5 * step));
+        let k4 = rates(advanced(state, k3, step));
+        let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+        advanced(state, mean, step)
+    };
+    let kinetic = |speed: f64| 0.5 * MASS * speed * speed;
+    // Just inside the wall, so that no step straddles the jump of the damping there.
+    let touch = 1e-10;
+    let mut state = [touch, ARRIVAL_SPEED, 0.0];
+    let total = |[p, speed, work]: [f64; 3]| kinetic(speed) + parameters.potential_energy(p) + work;
+    let mut largest_imbalance = 0.0f64;
+    loop {
+        let next = runge_kutta(state, step);
+        if next[0] < touch {
+            break;
+        }
+        state = next;
+        largest_imbalance = largest_imbalance.max((total(state) - total([touch, ARRIVAL_SPEED, 0.0])).abs());
+    }
+    let (mut shorter, mut longer) = (0.0, step);
+    for _ in 0..60 {
+        let middle = 0.5 * (shorter + longer);
+        if runge_kutta(state, middle)[0] < touch { longer = middle } else { shorter = middle }
+    }
+    let [_, speed, damper_work] = runge_kutta(state, shorter);
+    Bounce { speed: -speed, damper_work, largest_imbalance }
+}
+
+#[test]
+fn an_undamped_bounce_keeps_its_energy() {
+    let law = ContactLaw { damping: 0.0, static_friction: 0.0, dynamic_friction: 0.0, ..SOFT };
+    let bounce = bounce(&law, 1e-6);
+    let kinetic = 0.5 * MASS * ARRIVAL_SPEED * ARRIVAL_SPEED;
+    assert_close(bounce.speed, ARRIVAL_SPEED, 1e-10);
+    assert!(bounce.largest_imbalance < 1e-10 * kinetic, "{:e}", bounce.largest_imbalance);
+}
+
+#[test]
+fn a_damped_bounce_loses_the_work_of_its_damper() {
+    let law = ContactLaw { static_friction: 0.0, dynamic_friction: 0.0, ..SOFT };
+    let bounce = bounce(&law, 1e-6);
+    let lost = 0.5 * MASS * (ARRIVAL_SPEED * ARRIVAL_SPEED - bounce.speed * bounce.speed);
+    assert!(lost > 2.0);
+    assert_close(bounce.damper_work, lost, 1e-9);
+    assert!(bounce.largest_imbalance < 1e-9 * lost, "{:e}", bounce.largest_imbalance);
+}
+
+/// With arctangents as sharp as steps the wall is a spring and a dashpot, whose coefficient of restitution at
+/// P = 0 is exp(-zeta pi / sqrt(1 - zeta^2)).
+#[test]
+fn a_sharp_wall_has_the_restitution_of_spring_and_dashpot() {
+    let sharpness = 1e18;
+    let law = ContactLaw {
+        stiffness_sharpness: sharpness,
+        damping_sharpness: sharpness,
+        static_friction: 0.0,
+        dynamic_friction: 0.0,
+        ..BASE
+    };
+    let zeta = law.damping / (2.0 * (law.stiffness * MASS).sqrt());
+    let expected = ARRIVAL_SPEED * (-zeta * PI / (1.0 - zeta * zeta).sqrt()).exp();
+    // The touch at 1e-10 m instead of 0 shifts the phase by 1e-7.
+    assert_close(bounce(&law, 1e-6).speed, expected, 1e-6);
+}
+
+#[test]
+fn a_lane_has_the_bits_of_a_node_alone() {
+    let radii = [0.0402, 0.03, 0.0, 0.041];
+    let law = ContactParameters::<f64>::new(&BASE, &Effects::default());
+    let four = ContactParameters::<Four>::new(&BASE, &Effects::default());
+    let node = ContactNode { clearance: Four::splat(NODE.clearance), contact_radius: Four::splat(0.0635) };
+    let motion = LateralMotion {
+        u: Four(radii.map(|r| 0.6 * r)),
+        v: Four(radii.map(|r| -0.8 * r)),
+        u_rate: Four([0.2, -1.0, 0.1, -0.7]),
+        v_rate: Four([0.0, 0.3, 0.2, -0.4]),
+        theta_z_rate: Four([1.0, -2.0, 0.0, -15.0]),
+    };
+    let together = dynamic_contact(&four, &node, &motion, Four::splat(12.6));
+    for lane in 0..4 {
+        let motion = LateralMotion {
+            u: motion.u.lane(lane),
+            v: motion.v.lane(lane),
+            u_rate: motion.u_rate.lane(lane),
+            v_rate: motion.v_rate.lane(lane),
+            theta_z_rate: motion.theta_z_rate.lane(lane),
+        };
+        let alone = dynamic_contact(&law, &NODE, &motion, 12.6);
+        assert_eq!(together.force_u.lane(lane), alone.force_u);
+        assert_eq!(together.force_v.lane(lane), alone.force_v);
+        assert_eq!(together.torque_z.lane(lane), alone.torque_z);
+        assert_eq!(together.normal.lane(lane), alone.normal);
+        assert_eq!(together.sliding_speed.lane(lane), alone.sliding_speed);
+    }
+}

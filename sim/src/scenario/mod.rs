@@ -3,11 +3,20 @@
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
 //! refused. The types say what can be written down; `Scenario::validate` says what can be simulated.
 
+mod accuracy;
+mod canonical;
 mod effects;
+mod format;
 mod preset;
+mod problem;
+mod request;
+mod set;
 
+pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
 pub use effects::{Effect, Effects, Switch};
 pub use preset::{PRESETS, preset};
+pub use problem::{Problem, Problems, Warning};
+pub use request::ScenarioRequest;
 
 use serde::{Deserialize, Serialize};
 
@@ -355,81 +364,4 @@ pub struct TimeWindow {
     pub from: f64,
     /// End \[s\], not included.
     pub to: f64,
-}
-
-/// How finely time is resolved: a preset, or integrator and step in full.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(untagged)]
-pub enum Accuracy {
-    /// A named preset.
-    Preset(AccuracyPreset),
-    /// Integrator and step in full.
-    Explicit(TimeStepping),
-}
-
-impl Default for Accuracy {
-    fn default() -> Self {
-        Accuracy::Preset(AccuracyPreset::Standard)
-    }
-}
-
-/// Named accuracies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum AccuracyPreset {
-    /// Generalized-alpha, 0.5 ms, two contact sweeps.
-    Draft,
-    /// ESDIRK4(3)6L, 1 ms, two contact sweeps a stage.
-    Standard,
-    /// ESDIRK4(3)6L, 0.25 ms, contact sweeps to convergence.
-    Reference,
-}
-
-/// An integrator and its step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct TimeStepping {
-    /// The method.
-    pub integrator: Integrator,
-    /// Step \[s\]; for `rk4` the largest step.
-    pub step: f64,
-    /// Contact sweeps a solve, 2 or more (implicit methods).
-    #[serde(default = "two")]
-    pub contact_sweeps: u32,
-    /// Relative error tolerance of the adaptive step (`rk4`); absent means a fixed step.
-    #[serde(default)]
-    pub tolerance: Option<f64>,
-}
-
-fn two() -> u32 {
-    2
-}
-
-/// Time integration methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Integrator {
-    /// Generalized-alpha (Chung and Hulbert 1993) with spectral radius 0.8 at infinity, order 2.
-    GeneralizedAlpha,
-    /// ESDIRK4(3)6L (Kennedy and Carpenter 2003), order 4, L-stable.
-    Esdirk4,
-    /// Classical Runge-Kutta of order 4 (the paper's), with step doubling when a tolerance is given.
-    Rk4,
-}
-
-impl Accuracy {
-    /// The integrator and step that the choice stands for (performance.md section 7).
-    pub fn time_stepping(&self) -> TimeStepping {
-        let (integrator, step, contact_sweeps) = match self {
-            Accuracy::Explicit(explicit) => return *explicit,
-            Accuracy::Preset(AccuracyPreset::Draft) => (Integrator::GeneralizedAlpha, 5e-4, 2),
-            Accuracy::Preset(AccuracyPreset::Standard) => (Integrator::Esdirk4, 1e-3, 2),
-            Accuracy::Preset(AccuracyPreset::Reference) => (Integrator::Esdirk4, 2.5e-4, 20),
-        };
-        TimeStepping { integrator, step, contact_sweeps, tolerance: None }
-    }
 }

@@ -1,0 +1,171 @@
+//! The bytes that stand for a scenario.
+
+use serde::Serialize;
+
+use super::{
+    ContactLaw, DrillString, Effects, Mesh, Mud, Operation, RayleighDamping, Recording, Scenario,
+    TimeStepping, Well,
+};
+
+/// What decides the numbers of a run: a scenario without its name, its accuracy written out.
+#[derive(Serialize)]
+struct Canonical {
+    well: Well,
+    string: DrillString,
+    mud: Option<Mud>,
+    operation: Operation,
+    contact: ContactLaw,
+    damping: RayleighDamping,
+    mesh: Mesh,
+    duration: f64,
+    recording: Recording,
+    accuracy: TimeStepping,
+    effects: Effects,
+}
+
+impl Scenario {
+    /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
+    /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
+    /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
+    /// as integrator and step, and with -0.0 written as 0.0. Any change of the scenario's fields changes the
+    /// encoding, so keys of different versions of the program must not be compared.
+    pub fn canonical_bytes(&self) -> Vec<u8> {
+        // Taken apart in full, so that a new field cannot be forgotten.
+        let Scenario {
+            name: _,
+            well,
+            string,
+            mud,
+            operation,
+            contact,
+            damping,
+            mesh,
+            duration,
+            recording,
+            accuracy,
+            effects,
+        } = self.without_negative_zeros();
+        let canonical = Canonical {
+            well,
+            string,
+            mud,
+            operation,
+            contact,
+            damping,
+            mesh,
+            duration,
+            recording,
+            accuracy: accuracy.time_stepping(),
+            effects,
+        };
+        postcard::to_stdvec(&canonical)
+            .expect("postcard encodes structs, sequences and numbers of known length")
+    }
+
+    /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
+    pub(super) fn tree(&self) -> toml::Value {
+        toml::Value::try_from(self).expect("a scenario has only string keys and no value that TOML lacks")
+    }
+
+    fn without_negative_zeros(&self) -> Self {
+        let mut tree = self.tree();
+        clear_negative_zeros(&mut tree);
+        tree.try_into().expect("a scenario's own tree is a scenario")
+    }
+}
+
+fn clear_negative_zeros(tree: &mut toml::Value) {
+    match tree {
+        // Equal to 0.0 are 0.0 and -0.0.
+        toml::Value::Float(number) if *number == 0.0 => *number = 0.0,
+        toml::Value::Array(entries) => entries.iter_mut().for_each(clear_negative_zeros),
+        toml::Value::Table(fields) => fields.iter_mut().for_each(|(_, value)| clear_negative_zeros(value)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+    use crate::scenario::{Accuracy, AccuracyPreset, Effect, Switch, preset};
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    #[test]
+    fn ways_of_writing_do_not_count() {
+        let bytes = paper().canonical_bytes();
+        let mut other = paper();
+        other.name = "something else".into();
+        assert_eq!(other.canonical_bytes(), bytes);
+        other.accuracy = Accuracy::Explicit(paper().accuracy.time_stepping());
+        assert_eq!(other.canonical_bytes(), bytes);
+        other.damping.stiffness_proportional = -0.0;
+        other.well.survey[0].azimuth_deg = -0.0;
+        other.string.unbalance[3].phase_deg = -0.0;
+        assert_eq!(other.canonical_bytes(), bytes);
+        assert_eq!(Scenario::from_json(&paper().to_json()).unwrap().canonical_bytes(), bytes);
+    }
+
+    #[test]
+    fn every_number_and_every_switch_counts() {
+        let scenario = paper().with("accuracy.tolerance", Value::from(0.01)).unwrap();
+        let mut seen = vec![scenario.canonical_bytes()];
+        let tree = serde_json::to_value(&scenario).unwrap();
+        let mut numbers = Vec::new();
+        collect(&tree, String::new(), &mut numbers);
+        assert!(numbers.len() > 120, "the walk found only {} numbers", numbers.len());
+        for (pointer, number) in numbers {
+            let mut changed = tree.clone();
+            *changed.pointer_mut(&pointer).unwrap() = match number.as_u64() {
+                Some(whole) => Value::from(whole + 1),
+                // The next double: even the last bit counts.
+                None => Value::from(number.as_f64().unwrap().next_up()),
+            };
+            let changed: Scenario = serde_json::from_value(changed).unwrap();
+            let bytes = changed.canonical_bytes();
+            assert!(!seen.contains(&bytes), "{pointer} does not count");
+            seen.push(bytes);
+        }
+        for &effect in Effect::ALL {
+            let mut changed = scenario.clone();
+            changed.effects.set(effect, Switch::Off);
+            assert!(!seen.contains(&changed.canonical_bytes()), "{} does not count", effect.name());
+        }
+        for accuracy in [AccuracyPreset::Draft, AccuracyPreset::Reference] {
+            let changed = Scenario { accuracy: Accuracy::Preset(accuracy), ..scenario.clone() };
+            assert!(!seen.contains(&changed.canonical_bytes()));
+        }
+        assert_ne!(paper().with("mud", Value::Null).unwrap().canonical_bytes(), seen[0]);
+    }
+
+    fn collect(tree: &Value, pointer: String, numbers: &mut Vec<(String, serde_json::Number)>) {
+        match tree {
+            Value::Number(number) => numbers.push((pointer, number.clone())),
+            Value::Array(entries) => {
+                for (i, entry) in entries.iter().enumerate() {
+                    collect(entry, format!("{pointer}/{i}"), numbers);
+                }
+            }
+            Value::Object(fields) => {
+                for (field, value) in fields {
+                    collect(value, format!("{pointer}/{field}"), numbers);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_have_bytes_too() {
+        let mut scenario = paper();
+        scenario.duration = f64::NAN;
+        let bytes = scenario.canonical_bytes();
+        assert_eq!(scenario.canonical_bytes(), bytes);
+        scenario.duration = f64::INFINITY;
+        assert_ne!(scenario.canonical_bytes(), bytes);
+    }
+}

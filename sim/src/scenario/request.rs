@@ -1,0 +1,183 @@
+//! A scenario as people ask for it: a preset or a full one, with changes.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::format::{from_value, json_problem, not_toml};
+use super::{PRESETS, Problem, Problems, Scenario, preset};
+
+/// A preset or a full scenario, and what to change in it:
+/// `{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "mud.density": 1500}}`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioRequest {
+    /// Name of a preset; either this or `scenario`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preset: Option<String>,
+    /// A full scenario; either this or `preset`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<Scenario>,
+    /// Values by path (see [`Scenario::with`]): `mud.flow_rate`, `string.sections[1].count`. An object changes
+    /// the fields it names; `null` removes what is optional. An outer path is applied before those inside it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set: BTreeMap<String, Value>,
+}
+
+impl ScenarioRequest {
+    /// A preset as it is.
+    pub fn preset(name: impl Into<String>) -> Self {
+        Self { preset: Some(name.into()), ..Self::default() }
+    }
+
+    /// Reads a request, or a plain scenario, from JSON.
+    ///
+    /// # Errors
+    /// The first place where the text is not JSON or neither of the two.
+    pub fn from_json(text: &str) -> Result<Self, Problem> {
+        let document: Value =
+            serde_json::from_str(text).map_err(|error| json_problem(String::new(), &error))?;
+        if is_request(|key| document.get(key).is_some()) {
+            return from_value(document);
+        }
+        Ok(Self { scenario: Some(Scenario::from_json(text)?), ..Self::default() })
+    }
+
+    /// Reads a request, or a plain scenario, from TOML.
+    ///
+    /// # Errors
+    /// The first place where the text is not TOML or neither of the two.
+    pub fn from_toml(text: &str) -> Result<Self, Problem> {
+        let document: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error))?;
+        if is_request(|key| document.contains_key(key)) {
+            return serde_path_to_error::deserialize(document)
+                .map_err(|error| Problem::from_serde(error.path().to_string(), error.inner().message()));
+        }
+        Ok(Self { scenario: Some(Scenario::from_toml(text)?), ..Self::default() })
+    }
+
+    /// The scenario asked for. It is not validated yet.
+    ///
+    /// # Errors
+    /// No base or two, an unknown preset, and every change that cannot be made. Paths of the changes are paths
+    /// in the scenario.
+    pub fn resolve(&self) -> Result<Scenario, Problems> {
+        let mut scenario = match (&self.preset, &self.scenario) {
+            (Some(name), None) => preset(name).ok_or_else(|| unknown_preset(name))?,
+            (None, Some(scenario)) => scenario.clone(),
+            (Some(_), Some(_)) => {
+                return Err(Problem::new("preset", "", "give either preset or scenario, not both").into());
+            }
+            (None, None) => {
+                return Err(Problem::new("preset", "", "give preset or scenario").into());
+            }
+        };
+        let mut problems = Vec::new();
+        // In the map's order a path comes before the longer ones inside it.
+        for (path, value) in &self.set {
+            match scenario.with(path, value.clone()) {
+                Ok(changed) => scenario = changed,
+                Err(problem) => problems.push(problem),
+            }
+        }
+        if problems.is_empty() { Ok(scenario) } else { Err(Problems(problems)) }
+    }
+}
+
+/// Whether a document with these keys is a request rather than a plain scenario.
+fn is_request(has: impl Fn(&str) -> bool) -> bool {
+    ["preset", "scenario", "set"].into_iter().any(has)
+}
+
+fn unknown_preset(name: &str) -> Problem {
+    let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+    Problem::new("preset", name, format!("there is no such preset; there are {}", names.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::NodeChoice;
+
+    fn resolve_json(text: &str) -> Result<Scenario, Problems> {
+        ScenarioRequest::from_json(text).unwrap().resolve()
+    }
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    #[test]
+    fn a_preset_with_changes() {
+        let scenario = resolve_json(
+            r#"{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "string.sections[1].count": 8,
+                "recording.nodes": [{"node": 3}], "operation": {"rotation_speed_rpm": 90}}}"#,
+        )
+        .unwrap();
+        let mut expected = paper();
+        expected.mud.as_mut().unwrap().flow_rate = 0.02;
+        expected.string.sections[1].count = 8;
+        expected.recording.nodes = vec![NodeChoice::Node(3)];
+        expected.operation.rotation_speed_rpm = 90.0;
+        assert_eq!(scenario, expected);
+        assert_eq!(resolve_json(r#"{"preset": "paper-200m", "set": {"mud": null}}"#).unwrap().mud, None);
+    }
+
+    #[test]
+    fn toml_may_write_paths_as_tables() {
+        let request =
+            "preset = 'paper-200m'\n[set]\nmud.flow_rate = 0.04\n\"string.sections[1].count\" = 8\n";
+        let scenario = ScenarioRequest::from_toml(request).unwrap().resolve().unwrap();
+        let mut expected = paper();
+        expected.mud.as_mut().unwrap().flow_rate = 0.04;
+        expected.string.sections[1].count = 8;
+        assert_eq!(scenario, expected);
+    }
+
+    #[test]
+    fn a_plain_scenario_is_a_request_without_changes() {
+        let from_json = ScenarioRequest::from_json(&paper().to_json()).unwrap();
+        let from_toml = ScenarioRequest::from_toml(&paper().to_toml()).unwrap();
+        assert_eq!(from_json.resolve().unwrap(), paper());
+        assert_eq!(from_json, from_toml);
+        let wrapped = format!(r#"{{"scenario": {}, "set": {{"duration": 1.0}}}}"#, paper().to_json());
+        assert_eq!(resolve_json(&wrapped).unwrap().duration, 1.0);
+    }
+
+    #[test]
+    fn outer_paths_are_applied_first() {
+        let dry = r#"{"preset": "paper-200m-dry", "set": {"mud.density": 1300, "mud": {"density": 1, "flow_rate": 0.0,
+            "yield_stress": 0.0, "consistency": 0.001, "flow_index": 1.0}}}"#;
+        assert_eq!(resolve_json(dry).unwrap().mud.unwrap().density, 1300.0);
+    }
+
+    #[test]
+    fn every_impossible_change_is_reported() {
+        let problems = resolve_json(
+            r#"{"preset": "paper-200m", "set": {"mud.flowrate": 1, "duration": "long", "name": "x"}}"#,
+        )
+        .unwrap_err();
+        let paths: Vec<&str> = problems.0.iter().map(|problem| problem.path.as_str()).collect();
+        assert_eq!(paths, ["duration", "mud.flowrate"]);
+    }
+
+    #[test]
+    fn requests_need_one_base() {
+        let problem = &resolve_json(r#"{"preset": "paper-300m"}"#).unwrap_err().0[0];
+        assert_eq!((problem.path.as_str(), problem.got.as_str()), ("preset", "paper-300m"));
+        assert!(problem.message.contains("paper-200m, paper-200m-dry"));
+        assert!(resolve_json(r#"{"set": {}}"#).is_err());
+        let both = format!(r#"{{"preset": "paper-200m", "scenario": {}}}"#, paper().to_json());
+        assert!(resolve_json(&both).is_err());
+        let problem = ScenarioRequest::from_json(r#"{"preset": "paper-200m", "sets": {}}"#).unwrap_err();
+        assert!(problem.message.contains("unknown field `sets`"), "{problem}");
+        let broken =
+            format!(r#"{{"scenario": {}}}"#, paper().to_json().replace("\"count\": 9", "\"count\": 0.5"));
+        assert_eq!(
+            ScenarioRequest::from_json(&broken).unwrap_err().path,
+            "scenario.string.sections[1].count"
+        );
+    }
+}

@@ -1,1 +1,15 @@
-//! Orbits and full spectra.
+//! Orbits and full spectra of recorded lateral motion.
+//!
+//! A node's motion is the complex signal z = u + i v. Turning in the sense of the string's rotation (from u to
+//! v) is forward whirl and stands at positive frequencies, turning against it is backward whirl.
+
+mod orbit;
+mod spectrum;
+mod window;
+
+#[cfg(test)]
+mod tests;
+
+pub use orbit::{OrbitStatistics, orbit_statistics};
+pub use spectrum::{FullSpectrum, Peak, PeakSearch, Whirl, full_spectrum};
+pub use window::{Window, sample_range};

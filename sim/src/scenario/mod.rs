@@ -11,6 +11,7 @@ mod preset;
 mod problem;
 mod request;
 mod set;
+mod validate;
 
 pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
 pub use effects::{Effect, Effects, Switch};

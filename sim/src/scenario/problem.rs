@@ -16,8 +16,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(super) fn new(path: impl Into<String>, got: impl ToString, message: impl Into<String>) -> Self {
-        Self { path: path.into(), got: got.to_string(), message: message.into() }
+    pub(super) fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { path: path.into(), got: got.into(), message: message.into() }
     }
 
     /// The path as a JSON Pointer (RFC 6901): `/string/sections/1/count`.
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn problems_read_as_lines() {
         let problems = Problems(vec![
-            Problem::new("mud.density", -1.0, "must be greater than 0"),
+            Problem::new("mud.density", "-1", "must be greater than 0"),
             Problem::new("", "", "not TOML"),
         ]);
         assert_eq!(problems.to_string(), "mud.density: must be greater than 0 (got -1)\nnot TOML");

@@ -1,0 +1,195 @@
+//! Rules of mud, operation, contact and damping.
+
+use super::report::Report;
+use crate::scenario::{ContactLaw, Mud, Operation, Scenario};
+
+/// Mud densities \[kg/m3\] outside this range are unheard of: another unit is probably meant.
+const USUAL_MUD_DENSITY: std::ops::RangeInclusive<f64> = 500.0..=3000.0;
+
+/// Faster rotation \[rpm\] than any rig's: another unit is probably meant.
+const FASTEST_ROTATION: f64 = 1000.0;
+
+pub(super) fn check(report: &mut Report, scenario: &Scenario) {
+    if let Some(mud) = &scenario.mud {
+        check_mud(report, mud);
+    }
+    check_operation(report, &scenario.operation);
+    check_contact(report, &scenario.contact);
+    report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
+    report.not_negative(scenario.damping.stiffness_proportional, "damping.stiffness_proportional");
+}
+
+fn check_mud(report: &mut Report, mud: &Mud) {
+    report.positive(mud.density, "mud.density");
+    report.warn(
+        mud.density > 0.0 && !USUAL_MUD_DENSITY.contains(&mud.density),
+        "mud.density",
+        format!("{} kg/m3 is unusual for a mud: is it in another unit?", mud.density),
+    );
+    report.number(
+        mud.flow_rate,
+        "mud.flow_rate",
+        |rate| (0.0..=1.0).contains(&rate),
+        "must be 0 to 1 m3/s (10 l/s is 0.01 m3/s)",
+    );
+    report.not_negative(mud.yield_stress, "mud.yield_stress");
+    report.positive(mud.consistency, "mud.consistency");
+    report.number(
+        mud.flow_index,
+        "mud.flow_index",
+        |index| index > 0.0 && index <= 2.0,
+        "must be greater than 0 and at most 2 (1 is a Bingham fluid, less is shear-thinning)",
+    );
+    report.not_negative(mud.bit_pressure_drop, "mud.bit_pressure_drop");
+    report.not_negative(mud.back_pressure, "mud.back_pressure");
+}
+
+fn check_operation(report: &mut Report, operation: &Operation) {
+    let weight = operation.weight_on_bit;
+    report.number(
+        weight,
+        "operation.weight_on_bit",
+        |weight| weight <= 0.0,
+        format!(
+            "weight_on_bit is the axial force at the bit: compression is negative; {} rather than {weight}?",
+            -weight
+        ),
+    );
+    let (torque, speed) = (operation.torque_on_bit, operation.rotation_speed_rpm);
+    report.number(
+        torque,
+        "operation.torque_on_bit",
+        |torque| !speed.is_finite() || torque * speed <= 0.0,
+        format!(
+            "torque_on_bit is the torque of the rock on the bit: it opposes the rotation of {speed} rpm; {} rather \
+             than {torque}?",
+            -torque
+        ),
+    );
+    report.warn(
+        speed.abs() > FASTEST_ROTATION,
+        "operation.rotation_speed_rpm",
+        format!("{speed} rpm is faster than any rig turns: is it in another unit?"),
+    );
+}
+
+fn check_contact(report: &mut Report, contact: &ContactLaw) {
+    report.positive(contact.stiffness, "contact.stiffness");
+    report.not_negative(contact.damping, "contact.damping");
+    report.positive(contact.stiffness_sharpness, "contact.stiffness_sharpness");
+    report.positive(contact.damping_sharpness, "contact.damping_sharpness");
+    report.not_negative(contact.static_friction, "contact.static_friction");
+    report.not_negative(contact.dynamic_friction, "contact.dynamic_friction");
+    let largest = contact.static_friction;
+    if largest.is_finite() && largest >= 0.0 {
+        report.number(
+            contact.dynamic_friction,
+            "contact.dynamic_friction",
+            |friction| friction <= largest,
+            format!(
+                "must be at most static_friction, {largest}: xi = sqrt(1 - mu_d / mu_s) has no value beyond"
+            ),
+        );
+    }
+    report.positive(contact.friction_reference_speed, "contact.friction_reference_speed");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::testing::{problem, warnings};
+    use crate::scenario::Mud;
+
+    fn mud_problem(field: &str, change: impl Fn(&mut Mud)) -> String {
+        problem(&format!("mud.{field}"), |s| change(s.mud.as_mut().unwrap())).message
+    }
+
+    #[test]
+    fn mud_has_a_density() {
+        for density in [0.0, -1200.0] {
+            mud_problem("density", |mud| mud.density = density);
+        }
+    }
+
+    #[test]
+    fn flow_goes_down_the_pipe_at_a_possible_rate() {
+        for rate in [-0.01, 10.0] {
+            assert!(mud_problem("flow_rate", |mud| mud.flow_rate = rate).contains("l/s"));
+        }
+        assert_eq!(warnings(|s| s.mud.as_mut().unwrap().flow_rate = 0.0), []);
+    }
+
+    #[test]
+    fn rheology_is_physical() {
+        mud_problem("yield_stress", |mud| mud.yield_stress = -0.1);
+        for consistency in [0.0, -0.07] {
+            mud_problem("consistency", |mud| mud.consistency = consistency);
+        }
+        for index in [0.0, -0.5, 2.5] {
+            mud_problem("flow_index", |mud| mud.flow_index = index);
+        }
+        let newtonian = |mud: &mut Mud| (mud.yield_stress, mud.flow_index) = (0.0, 1.0);
+        assert_eq!(warnings(|s| newtonian(s.mud.as_mut().unwrap())), []);
+    }
+
+    #[test]
+    fn pressures_are_not_negative() {
+        mud_problem("bit_pressure_drop", |mud| mud.bit_pressure_drop = -1.0);
+        mud_problem("back_pressure", |mud| mud.back_pressure = -1.0);
+    }
+
+    #[test]
+    fn weight_on_bit_is_compression() {
+        let found = problem("operation.weight_on_bit", |s| s.operation.weight_on_bit = 1e5);
+        assert_eq!(found.got, "100000");
+        assert!(found.message.ends_with("compression is negative; -100000 rather than 100000?"), "{found}");
+        assert_eq!(warnings(|s| s.operation.weight_on_bit = 0.0), []);
+    }
+
+    #[test]
+    fn torque_on_bit_opposes_the_rotation() {
+        let found = problem("operation.torque_on_bit", |s| s.operation.torque_on_bit = 5000.0);
+        assert!(found.message.contains("-5000 rather than 5000?"), "{found}");
+        problem("operation.torque_on_bit", |s| s.operation.rotation_speed_rpm = -120.0);
+        let backwards = |s: &mut crate::scenario::Scenario| {
+            (s.operation.rotation_speed_rpm, s.operation.torque_on_bit) = (-120.0, 5000.0);
+        };
+        assert_eq!(warnings(backwards), []);
+        assert_eq!(warnings(|s| s.operation.rotation_speed_rpm = 0.0), []);
+    }
+
+    #[test]
+    fn contact_constants_are_physical() {
+        problem("contact.stiffness", |s| s.contact.stiffness = 0.0);
+        problem("contact.damping", |s| s.contact.damping = -1.0);
+        problem("contact.stiffness_sharpness", |s| s.contact.stiffness_sharpness = 0.0);
+        problem("contact.damping_sharpness", |s| s.contact.damping_sharpness = 0.0);
+        problem("contact.friction_reference_speed", |s| s.contact.friction_reference_speed = 0.0);
+        problem("contact.static_friction", |s| s.contact.static_friction = -0.3);
+        problem("contact.dynamic_friction", |s| s.contact.dynamic_friction = -0.2);
+    }
+
+    #[test]
+    fn dynamic_friction_is_at_most_static_friction() {
+        let found = problem("contact.dynamic_friction", |s| s.contact.dynamic_friction = 0.31);
+        assert!(found.message.contains("0.3"), "{found}");
+        assert_eq!(warnings(|s| s.contact.dynamic_friction = 0.3), []);
+        let frictionless = |s: &mut crate::scenario::Scenario| {
+            (s.contact.static_friction, s.contact.dynamic_friction) = (0.0, 0.0);
+        };
+        assert_eq!(warnings(frictionless), []);
+    }
+
+    #[test]
+    fn damping_takes_energy_out() {
+        problem("damping.mass_proportional", |s| s.damping.mass_proportional = -0.03);
+        problem("damping.stiffness_proportional", |s| s.damping.stiffness_proportional = -1e-6);
+    }
+
+    #[test]
+    fn units_that_look_wrong_earn_a_warning() {
+        let found = warnings(|s| s.mud.as_mut().unwrap().density = 1.2);
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "mud.density"));
+        let found = warnings(|s| s.operation.rotation_speed_rpm = 7200.0);
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "operation.rotation_speed_rpm"));
+    }
+}

@@ -1,0 +1,130 @@
+//! What can be simulated: every rule that a scenario must keep, checked all at once.
+
+mod hole;
+mod loads;
+mod report;
+mod string;
+mod time;
+
+use super::{Problems, Scenario, Warning};
+use report::Report;
+
+impl Scenario {
+    /// Checks that the scenario can be simulated.
+    ///
+    /// # Errors
+    /// All problems at once, each with the field's path, what it holds and what would be valid. A scenario
+    /// without problems may still earn warnings about what is probably not meant.
+    pub fn validate(&self) -> Result<Vec<Warning>, Problems> {
+        let mut report = Report::default();
+        finite(&mut report, &self.tree(), String::new());
+        hole::check(&mut report, self);
+        let mesh = string::check(&mut report, self);
+        loads::check(&mut report, self);
+        time::check(&mut report, self, mesh.as_ref());
+        report.finish()
+    }
+}
+
+/// Every number anywhere must be finite; the other rules pass over those that are not.
+fn finite(report: &mut Report, tree: &toml::Value, path: String) {
+    match tree {
+        toml::Value::Float(number) => {
+            report.require(number.is_finite(), path, number, "must be a finite number");
+        }
+        toml::Value::Array(entries) => {
+            for (i, entry) in entries.iter().enumerate() {
+                finite(report, entry, format!("{path}[{i}]"));
+            }
+        }
+        toml::Value::Table(fields) => {
+            for (field, value) in fields {
+                let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
+                finite(report, value, path);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{PRESETS, preset};
+
+    #[test]
+    fn every_preset_is_valid_and_without_warnings() {
+        for (name, _) in PRESETS {
+            assert_eq!(preset(name).unwrap().validate(), Ok(vec![]), "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_reported_wherever_they_stand() {
+        let scenario = preset("paper-200m").unwrap().with("accuracy.tolerance", 0.01.into()).unwrap();
+        let mut paths = Vec::new();
+        collect(&scenario.tree(), String::new(), &mut paths);
+        assert!(paths.len() > 100, "the walk found only {} numbers", paths.len());
+        for path in paths {
+            for number in ["nan", "inf", "-inf"] {
+                let mut tree = scenario.tree();
+                *place(&mut tree, &path) = toml::Value::Float(number.parse().unwrap());
+                let problems = tree.try_into::<Scenario>().unwrap().validate().unwrap_err();
+                let at: Vec<_> = problems.0.iter().filter(|problem| problem.path == path).collect();
+                assert_eq!(at.len(), 1, "{path} = {number}: {problems}");
+                assert_eq!(at[0].message, "must be a finite number");
+            }
+        }
+    }
+
+    /// Paths of all floating-point numbers.
+    fn collect(tree: &toml::Value, path: String, paths: &mut Vec<String>) {
+        match tree {
+            toml::Value::Float(_) => paths.push(path),
+            toml::Value::Array(entries) => {
+                for (i, entry) in entries.iter().enumerate() {
+                    collect(entry, format!("{path}[{i}]"), paths);
+                }
+            }
+            toml::Value::Table(fields) => {
+                for (field, value) in fields {
+                    let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
+                    collect(value, path, paths);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn place<'a>(tree: &'a mut toml::Value, path: &str) -> &'a mut toml::Value {
+        path.split(['.', '[']).fold(tree, |tree, step| match step.strip_suffix(']') {
+            Some(index) => &mut tree[index.parse::<usize>().unwrap()],
+            None => &mut tree[step],
+        })
+    }
+
+    #[test]
+    fn all_problems_come_at_once() {
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.well.survey[2].inclination_deg = 190.0;
+        scenario.string.sections[2].inner_diameter = 0.2;
+        scenario.mud.as_mut().unwrap().density = -1200.0;
+        scenario.operation.weight_on_bit = 1e5;
+        scenario.recording.nodes.push(crate::scenario::NodeChoice::Node(400));
+        scenario.duration = f64::NAN;
+        let problems = scenario.validate().unwrap_err();
+        let mut paths: Vec<&str> = problems.0.iter().map(|problem| problem.path.as_str()).collect();
+        paths.sort_unstable();
+        assert_eq!(
+            paths,
+            [
+                "duration",
+                "mud.density",
+                "operation.weight_on_bit",
+                "recording.nodes[3].node",
+                "string.sections[2].inner_diameter",
+                "well.survey[2].inclination_deg",
+            ]
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! Collecting problems and warnings.
+
+use std::fmt::Display;
+
+use crate::scenario::{Problem, Problems, Warning};
+
+/// The findings so far.
+#[derive(Debug, Default)]
+pub(super) struct Report {
+    problems: Vec<Problem>,
+    warnings: Vec<Warning>,
+}
+
+impl Report {
+    /// Notes a problem unless `ok`.
+    pub(super) fn require(
+        &mut self,
+        ok: bool,
+        path: impl Into<String>,
+        got: impl Display,
+        message: impl Into<String>,
+    ) {
+        if !ok {
+            self.problems.push(Problem { path: path.into(), got: got.to_string(), message: message.into() });
+        }
+    }
+
+    /// Notes a problem if a number is finite and breaks the rule. Numbers that are not finite have been reported.
+    pub(super) fn number(
+        &mut self,
+        value: f64,
+        path: impl Into<String>,
+        rule: impl Fn(f64) -> bool,
+        message: impl Into<String>,
+    ) {
+        self.require(!value.is_finite() || rule(value), path, value, message);
+    }
+
+    /// The number must be greater than 0.
+    pub(super) fn positive(&mut self, value: f64, path: impl Into<String>) {
+        self.number(value, path, |value| value > 0.0, "must be greater than 0");
+    }
+
+    /// The number must be 0 or greater.
+    pub(super) fn not_negative(&mut self, value: f64, path: impl Into<String>) {
+        self.number(value, path, |value| value >= 0.0, "must be 0 or greater");
+    }
+
+    /// Notes a warning if `doubtful`.
+    pub(super) fn warn(&mut self, doubtful: bool, path: impl Into<String>, message: impl Into<String>) {
+        if doubtful {
+            self.warnings.push(Warning { path: path.into(), message: message.into() });
+        }
+    }
+
+    /// The warnings, or all problems if there are any.
+    pub(super) fn finish(self) -> Result<Vec<Warning>, Problems> {
+        if self.problems.is_empty() { Ok(self.warnings) } else { Err(Problems(self.problems)) }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod testing {
+    //! Short assertions on what a changed base case is reported for.
+
+    use crate::scenario::{Problem, Scenario, Warning, preset};
+
+    /// Validates the base case after a change that makes it invalid.
+    pub(crate) fn problems(change: impl Fn(&mut Scenario)) -> Vec<Problem> {
+        let mut scenario = preset("paper-200m").unwrap();
+        change(&mut scenario);
+        scenario.validate().expect_err("the change should make the scenario invalid").0
+    }
+
+    /// The one problem that a change gives rise to.
+    pub(crate) fn problem(path: &str, change: impl Fn(&mut Scenario)) -> Problem {
+        let problems = problems(change);
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        assert_eq!(problems[0].path, path);
+        problems[0].clone()
+    }
+
+    /// The warnings of the base case after a change that leaves it valid.
+    pub(crate) fn warnings(change: impl Fn(&mut Scenario)) -> Vec<Warning> {
+        let mut scenario = preset("paper-200m").unwrap();
+        change(&mut scenario);
+        scenario.validate().expect("the change should leave the scenario valid")
+    }
+}

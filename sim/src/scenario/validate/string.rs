@@ -1,0 +1,347 @@
+//! Rules of the string and its mesh.
+
+use super::report::Report;
+use crate::scenario::{Scenario, ToolJoint};
+use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
+
+/// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
+const SAME_DEPTH: f64 = 1e-9;
+
+/// Checks the string; gives its mesh if it can be made.
+pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
+    material(report, scenario);
+    for i in 0..scenario.string.sections.len() {
+        section(report, scenario, i);
+    }
+    mesh_targets(report, scenario);
+    length(report, scenario);
+    masses(report, scenario);
+    for (i, gauge) in scenario.string.gauges.iter().enumerate() {
+        report.positive(gauge.clearance, format!("string.gauges[{i}].clearance"));
+    }
+    let mesh = mesh(report, scenario)?;
+    clearances(report, scenario, &mesh);
+    Some(mesh)
+}
+
+fn material(report: &mut Report, scenario: &Scenario) {
+    let material = &scenario.string.material;
+    report.positive(material.youngs_modulus, "string.material.youngs_modulus");
+    report.positive(material.density, "string.material.density");
+    report.number(
+        material.poissons_ratio,
+        "string.material.poissons_ratio",
+        |ratio| (0.0..=0.5).contains(&ratio),
+        "must be 0 to 0.5",
+    );
+}
+
+fn section(report: &mut Report, scenario: &Scenario, index: usize) {
+    let section = &scenario.string.sections[index];
+    let path = format!("string.sections[{index}]");
+    report.require(section.count > 0, format!("{path}.count"), section.count, "must be 1 or more");
+    report.positive(section.length, format!("{path}.length"));
+    let hole = scenario.well.hole_diameter;
+    pipe(report, &path, section.outer_diameter, section.inner_diameter, hole);
+
+    let Some(joint) = &section.tool_joint else { return };
+    let path = format!("{path}.tool_joint");
+    let ToolJoint { length, outer_diameter, inner_diameter } = *joint;
+    report.positive(length, format!("{path}.length"));
+    if section.length > 0.0 {
+        report.number(
+            length,
+            format!("{path}.length"),
+            |length| 2.0 * length < section.length,
+            format!("two joints must be shorter than the piece of {} m", section.length),
+        );
+    }
+    pipe(report, &path, outer_diameter, inner_diameter, hole);
+    report.warn(
+        outer_diameter < section.outer_diameter,
+        format!("{path}.outer_diameter"),
+        "the tool joint is thinner than the body",
+    );
+}
+
+/// Diameters of a body or a tool joint.
+fn pipe(report: &mut Report, path: &str, outer_diameter: f64, inner_diameter: f64, hole_diameter: f64) {
+    report.positive(outer_diameter, format!("{path}.outer_diameter"));
+    if hole_diameter.is_finite() && outer_diameter > 0.0 {
+        report.number(
+            outer_diameter,
+            format!("{path}.outer_diameter"),
+            |outer| outer < hole_diameter,
+            format!("must be smaller than the hole's diameter, {hole_diameter} m"),
+        );
+    }
+    report.not_negative(inner_diameter, format!("{path}.inner_diameter"));
+    if outer_diameter.is_finite() && outer_diameter > 0.0 {
+        report.number(
+            inner_diameter,
+            format!("{path}.inner_diameter"),
+            |inner| inner < outer_diameter,
+            format!("must be smaller than the outer diameter, {outer_diameter} m"),
+        );
+    }
+}
+
+fn mesh_targets(report: &mut Report, scenario: &Scenario) {
+    let mesh = &scenario.mesh;
+    report.positive(mesh.drillpipe, "mesh.drillpipe");
+    report.positive(mesh.tool_joint, "mesh.tool_joint");
+    report.positive(mesh.collar, "mesh.collar");
+    report.positive(mesh.stabilizer, "mesh.stabilizer");
+    report.positive(mesh.bit, "mesh.bit");
+}
+
+/// The string must have sections and end within the survey.
+fn length(report: &mut Report, scenario: &Scenario) {
+    let sections = &scenario.string.sections;
+    report.require(
+        !sections.is_empty(),
+        "string.sections",
+        "an empty list",
+        "must have at least one section",
+    );
+    let length: f64 = sections.iter().map(|section| f64::from(section.count) * section.length).sum();
+    if let Some(bottom) = scenario.well.survey.last().map(|station| station.measured_depth)
+        && bottom.is_finite()
+        && scenario.well.survey.len() >= 2
+    {
+        report.require(
+            !length.is_finite() || length <= bottom + SAME_DEPTH,
+            "string.sections",
+            format!("{length} m in all"),
+            format!("the string must not be longer than its survey, {bottom} m"),
+        );
+    }
+}
+
+fn masses(report: &mut Report, scenario: &Scenario) {
+    for (i, mass) in scenario.string.unbalance.iter().enumerate() {
+        let path = format!("string.unbalance[{i}]");
+        report.not_negative(mass.mass, format!("{path}.mass"));
+        let half_hole = 0.5 * scenario.well.hole_diameter;
+        report.number(
+            mass.radius,
+            format!("{path}.radius"),
+            |radius| radius >= 0.0 && (radius <= half_hole || half_hole.is_nan()),
+            format!("must be 0 to the hole's radius, {half_hole} m"),
+        );
+    }
+}
+
+/// The mesh, if sections and targets allow one; reports what is not on the string and a mesh that is too fine.
+fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
+    let mut bare = scenario.clone();
+    bare.string.gauges.clear();
+    bare.string.unbalance.clear();
+    let length = match StringMesh::new(&bare) {
+        Ok(mesh) => mesh.length(),
+        Err(MeshError::TooManyElements) => {
+            too_fine(report);
+            return None;
+        }
+        Err(_) => return None,
+    };
+
+    let gauges = scenario.string.gauges.iter().map(|gauge| gauge.measured_depth);
+    let masses = scenario.string.unbalance.iter().map(|mass| mass.measured_depth);
+    for (list, depths) in [("gauges", gauges.collect::<Vec<_>>()), ("unbalance", masses.collect())] {
+        for (i, depth) in depths.into_iter().enumerate() {
+            report.number(
+                depth,
+                format!("string.{list}[{i}].measured_depth"),
+                |depth| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&depth),
+                format!("must be on the string, 0 to {length} m"),
+            );
+        }
+    }
+    match StringMesh::new(scenario) {
+        Ok(mesh) => Some(mesh),
+        Err(MeshError::TooManyElements) => {
+            too_fine(report);
+            None
+        }
+        // Only places off the string are left, reported above.
+        Err(_) => None,
+    }
+}
+
+fn too_fine(report: &mut Report) {
+    report.require(
+        false,
+        "mesh",
+        format!("more than {MAX_ELEMENTS} elements"),
+        format!("target lengths must give at most {MAX_ELEMENTS} elements"),
+    );
+}
+
+/// Clearances of gauges against what the bodies leave, and places that will not do what they promise.
+fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
+    let string = &scenario.string;
+    for (i, gauge) in string.gauges.iter().enumerate() {
+        let path = format!("string.gauges[{i}]");
+        let node = mesh.nearest_node(gauge.measured_depth);
+        let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].outer_diameter);
+        let below = mesh.elements.get(node).map_or(0.0, |below| below.outer_diameter);
+        let left = 0.5 * (scenario.well.hole_diameter - above.max(below));
+        if left > 0.0 {
+            report.number(
+                gauge.clearance,
+                format!("{path}.clearance"),
+                |clearance| clearance <= left,
+                format!("must be at most {left} m, what the body leaves of the hole there"),
+            );
+        }
+        let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.measured_depth) == node);
+        report.warn(shared, &path, "another gauge is at the same node; the smaller clearance holds");
+        placed(report, &path, gauge.measured_depth, node, mesh);
+    }
+    for (i, mass) in string.unbalance.iter().enumerate() {
+        let node = mesh.nearest_node(mass.measured_depth);
+        placed(report, &format!("string.unbalance[{i}]"), mass.measured_depth, node, mesh);
+    }
+}
+
+/// Warns of a place that has moved to a boundary near by, or that is held.
+fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &StringMesh) {
+    let found = mesh.nodes[node].measured_depth;
+    report.warn(
+        (found - depth).abs() > SAME_DEPTH,
+        format!("{path}.measured_depth"),
+        format!("moved from {depth} m to the node at {found} m, a small part of an element away"),
+    );
+    report.warn(
+        node == 0,
+        format!("{path}.measured_depth"),
+        "is at the top node, which is held: it has no effect there",
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::testing::{problem, problems, warnings};
+    use crate::scenario::{Gauge, UnbalanceMass};
+
+    #[test]
+    fn material_constants_are_physical() {
+        problem("string.material.youngs_modulus", |s| s.string.material.youngs_modulus = 0.0);
+        problem("string.material.density", |s| s.string.material.density = -7900.0);
+        for ratio in [-0.1, 0.51] {
+            problem("string.material.poissons_ratio", |s| s.string.material.poissons_ratio = ratio);
+        }
+    }
+
+    #[test]
+    fn string_has_sections() {
+        let found = problems(|s| s.string.sections.clear());
+        assert!(found.iter().any(|p| p.path == "string.sections"), "{found:?}");
+    }
+
+    #[test]
+    fn sections_have_pieces_and_length() {
+        problem("string.sections[2].count", |s| s.string.sections[2].count = 0);
+        problem("string.sections[2].length", |s| s.string.sections[2].length = 0.0);
+        problem("string.sections[2].length", |s| s.string.sections[2].length = -33.0);
+    }
+
+    #[test]
+    fn inner_diameter_is_smaller_than_outer() {
+        let found =
+            problem("string.sections[2].inner_diameter", |s| s.string.sections[2].inner_diameter = 0.159);
+        assert!(found.message.contains("0.159"), "{found}");
+        problem("string.sections[2].inner_diameter", |s| s.string.sections[2].inner_diameter = -0.01);
+        problem("string.sections[1].tool_joint.inner_diameter", |s| {
+            s.string.sections[1].tool_joint.as_mut().unwrap().inner_diameter = 0.2;
+        });
+    }
+
+    #[test]
+    fn pipe_fits_into_the_hole() {
+        let found =
+            problem("string.sections[3].outer_diameter", |s| s.string.sections[3].outer_diameter = 0.2159);
+        assert!(found.message.contains("0.2159"), "{found}");
+        problem("string.sections[1].tool_joint.outer_diameter", |s| {
+            s.string.sections[1].tool_joint.as_mut().unwrap().outer_diameter = 0.3;
+        });
+    }
+
+    #[test]
+    fn tool_joints_leave_a_body() {
+        for length in [4.75, 6.0] {
+            let found = problem("string.sections[1].tool_joint.length", |s| {
+                s.string.sections[1].tool_joint.as_mut().unwrap().length = length;
+            });
+            assert!(found.message.contains("9.5 m"), "{found}");
+        }
+        problem("string.sections[1].tool_joint.length", |s| {
+            s.string.sections[1].tool_joint.as_mut().unwrap().length = 0.0;
+        });
+    }
+
+    #[test]
+    fn string_ends_within_its_survey() {
+        let found = problem("string.sections", |s| s.string.sections[1].count = 10);
+        assert_eq!(found.got, "209.5 m in all");
+        assert!(found.message.contains("200 m"), "{found}");
+    }
+
+    #[test]
+    fn mesh_targets_are_lengths() {
+        problem("mesh.drillpipe", |s| s.mesh.drillpipe = 0.0);
+        problem("mesh.tool_joint", |s| s.mesh.tool_joint = -0.3);
+        problem("mesh.collar", |s| s.mesh.collar = 0.0);
+        problem("mesh.stabilizer", |s| s.mesh.stabilizer = 0.0);
+        problem("mesh.bit", |s| s.mesh.bit = 0.0);
+    }
+
+    #[test]
+    fn mesh_is_not_finer_than_can_be_simulated() {
+        let found = problem("mesh", |s| s.mesh.collar = 0.005);
+        assert!(found.message.contains("20000"), "{found}");
+    }
+
+    #[test]
+    fn gauges_and_masses_are_on_the_string() {
+        let found = problem("string.gauges[1].measured_depth", |s| s.string.gauges[1].measured_depth = 200.5);
+        assert!(found.message.contains("0 to 200 m"), "{found}");
+        problem("string.unbalance[16].measured_depth", |s| s.string.unbalance[16].measured_depth = -1.0);
+    }
+
+    #[test]
+    fn clearances_are_between_nothing_and_what_the_body_leaves() {
+        for clearance in [0.0, -1e-4] {
+            problem("string.gauges[0].clearance", |s| s.string.gauges[0].clearance = clearance);
+        }
+        let found = problem("string.gauges[0].clearance", |s| s.string.gauges[0].clearance = 0.0285);
+        assert!(found.message.contains("0.02845"), "{found}");
+        assert_eq!(warnings(|s| s.string.gauges[0].clearance = 0.028), []);
+    }
+
+    #[test]
+    fn masses_are_not_negative_and_inside_the_hole() {
+        problem("string.unbalance[0].mass", |s| s.string.unbalance[0].mass = -1.6);
+        problem("string.unbalance[0].radius", |s| s.string.unbalance[0].radius = -0.064);
+        problem("string.unbalance[0].radius", |s| s.string.unbalance[0].radius = 64.0);
+        assert_eq!(warnings(|s| s.string.unbalance[0].mass = 0.0), []);
+    }
+
+    #[test]
+    fn places_that_move_or_do_nothing_earn_a_warning() {
+        let found = warnings(|s| s.string.gauges.push(Gauge { measured_depth: 3.99, clearance: 0.01 }));
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "string.gauges[3].measured_depth"));
+        let found = warnings(|s| s.string.gauges.push(Gauge { measured_depth: 200.0, clearance: 0.01 }));
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "string.gauges[3]"));
+        let top = UnbalanceMass { measured_depth: 0.0, mass: 1.0, radius: 0.05, phase_deg: 0.0 };
+        let found = warnings(|s| s.string.unbalance.push(top));
+        assert!(found[0].message.contains("held"));
+    }
+
+    #[test]
+    fn thin_tool_joints_earn_a_warning() {
+        let found = warnings(|s| s.string.sections[1].tool_joint.as_mut().unwrap().outer_diameter = 0.12);
+        assert_eq!(found[0].path, "string.sections[1].tool_joint.outer_diameter");
+    }
+}

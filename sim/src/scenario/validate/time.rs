@@ -1,0 +1,319 @@
+//! Rules of duration, accuracy and recording.
+
+use super::report::Report;
+use crate::scenario::{Accuracy, Integrator, NodeChoice, Scenario, TimeWindow};
+use crate::string::StringMesh;
+
+/// Two times that differ by less than this part of them are the same.
+const SAME_TIME: f64 = 1e-9;
+
+/// Fewer samples than this have no spectrum or orbit to speak of.
+const FEWEST_SAMPLES: f64 = 8.0;
+
+/// Samples of one run that are kept at most.
+const MOST_SAMPLES: f64 = 1e7;
+
+/// Contact sweeps beyond which a solve has long converged or never will.
+const MOST_SWEEPS: u32 = 1000;
+
+pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
+    let recording = &scenario.recording;
+    report.positive(scenario.duration, "duration");
+    report.positive(recording.rate_hz, "recording.rate_hz");
+    check_accuracy(report, scenario);
+    check_samples(report, scenario);
+    for (i, window) in recording.spectrum_windows.iter().enumerate() {
+        check_window(report, scenario, window, &format!("recording.spectrum_windows[{i}]"));
+    }
+    if let Some(window) = &recording.orbit_window {
+        check_window(report, scenario, window, "recording.orbit_window");
+    }
+    report.warn(
+        recording.nodes.is_empty(),
+        "recording.nodes",
+        "no node is recorded: there will be no history",
+    );
+    if let Some(mesh) = mesh {
+        check_nodes(report, &recording.nodes, mesh);
+    }
+}
+
+fn check_accuracy(report: &mut Report, scenario: &Scenario) {
+    let stepping = scenario.accuracy.time_stepping();
+    report.positive(stepping.step, "accuracy.step");
+    let rate = scenario.recording.rate_hz;
+    if stepping.step > 0.0 && rate > 0.0 && stepping.step.is_finite() && rate.is_finite() {
+        let path = match scenario.accuracy {
+            Accuracy::Preset(_) => "recording.rate_hz",
+            Accuracy::Explicit(_) => "accuracy.step",
+        };
+        let got = match scenario.accuracy {
+            Accuracy::Preset(_) => rate,
+            Accuracy::Explicit(_) => stepping.step,
+        };
+        report.require(
+            is_whole(1.0 / (rate * stepping.step)),
+            path,
+            got,
+            format!(
+                "the recording interval, {} s, must be a whole multiple of the step, {} s",
+                1.0 / rate,
+                stepping.step
+            ),
+        );
+    }
+
+    let explicit = stepping.integrator == Integrator::Rk4;
+    report.require(
+        explicit || (2..=MOST_SWEEPS).contains(&stepping.contact_sweeps),
+        "accuracy.contact_sweeps",
+        stepping.contact_sweeps,
+        format!("must be 2 to {MOST_SWEEPS} for an implicit method"),
+    );
+    if let Some(tolerance) = stepping.tolerance {
+        if explicit {
+            report.number(
+                tolerance,
+                "accuracy.tolerance",
+                |tolerance| tolerance > 0.0 && tolerance < 0.1,
+                "must be greater than 0 and less than 0.1",
+            );
+        } else {
+            report.number(
+                tolerance,
+                "accuracy.tolerance",
+                |_| false,
+                "is for rk4 only: the implicit methods keep a fixed step",
+            );
+        }
+    }
+}
+
+/// The run must hold a whole number of recording intervals, and not too many.
+fn check_samples(report: &mut Report, scenario: &Scenario) {
+    let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
+    let samples = duration * rate;
+    if !(duration > 0.0 && rate > 0.0 && samples.is_finite()) {
+        return;
+    }
+    report.require(
+        is_whole(samples),
+        "duration",
+        duration,
+        format!("must be a whole multiple of the recording interval, {} s", 1.0 / rate),
+    );
+    report.require(
+        samples <= MOST_SAMPLES,
+        "recording.rate_hz",
+        rate,
+        format!("{duration} s at this rate are more than {MOST_SAMPLES} samples"),
+    );
+}
+
+fn check_window(report: &mut Report, scenario: &Scenario, window: &TimeWindow, path: &str) {
+    let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
+    report.not_negative(window.from, format!("{path}.from"));
+    if duration > 0.0 && duration.is_finite() {
+        report.number(
+            window.to,
+            format!("{path}.to"),
+            |to| to <= duration * (1.0 + SAME_TIME),
+            format!("must be within the run of {duration} s"),
+        );
+    }
+    let length = window.to - window.from;
+    if !length.is_finite() {
+        return;
+    }
+    let got = format!("{} to {} s", window.from, window.to);
+    if length <= 0.0 {
+        report.require(false, path, got, "must end after it begins");
+    } else if rate > 0.0 && rate.is_finite() {
+        report.require(
+            length * rate >= FEWEST_SAMPLES * (1.0 - SAME_TIME),
+            path,
+            got,
+            format!("must hold at least {FEWEST_SAMPLES} samples, {} s", FEWEST_SAMPLES / rate),
+        );
+    }
+}
+
+fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
+    let mut seen: Vec<(usize, usize)> = Vec::new();
+    for (i, &choice) in choices.iter().enumerate() {
+        let path = format!("recording.nodes[{i}]");
+        let Some(node) = mesh.chosen_node(choice) else {
+            match choice {
+                NodeChoice::Node(number) => report.require(
+                    false,
+                    format!("{path}.node"),
+                    number,
+                    format!("must be 1 to {}, the nodes of the mesh", mesh.nodes.len()),
+                ),
+                NodeChoice::Depth(depth) => report.number(
+                    depth,
+                    format!("{path}.depth"),
+                    |_| false,
+                    format!("must be on the string, 0 to {} m", mesh.length()),
+                ),
+            }
+            continue;
+        };
+        match seen.iter().find(|(other, _)| *other == node) {
+            Some((_, first)) => report.require(
+                false,
+                &path,
+                format!("node {} again", node + 1),
+                format!("must be another node than that of recording.nodes[{first}]"),
+            ),
+            None => seen.push((node, i)),
+        }
+        report.warn(node == 0, path, "the top node is held: its record is constant");
+    }
+}
+
+fn is_whole(ratio: f64) -> bool {
+    ratio.round() >= 1.0 && (ratio - ratio.round()).abs() <= SAME_TIME * ratio
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::testing::{problem, problems, warnings};
+    use super::*;
+    use crate::scenario::{AccuracyPreset, TimeStepping};
+
+    fn explicit(integrator: Integrator, step: f64) -> TimeStepping {
+        TimeStepping { integrator, step, contact_sweeps: 2, tolerance: None }
+    }
+
+    fn accuracy_problem(path: &str, stepping: TimeStepping) -> String {
+        problem(path, |s| s.accuracy = Accuracy::Explicit(stepping)).message
+    }
+
+    #[test]
+    fn runs_have_a_duration() {
+        let found = problems(|s| s.duration = 0.0);
+        assert!(found.iter().any(|p| p.path == "duration"), "{found:?}");
+    }
+
+    #[test]
+    fn duration_is_a_multiple_of_the_recording_interval() {
+        let found = problem("duration", |s| s.duration = 60.0004);
+        assert!(found.message.contains("0.001 s"), "{found}");
+        assert_eq!(warnings(|s| s.duration = 60.001), []);
+    }
+
+    #[test]
+    fn recording_rate_is_positive_and_affordable() {
+        problem("recording.rate_hz", |s| s.recording.rate_hz = 0.0);
+        problem("recording.rate_hz", |s| s.recording.rate_hz = -1000.0);
+        let found = problem("recording.rate_hz", |s| {
+            s.accuracy = Accuracy::Explicit(explicit(Integrator::Rk4, 1e-6));
+            s.recording.rate_hz = 1e6;
+        });
+        assert!(found.message.contains("10000000 samples"), "{found}");
+    }
+
+    #[test]
+    fn step_divides_the_recording_interval() {
+        for step in [3e-4, 2e-3, 1.0000001e-3] {
+            let message = accuracy_problem("accuracy.step", explicit(Integrator::Esdirk4, step));
+            assert!(message.contains("0.001 s"), "{message}");
+        }
+        for step in [1e-3, 5e-4, 1e-3 / 3.0, 1e-3 / 7.0] {
+            assert_eq!(
+                warnings(|s| s.accuracy = Accuracy::Explicit(explicit(Integrator::Esdirk4, step))),
+                []
+            );
+        }
+        let found = problem("recording.rate_hz", |s| s.recording.rate_hz = 1500.0);
+        assert!(found.message.contains("multiple of the step, 0.001 s"), "{found}");
+        assert_eq!(warnings(|s| s.accuracy = Accuracy::Preset(AccuracyPreset::Draft)), []);
+    }
+
+    #[test]
+    fn step_is_positive() {
+        for step in [0.0, -1e-3] {
+            accuracy_problem("accuracy.step", explicit(Integrator::Esdirk4, step));
+        }
+    }
+
+    #[test]
+    fn implicit_methods_sweep_the_contacts_twice() {
+        for contact_sweeps in [0, 1, 1001] {
+            let stepping = TimeStepping { contact_sweeps, ..explicit(Integrator::GeneralizedAlpha, 1e-3) };
+            accuracy_problem("accuracy.contact_sweeps", stepping);
+            let rk4 = TimeStepping { contact_sweeps, ..explicit(Integrator::Rk4, 1e-5) };
+            assert_eq!(warnings(|s| s.accuracy = Accuracy::Explicit(rk4)), []);
+        }
+    }
+
+    #[test]
+    fn tolerance_is_for_rk4_and_small() {
+        let tolerance = Some(1e-3);
+        let message = accuracy_problem(
+            "accuracy.tolerance",
+            TimeStepping { tolerance, ..explicit(Integrator::Esdirk4, 1e-3) },
+        );
+        assert!(message.contains("rk4"));
+        let rk4 = explicit(Integrator::Rk4, 1e-4);
+        assert_eq!(warnings(|s| s.accuracy = Accuracy::Explicit(TimeStepping { tolerance, ..rk4 })), []);
+        for tolerance in [0.0, -1e-3, 0.1, 1.0].map(Some) {
+            accuracy_problem("accuracy.tolerance", TimeStepping { tolerance, ..rk4 });
+        }
+    }
+
+    #[test]
+    fn recorded_nodes_exist() {
+        for number in [0, 298] {
+            let found =
+                problem("recording.nodes[1].node", |s| s.recording.nodes[1] = NodeChoice::Node(number));
+            assert!(found.message.contains("1 to 297"), "{found}");
+        }
+        for depth in [-1.0, 200.5] {
+            let found =
+                problem("recording.nodes[1].depth", |s| s.recording.nodes[1] = NodeChoice::Depth(depth));
+            assert!(found.message.contains("0 to 200 m"), "{found}");
+        }
+        assert_eq!(warnings(|s| s.recording.nodes[1] = NodeChoice::Depth(200.0)), []);
+    }
+
+    #[test]
+    fn recorded_nodes_differ() {
+        let found = problem("recording.nodes[3]", |s| s.recording.nodes.push(NodeChoice::Depth(57.8)));
+        assert_eq!(found.got, "node 49 again");
+        assert!(found.message.contains("recording.nodes[1]"), "{found}");
+    }
+
+    #[test]
+    fn the_held_node_may_be_recorded_with_a_warning() {
+        let found = warnings(|s| s.recording.nodes.push(NodeChoice::Node(1)));
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes[3]"));
+        let found = warnings(|s| s.recording.nodes.clear());
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes"));
+    }
+
+    #[test]
+    fn windows_are_within_the_run() {
+        let window = |from, to| TimeWindow { from, to };
+        problem("recording.orbit_window.to", |s| s.recording.orbit_window = Some(window(40.0, 61.0)));
+        problem("recording.orbit_window.from", |s| s.recording.orbit_window = Some(window(-1.0, 20.0)));
+        problem("recording.spectrum_windows[1].to", |s| s.recording.spectrum_windows[1].to = 60.5);
+        assert_eq!(warnings(|s| s.recording.orbit_window = Some(window(0.0, 60.0))), []);
+    }
+
+    #[test]
+    fn windows_are_not_empty() {
+        for to in [15.0, 10.0] {
+            let found = problem("recording.spectrum_windows[0]", |s| s.recording.spectrum_windows[0].to = to);
+            assert!(found.message.contains("end after it begins"), "{found}");
+        }
+    }
+
+    #[test]
+    fn windows_hold_at_least_8_samples() {
+        let found = problem("recording.spectrum_windows[0]", |s| s.recording.spectrum_windows[0].to = 15.007);
+        assert!(found.message.contains("8 samples"), "{found}");
+        assert_eq!(warnings(|s| s.recording.spectrum_windows[0].to = 15.008), []);
+    }
+}

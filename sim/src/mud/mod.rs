@@ -1,1 +1,27 @@
-//! The mud: friction, viscosity, pressures.
+//! The mud: what its flow does to the string (physics.md sections 3 and 4).
+//!
+//! The chain of one element runs from the flow rate to the fluid's coefficients: laminar wall stress
+//! (`slot` and `pipe`), regime limits, friction factor, eccentricity and rotation factors, apparent
+//! viscosity, damping. [`SectionFlow`] holds what a cross-section decides, [`ElementFlow`] adds where the
+//! pipe lies in the hole, [`Pressures`] adds the elements up along the string.
+//!
+//! The mud is a yield-power-law (Herschel-Bulkley) fluid, tau = tau_y + K gamma^n. It flows down the bore
+//! at U_i and up the annulus at U_o, both counted positive.
+
+mod damping;
+mod eccentricity;
+mod element;
+mod error;
+mod friction_factor;
+mod laminar;
+mod pipe;
+mod pressure;
+mod regime;
+mod rheology;
+mod rotation;
+mod slot;
+
+pub use element::{ElementFlow, FlowGeometry, SectionFlow, element_flow};
+pub use error::MudError;
+pub use pressure::{PressureStep, Pressures, pressures};
+pub use regime::Regime;

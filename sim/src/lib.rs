@@ -9,9 +9,18 @@
 
 pub mod beam;
 pub mod contact;
+pub mod control;
 pub mod linalg;
+pub mod model;
 pub mod mud;
 pub mod scenario;
 pub mod signal;
+pub mod statics;
 pub mod string;
+pub mod summary;
+pub mod transient;
 pub mod well;
+
+/// Version of the numbers: raised by hand whenever the same scenario may give other results, and part of every
+/// result's key.
+pub const PHYSICS_VERSION: u32 = 1;

@@ -1,0 +1,132 @@
+//! The model: the string's elements and nodes in the well, and the matrices of the effects in play.
+//!
+//! A model is built from a scenario and does not change afterwards. What depends on the equilibrium (tension,
+//! torque, friction factors) comes in when the [`DynamicSystem`] is assembled from it.
+
+mod chord;
+mod dynamic;
+mod element;
+
+pub use chord::Chord;
+pub(crate) use dynamic::clear_held;
+pub use dynamic::{DynamicSystem, UnbalanceForce};
+pub use element::{ElementInput, FlowMomentum, GRAVITY, StringElement};
+
+use std::f64::consts::PI;
+
+use crate::beam::{BeamSection, ElementMatrix, ElementVector};
+use crate::linalg::{Block, BlockTridiagonal};
+use crate::scenario::{Scenario, TopCondition};
+use crate::string::{MeshError, StringMesh};
+use crate::well::{NodeFrame, WellError, WellPath};
+
+/// Nodal values: (u, v, w, theta_x, theta_y, theta_z) of every node, from the top.
+pub type NodalVector = Vec<[f64; 6]>;
+
+/// The string in its well.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The scenario that it was built from.
+    pub scenario: Scenario,
+    /// Nodes and elements of the string.
+    pub mesh: StringMesh,
+    /// Frame of every node.
+    pub frames: Vec<NodeFrame>,
+    /// Elements from the top.
+    pub elements: Vec<StringElement>,
+    /// Speed of rotation \[rad/s\].
+    pub rotation_speed: f64,
+}
+
+/// Why a scenario has no model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The survey does not describe a path.
+    #[error("well: {0}")]
+    Well(#[from] WellError),
+    /// The string cannot be meshed.
+    #[error("string: {0}")]
+    Mesh(#[from] MeshError),
+}
+
+impl Model {
+    /// Builds the model of a scenario.
+    ///
+    /// # Errors
+    /// When the survey has no path or the string no mesh; a validated scenario has both.
+    pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
+        let path = WellPath::new(&scenario.well)?;
+        let mesh = StringMesh::new(scenario)?;
+        let frames = path.frames(&mesh.depths());
+        let last = mesh.elements.len().saturating_sub(1);
+        let elements = mesh
+            .elements
+            .iter()
+            .enumerate()
+            .map(|(i, element)| {
+                StringElement::new(&ElementInput {
+                    section: BeamSection::pipe(
+                        element.outer_diameter,
+                        element.inner_diameter,
+                        &scenario.string.material,
+                    ),
+                    frames: [&frames[i], &frames[i + 1]],
+                    curvature: path.curvature(element.top + 0.5 * element.length),
+                    hole_diameter: scenario.well.hole_diameter,
+                    mud: scenario.mud.as_ref(),
+                    effects: &scenario.effects,
+                    ends_at_bit: i == last,
+                })
+            })
+            .collect();
+        Ok(Self {
+            scenario: scenario.clone(),
+            mesh,
+            frames,
+            elements,
+            rotation_speed: scenario.operation.rotation_speed_rpm * PI / 30.0,
+        })
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.mesh.nodes.len()
+    }
+
+    /// Degrees of freedom of node `node` that the top's boundary condition holds at zero.
+    pub fn held_by_top(&self, node: usize) -> [bool; 6] {
+        match (node, self.scenario.operation.top) {
+            (0, TopCondition::Clamped) => [true; 6],
+            (0, TopCondition::Pinned) => [true, true, true, false, false, true],
+            _ => [false; 6],
+        }
+    }
+
+    /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of
+    /// its body (physics.md section 3): 0 concentric, 1 touching.
+    pub fn eccentricity(&self, element: usize, displacement: &[[f64; 6]]) -> f64 {
+        let radius = |node: usize| displacement[node][0].hypot(displacement[node][1]);
+        let clearance = 0.5 * (self.scenario.well.hole_diameter - self.mesh.elements[element].outer_diameter);
+        (0.5 * (radius(element) + radius(element + 1)) / clearance).min(1.0)
+    }
+}
+
+/// The 12 nodal values of element `element`.
+pub fn element_values(displacement: &[[f64; 6]], element: usize) -> ElementVector {
+    ElementVector::from_fn(|i, _| displacement[element + i / 6][i % 6])
+}
+
+/// Adds an element vector to the two nodes of element `element`.
+pub fn add_element_vector(target: &mut [[f64; 6]], element: usize, f: &ElementVector) {
+    for i in 0..12 {
+        target[element + i / 6][i % 6] += f[i];
+    }
+}
+
+/// Adds an element matrix to the blocks of element `element`.
+pub fn add_element_matrix(target: &mut BlockTridiagonal<f64>, element: usize, m: &ElementMatrix) {
+    for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let block = Block::from_fn(|i, j| m[(6 * row + i, 6 * column + j)]);
+        target.add_block(element + row, element + column, &block);
+    }
+}

@@ -1,0 +1,234 @@
+//! The quasi-static equilibrium of the string on its wall, and the mud around it.
+//!
+//! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
+//! with the hydraulics until both stand still (physics.md section 8).
+
+mod newton;
+
+pub use newton::NewtonSettings;
+
+use crate::contact::{ContactNode, ContactParameters, StaticContactForce, static_contact};
+use crate::linalg::SingularBlock;
+use crate::model::{GRAVITY, Model, NodalVector, element_values};
+use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
+use crate::scenario::Mud;
+
+/// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
+const HYDRAULIC_PASSES: usize = 30;
+
+/// Change of an eccentricity at which string and mud stand still.
+const ECCENTRICITY_STANDSTILL: f64 = 1e-12;
+
+/// The string at rest: displacements, internal forces, contacts, flow.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// Displacement of every node in its own frame \[m, rad\].
+    pub displacement: NodalVector,
+    /// Effective tension of every element \[N\].
+    pub tension: Vec<f64>,
+    /// Torque of every element \[N m\].
+    pub torque: Vec<f64>,
+    /// Normal contact force of every node \[N\].
+    pub normal_force: Vec<f64>,
+    /// Flow past every element; empty without mud.
+    pub flows: Vec<ElementFlow>,
+    /// Axial drag of the mud on every element, upward \[N/m\]; empty where there is none.
+    pub drag: Vec<f64>,
+    /// Pressures of the mud at every node; absent without mud.
+    pub pressures: Option<Pressures>,
+    /// What it took.
+    pub effort: StaticsEffort,
+}
+
+/// What an equilibrium took to find.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticsEffort {
+    /// Newton iterations in all.
+    pub newton_iterations: usize,
+    /// Passes of hydraulics and equilibrium.
+    pub hydraulic_passes: usize,
+    /// Largest unbalanced force \[N\] or moment \[N m\] left.
+    pub residual: f64,
+}
+
+/// Why there is no equilibrium.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StaticsError {
+    /// Newton's method did not arrive.
+    #[error(
+        "no equilibrium after {iterations} iterations: the force left is {residual:.3e} N, largest at node {node}; \
+         the string may be unstable under its loads (buckled without a wall, torque beyond Greenhill's)"
+    )]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// Largest unbalanced force \[N\].
+        residual: f64,
+        /// Node where it stands, from 1.
+        node: usize,
+    },
+    /// The tangent broke down.
+    #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
+    Singular(#[from] SingularBlock),
+    /// The flow has no solution.
+    #[error("mud: {0}")]
+    Mud(#[from] MudError),
+    /// String and mud keep moving each other.
+    #[error("the eccentricities still change by {change:.1e} after {passes} hydraulic passes")]
+    HydraulicsNotConverged {
+        /// Passes made.
+        passes: usize,
+        /// Last change of an eccentricity.
+        change: f64,
+    },
+}
+
+impl Equilibrium {
+    /// The equilibrium of a model, searched from the centre line.
+    ///
+    /// # Errors
+    /// When Newton's method or the iteration with the hydraulics does not arrive.
+    pub fn find(model: &Model) -> Result<Self, StaticsError> {
+        Self::find_from(model, vec![[0.0; 6]; model.node_count()], &NewtonSettings::default())
+    }
+
+    /// The equilibrium searched from given displacements.
+    ///
+    /// # Errors
+    /// As [`Equilibrium::find`].
+    pub fn find_from(
+        model: &Model,
+        mut displacement: NodalVector,
+        settings: &NewtonSettings,
+    ) -> Result<Self, StaticsError> {
+        let n_elements = model.elements.len();
+        let mut settings = settings.clone();
+        let mut eccentricity = vec![0.0; n_elements];
+        let mut newton_iterations = 0;
+        let sections = Sections::new(model)?;
+        for pass in 1..=HYDRAULIC_PASSES {
+            let flows = sections.flows(&eccentricity)?;
+            let drag = drag(model, &flows);
+            let outcome = newton::solve(model, &model.constant_load(&drag), &mut displacement, &settings)?;
+            newton_iterations += outcome.iterations;
+            // Later passes start next to the solution: plain Newton from there.
+            settings.initial_shift = 0.0;
+            let mut change: f64 = 0.0;
+            for (e, old) in eccentricity.iter_mut().enumerate() {
+                let new = model.eccentricity(e, &displacement);
+                change = change.max((new - *old).abs());
+                *old = new;
+            }
+            if flows.is_empty() || change <= ECCENTRICITY_STANDSTILL {
+                let effort =
+                    StaticsEffort { newton_iterations, hydraulic_passes: pass, residual: outcome.residual };
+                return Self::assemble(model, displacement, flows, drag, effort);
+            }
+            if pass == HYDRAULIC_PASSES {
+                return Err(StaticsError::HydraulicsNotConverged { passes: pass, change });
+            }
+        }
+        unreachable!("the last pass returns")
+    }
+
+    fn assemble(
+        model: &Model,
+        displacement: NodalVector,
+        flows: Vec<ElementFlow>,
+        drag: Vec<f64>,
+        effort: StaticsEffort,
+    ) -> Result<Self, StaticsError> {
+        let rows = |row: fn(&crate::model::StringElement) -> &crate::beam::ElementVector| {
+            model
+                .elements
+                .iter()
+                .enumerate()
+                .map(|(e, element)| row(element).dot(&element_values(&displacement, e)))
+                .collect::<Vec<f64>>()
+        };
+        let tension = rows(|element| &element.tension_row);
+        let torque = rows(|element| &element.torque_row);
+        let law = contact_law(model);
+        let normal_force = (0..model.node_count())
+            .map(|node| {
+                contact_at(model, &law, node, &displacement[node]).map_or(0.0, |contact| contact.normal)
+            })
+            .collect();
+        let pressures =
+            model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose()?;
+        Ok(Self { displacement, tension, torque, normal_force, flows, drag, pressures, effort })
+    }
+}
+
+/// The quasi-static contact force of a node; the top node never touches.
+fn contact_at(
+    model: &Model,
+    law: &ContactParameters<f64>,
+    node: usize,
+    displacement: &[f64; 6],
+) -> Option<StaticContactForce> {
+    if node == 0 || !model.scenario.effects.contact.is_on() {
+        return None;
+    }
+    let data = &model.mesh.nodes[node];
+    let site = ContactNode { clearance: data.clearance, contact_radius: data.contact_radius };
+    let contact = static_contact(law, &site, displacement[0], displacement[1], model.rotation_speed);
+    (contact.penetration > 0.0).then_some(contact)
+}
+
+fn contact_law(model: &Model) -> ContactParameters<f64> {
+    ContactParameters::new(&model.scenario.contact, &model.scenario.effects)
+}
+
+/// The flow past every cross-section of the string, solved once for each pair of diameters.
+struct Sections {
+    distinct: Vec<SectionFlow>,
+    of_element: Vec<usize>,
+}
+
+impl Sections {
+    fn new(model: &Model) -> Result<Self, MudError> {
+        let mut sections = Self { distinct: Vec::new(), of_element: Vec::new() };
+        let Some(mud) = &model.scenario.mud else { return Ok(sections) };
+        let mut seen: Vec<FlowGeometry> = Vec::new();
+        for element in &model.elements {
+            let geometry = element.flow_geometry;
+            let index = match seen.iter().position(|other| *other == geometry) {
+                Some(index) => index,
+                None => {
+                    sections.distinct.push(SectionFlow::new(mud, &geometry, model.rotation_speed)?);
+                    seen.push(geometry);
+                    seen.len() - 1
+                }
+            };
+            sections.of_element.push(index);
+        }
+        Ok(sections)
+    }
+
+    /// The flow past every element at its eccentricity; empty without mud.
+    fn flows(&self, eccentricity: &[f64]) -> Result<Vec<ElementFlow>, MudError> {
+        let elements = self.of_element.iter().zip(eccentricity);
+        elements.map(|(&section, &e)| self.distinct[section].at_eccentricity(e)).collect()
+    }
+}
+
+fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pressures, MudError> {
+    let true_vertical_depth: Vec<f64> = model.frames.iter().map(|frame| frame.position.z).collect();
+    let elements = model.mesh.elements.iter().zip(flows);
+    let steps: Vec<PressureStep> = elements
+        .map(|(element, flow)| PressureStep {
+            length: element.length,
+            friction_gradient: flow.friction_gradient,
+            bore_friction_gradient: flow.bore_friction_gradient,
+        })
+        .collect();
+    pressures(mud, GRAVITY, &true_vertical_depth, &steps)
+}
+
+fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {
+    if !model.scenario.effects.mud_drag.is_on() {
+        return Vec::new();
+    }
+    flows.iter().map(|flow| flow.effective_drag_per_length).collect()
+}

@@ -1,0 +1,164 @@
+//! Newton's method with a pseudo-transient shift for the nonlinear equilibrium.
+
+use super::{StaticsError, contact_at, contact_law};
+use crate::beam::{ElementMatrix, ElementVector};
+use crate::linalg::{Block, BlockTridiagonal, Factor};
+use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
+
+/// Unbalanced force, relative to the largest nodal load, below which the shift is dropped: the iterate is then
+/// inside the region where plain Newton converges quadratically.
+const PLAIN_NEWTON_BELOW: f64 = 1e-6;
+
+/// Unbalanced force, relative to the largest nodal load, above which plain Newton counts as lost.
+const SHIFT_AGAIN_ABOVE: f64 = 10.0;
+
+/// How the search goes about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewtonSettings {
+    /// Lateral spring per length of string that holds each iterate at the last one to begin with \[N/m2\]. Under
+    /// weight on bit a long string is buckled without its wall, so that plain Newton from the centre line
+    /// diverges; the spring fades with the residual.
+    pub initial_shift: f64,
+    /// Largest lateral displacement of one iteration \[m\].
+    pub largest_step: f64,
+    /// Iterations after which the search is given up.
+    pub iteration_limit: usize,
+    /// Last Newton step at which the search has arrived \[m, rad\].
+    pub tolerance: f64,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        Self { initial_shift: 3e4, largest_step: 0.02, iteration_limit: 400, tolerance: 1e-11 }
+    }
+}
+
+/// How a search ended.
+pub(super) struct NewtonOutcome {
+    pub(super) iterations: usize,
+    pub(super) residual: f64,
+}
+
+/// Moves `displacement` to the equilibrium under `load`.
+pub(super) fn solve(
+    model: &Model,
+    load: &[[f64; 6]],
+    displacement: &mut NodalVector,
+    settings: &NewtonSettings,
+) -> Result<NewtonOutcome, StaticsError> {
+    let tributary = tributary_lengths(model);
+    let mut shift = settings.initial_shift;
+    let (mut residual, mut tangent) = linearise(model, load, displacement);
+    let mut size = largest(&residual);
+    let scale_of_load = largest(load);
+    for iteration in 1..=settings.iteration_limit {
+        for (block, length) in tangent.diagonal.iter_mut().zip(&tributary) {
+            block[(0, 0)] += shift * length;
+            block[(1, 1)] += shift * length;
+        }
+        let mut step = residual;
+        Factor::new(&tangent)?.solve_in_place(&mut step);
+        let lateral = step.iter().fold(0.0_f64, |m, s| m.max(s[0].hypot(s[1])));
+        let scale = (settings.largest_step / lateral).min(1.0);
+        let mut longest: f64 = 0.0;
+        for (node, step) in displacement.iter_mut().zip(&step) {
+            for (value, step) in node.iter_mut().zip(step) {
+                *value += scale * step;
+                longest = longest.max(step.abs());
+            }
+        }
+        (residual, tangent) = linearise(model, load, displacement);
+        let new_size = largest(&residual);
+        if !new_size.is_finite() {
+            break;
+        }
+        if longest <= settings.tolerance && shift == 0.0 {
+            return Ok(NewtonOutcome { iterations: iteration, residual: new_size });
+        }
+        shift = if new_size <= PLAIN_NEWTON_BELOW * scale_of_load {
+            0.0
+        } else if shift == 0.0 && new_size > SHIFT_AGAIN_ABOVE * scale_of_load {
+            NewtonSettings::default().initial_shift
+        } else {
+            shift * (new_size / size).clamp(0.1, 10.0)
+        };
+        size = new_size;
+    }
+    let node = residual
+        .iter()
+        .enumerate()
+        .max_by(|a, b| force(a.1).total_cmp(&force(b.1)))
+        .map_or(0, |(node, _)| node + 1);
+    Err(StaticsError::NotConverged {
+        iterations: settings.iteration_limit,
+        residual: largest(&residual),
+        node,
+    })
+}
+
+/// Unbalanced forces and the exact tangent stiffness, held degrees of freedom made trivial.
+fn linearise(
+    model: &Model,
+    load: &[[f64; 6]],
+    displacement: &[[f64; 6]],
+) -> (NodalVector, BlockTridiagonal<f64>) {
+    let n = model.node_count();
+    let mut residual = load.to_vec();
+    let mut tangent = BlockTridiagonal::zeros(n);
+    for (e, element) in model.elements.iter().enumerate() {
+        let q = element_values(displacement, e);
+        let tension = element.tension_row.dot(&q);
+        let torque = element.torque_row.dot(&q);
+        let mut stiffness = element.stiffness(tension, torque);
+        add_element_vector(&mut residual, e, &-(stiffness * q));
+        // T and T0 are linear in the displacements: their own change belongs to the tangent.
+        for (unit, row) in
+            [(&element.tension_unit, &element.tension_row), (&element.torque_unit, &element.torque_row)]
+        {
+            if let Some(unit) = unit {
+                let forces: ElementVector = unit * q;
+                let change: ElementMatrix = forces * row.transpose();
+                stiffness += change;
+            }
+        }
+        add_element_matrix(&mut tangent, e, &stiffness);
+    }
+    let law = contact_law(model);
+    for node in 0..n {
+        let Some(contact) = contact_at(model, &law, node, &displacement[node]) else { continue };
+        let forces = [contact.force_u, contact.force_v, contact.torque_z];
+        for (row, (force, gradient)) in [0, 1, 5].into_iter().zip(forces.into_iter().zip(&contact.tangent)) {
+            residual[node][row] += force;
+            tangent.diagonal[node][(row, 0)] -= gradient[0];
+            tangent.diagonal[node][(row, 1)] -= gradient[1];
+        }
+    }
+    let held: Vec<[bool; 6]> = (0..n).map(|node| model.held_by_top(node)).collect();
+    crate::model::clear_held(&mut tangent, &held);
+    for (node, held) in held.iter().enumerate() {
+        for (dof, _) in held.iter().enumerate().filter(|(_, held)| **held) {
+            let block: &mut Block<f64> = &mut tangent.diagonal[node];
+            block[(dof, dof)] = 1.0;
+            residual[node][dof] = 0.0;
+        }
+    }
+    (residual, tangent)
+}
+
+/// Half the elements on both sides of every node \[m\].
+fn tributary_lengths(model: &Model) -> Vec<f64> {
+    let mut lengths = vec![0.0; model.node_count()];
+    for (e, element) in model.elements.iter().enumerate() {
+        lengths[e] += 0.5 * element.chord.length;
+        lengths[e + 1] += 0.5 * element.chord.length;
+    }
+    lengths
+}
+
+fn force(node: &[f64; 6]) -> f64 {
+    node.iter().fold(0.0, |m, f| m.max(f.abs()))
+}
+
+fn largest(residual: &[[f64; 6]]) -> f64 {
+    residual.iter().fold(0.0, |m, node| if m.is_nan() { m } else { m.max(force(node)) })
+}

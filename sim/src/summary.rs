@@ -1,0 +1,181 @@
+//! One row of scalars about a point: what a sweep's table shows.
+
+use serde::Serialize;
+
+use crate::model::Model;
+use crate::scenario::TimeWindow;
+use crate::signal::{PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
+use crate::statics::Equilibrium;
+use crate::transient::Records;
+
+/// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
+const BAND_HZ: f64 = 20.0;
+
+/// Lines reported of each spectrum.
+const LINES: usize = 3;
+
+/// The equilibrium and the mud around it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StaticsSummary {
+    /// Nodes that touch the wall.
+    pub contacts: usize,
+    /// Sum of the normal forces \[N\].
+    pub normal_force_total: f64,
+    /// Effective tension of the uppermost element \[N\].
+    pub tension_top: f64,
+    /// Effective tension of the lowest element \[N\].
+    pub tension_bit: f64,
+    /// Torque of the uppermost element \[N m\].
+    pub torque_top: f64,
+    /// Torque of the lowest element \[N m\].
+    pub torque_bit: f64,
+    /// Smallest and largest C_f along the string; absent without mud.
+    pub friction_coefficient_range: Option<[f64; 2]>,
+    /// Smallest and largest damping k along the string \[N s/m2\]; absent without mud.
+    pub rotation_damping_range: Option<[f64; 2]>,
+}
+
+/// What the run in time showed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TransientSummary {
+    /// Orbits of the recorded nodes over the scenario's orbit window.
+    pub orbits: Vec<OrbitSummary>,
+    /// Dominant lines of the recorded nodes over the scenario's spectrum windows.
+    pub spectra: Vec<SpectrumSummary>,
+    /// Contacts of all nodes together.
+    pub contact_count: u64,
+    /// Largest normal force of any node \[N\].
+    pub largest_normal_force: f64,
+    /// Energy left over at the end \[J\]: the integration's own error.
+    pub energy_residual: f64,
+    /// The same relative to the net work of the contacts; absent where there was none.
+    pub energy_residual_ratio: Option<f64>,
+}
+
+/// The orbit of one node.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OrbitSummary {
+    /// Node, from 1 at the top.
+    pub node: usize,
+    /// Its measured depth \[m\].
+    pub measured_depth: f64,
+    /// Window \[s\].
+    pub window: TimeWindow,
+    /// Distance of the orbit's mean position from the hole's axis \[m\].
+    pub offset: f64,
+    /// Mean distance from the hole's axis \[m\].
+    pub mean_radius: f64,
+    /// Largest distance from the hole's axis \[m\].
+    pub largest_radius: f64,
+    /// Orbit size: root mean square distance from the mean position \[m\].
+    pub orbit_radius_rms: f64,
+}
+
+/// Dominant lines of one node in one window.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpectrumSummary {
+    /// Node, from 1 at the top.
+    pub node: usize,
+    /// Its measured depth \[m\].
+    pub measured_depth: f64,
+    /// Window \[s\].
+    pub window: TimeWindow,
+    /// The lines, strongest first; the mean is left out.
+    pub lines: Vec<LineSummary>,
+}
+
+/// One spectral line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LineSummary {
+    /// Frequency \[Hz\]; negative is backward whirl.
+    pub frequency_hz: f64,
+    /// Amplitude |Z| / N \[m\]: the radius of the circle that the line draws.
+    pub amplitude: f64,
+    /// Sense of the whirl.
+    pub whirl: Whirl,
+}
+
+impl StaticsSummary {
+    /// Sums up an equilibrium.
+    pub fn new(equilibrium: &Equilibrium) -> Self {
+        let end = |values: &[f64], last: bool| {
+            if last { values.last() } else { values.first() }.copied().unwrap_or(0.0)
+        };
+        Self {
+            contacts: equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count(),
+            normal_force_total: equilibrium.normal_force.iter().sum(),
+            tension_top: end(&equilibrium.tension, false),
+            tension_bit: end(&equilibrium.tension, true),
+            torque_top: end(&equilibrium.torque, false),
+            torque_bit: end(&equilibrium.torque, true),
+            friction_coefficient_range: range(equilibrium.flows.iter().map(|flow| flow.friction_coefficient)),
+            rotation_damping_range: range(equilibrium.flows.iter().map(|flow| flow.rotation_damping)),
+        }
+    }
+}
+
+impl TransientSummary {
+    /// Sums up a finished run.
+    pub fn new(model: &Model, records: &Records) -> Self {
+        let scenario = &model.scenario;
+        let orbit_window = scenario
+            .recording
+            .orbit_window
+            .unwrap_or(TimeWindow { from: scenario.duration * 2.0 / 3.0, to: scenario.duration });
+        let mut orbits = Vec::new();
+        let mut spectra = Vec::new();
+        for history in &records.histories {
+            let (node, measured_depth) = (history.node + 1, model.mesh.nodes[history.node].measured_depth);
+            let cut =
+                |window: TimeWindow| sample_range(window.from, window.to, records.rate_hz, history.u.len());
+            let samples = cut(orbit_window);
+            if let Some(orbit) = orbit_statistics(&history.u[samples.clone()], &history.v[samples]) {
+                orbits.push(OrbitSummary {
+                    node,
+                    measured_depth,
+                    window: orbit_window,
+                    offset: orbit.mean_u.hypot(orbit.mean_v),
+                    mean_radius: orbit.mean_radius,
+                    largest_radius: orbit.largest_radius,
+                    orbit_radius_rms: orbit.orbit_radius_rms,
+                });
+            }
+            for &window in &scenario.recording.spectrum_windows {
+                let samples = cut(window);
+                let spectrum = full_spectrum(
+                    &history.u[samples.clone()],
+                    &history.v[samples],
+                    records.rate_hz,
+                    Window::Hann,
+                )
+                .restricted_to(&(-BAND_HZ..=BAND_HZ));
+                let search = PeakSearch { count: LINES, min_separation_hz: 0.5, exclude_mean: true };
+                let lines = spectrum.peaks(&search).into_iter().map(|peak| LineSummary {
+                    frequency_hz: peak.frequency_hz,
+                    amplitude: peak.amplitude,
+                    whirl: peak.whirl,
+                });
+                spectra.push(SpectrumSummary { node, measured_depth, window, lines: lines.collect() });
+            }
+        }
+        let last = records.energy.last().copied().unwrap_or_default();
+        Self {
+            orbits,
+            spectra,
+            contact_count: records.contacts.iter().map(|contact| contact.contact_count).sum(),
+            largest_normal_force: records
+                .contacts
+                .iter()
+                .fold(0.0, |most, contact| most.max(contact.largest_normal_force)),
+            energy_residual: last.residual,
+            energy_residual_ratio: (last.contact_work != 0.0)
+                .then(|| last.residual.abs() / last.contact_work.abs()),
+        }
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    values.fold(None, |range, value| {
+        Some(range.map_or([value, value], |[low, high]: [f64; 2]| [low.min(value), high.max(value)]))
+    })
+}

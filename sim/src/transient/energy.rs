@@ -1,0 +1,326 @@
+//! The energy ledger of a run, kept with the integrator's own forces (performance.md section 2.3).
+//!
+//! Work is force times the scheme's own displacement: for generalized-alpha the forces of the level at which a
+//! step balances along the step, for the Runge-Kutta methods the stage powers with the method's weights. Contact power
+//! evaluated at step ends instead gives even the wrong sign once contacts chatter. What is left between the
+//! change of energy and the sum of all work is the integration's own error.
+
+use serde::{Deserialize, Serialize};
+
+use super::forces::NodeContact;
+use crate::contact::ContactParameters;
+use crate::linalg::{Block, BlockTridiagonal};
+use crate::model::{DynamicSystem, Model, NodalVector};
+
+/// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Work {
+    unbalance: f64,
+    normal_contact: f64,
+    friction: f64,
+    rotation: f64,
+    structure: f64,
+    mud: f64,
+    flow: f64,
+    follower_torque: f64,
+}
+
+impl Work {
+    pub(super) fn add(&mut self, scale: f64, other: &Work) {
+        self.unbalance += scale * other.unbalance;
+        self.normal_contact += scale * other.normal_contact;
+        self.friction += scale * other.friction;
+        self.rotation += scale * other.rotation;
+        self.structure += scale * other.structure;
+        self.mud += scale * other.mud;
+        self.flow += scale * other.flow;
+        self.follower_torque += scale * other.follower_torque;
+    }
+}
+
+/// One row of the ledger; all values \[J\] since the start of the transient.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergyRow {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// Kinetic energy, added mass included.
+    pub kinetic: f64,
+    /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
+    pub stored: f64,
+    /// Work done by the unbalance.
+    pub work_unbalance: f64,
+    /// Work done by the imposed rotation against friction, as far as it acts through the contacts.
+    pub work_rotation: f64,
+    /// Work done by the flows (Coriolis and follower forces) and by the follower torque.
+    pub work_flow: f64,
+    /// Energy dissipated by Rayleigh damping.
+    pub dissipated_structure: f64,
+    /// Energy dissipated by the mud.
+    pub dissipated_fluid: f64,
+    /// Energy dissipated by sliding.
+    pub dissipated_friction: f64,
+    /// Energy dissipated by the contacts' dampers.
+    pub dissipated_contact: f64,
+    /// Net work of contact and friction forces on the motion: what the residual is compared with.
+    pub contact_work: f64,
+    /// Change of energy less all work: the integration's own error.
+    pub residual: f64,
+}
+
+/// Accumulates work; [`Ledger::row`] closes the balance.
+#[derive(Debug, Clone)]
+pub(super) struct Ledger {
+    mass: BlockTridiagonal<f64>,
+    stiffness: BlockTridiagonal<f64>,
+    load: NodalVector,
+    structure: QuadraticForm,
+    mud: QuadraticForm,
+    flow: SparseForm,
+    follower: SparseForm,
+    contact: ContactParameters<f64>,
+    clearance: Vec<f64>,
+    with_contact: bool,
+    rotation_speed: f64,
+    work: Work,
+    initial_stored: f64,
+    initial_wall: f64,
+    scratch: NodalVector,
+}
+
+impl Ledger {
+    pub(super) fn new(model: &Model, system: &DynamicSystem, initial: &[[f64; 6]]) -> Self {
+        let mut ledger = Self {
+            mass: system.mass.clone(),
+            stiffness: half_sum(&system.stiffness, 0.5),
+            load: system.load.clone(),
+            structure: QuadraticForm::of(&system.structural_damping),
+            mud: QuadraticForm::of(&system.mud_damping),
+            flow: SparseForm::of(&system.coriolis, 0.5),
+            follower: SparseForm::of(&system.stiffness, -0.5),
+            contact: ContactParameters::new(&model.scenario.contact, &model.scenario.effects),
+            clearance: model.mesh.nodes.iter().map(|node| node.clearance).collect(),
+            with_contact: model.scenario.effects.contact.is_on(),
+            rotation_speed: system.rotation_speed,
+            work: Work::default(),
+            initial_stored: 0.0,
+            initial_wall: 0.0,
+            scratch: vec![[0.0; 6]; model.node_count()],
+        };
+        ledger.initial_stored = ledger.stored(initial);
+        ledger.initial_wall = ledger.wall(initial);
+        ledger
+    }
+
+    /// Powers of one stage (or mean powers of a step whose mean velocity is `velocity`), with the contact forces
+    /// that it was solved with.
+    pub(super) fn power(
+        &self,
+        velocity: &[[f64; 6]],
+        displacement: &[[f64; 6]],
+        contact: &[NodeContact],
+        unbalance: impl Iterator<Item = (usize, [f64; 2])>,
+    ) -> Work {
+        let mut power = Work {
+            structure: self.structure.value(velocity),
+            mud: self.mud.value(velocity),
+            flow: -self.flow.value(velocity, velocity),
+            follower_torque: -self.follower.value(velocity, displacement),
+            unbalance: unbalance
+                .map(|(node, force)| velocity[node][0] * force[0] + velocity[node][1] * force[1])
+                .sum(),
+            ..Work::default()
+        };
+        let mut torque = 0.0;
+        let touching = velocity.iter().zip(displacement).zip(contact).filter(|(_, contact)| contact.touching);
+        for ((v, x), contact) in touching {
+            // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
+            let normal = -contact.normal_force / contact.radius * (v[0] * x[0] + v[1] * x[1]);
+            power.normal_contact += normal;
+            power.friction +=
+                v[0] * contact.force[0] + v[1] * contact.force[1] - normal + v[5] * contact.torque;
+            torque += contact.torque;
+        }
+        // The frame turns with Omega: the drive works against the friction torque there.
+        power.rotation = -torque * self.rotation_speed;
+        power
+    }
+
+    /// Adds `duration` seconds of powers.
+    pub(super) fn add(&mut self, duration: f64, power: &Work) {
+        self.work.add(duration, power);
+    }
+
+    /// The balance at `time` \[s\].
+    pub(super) fn row(&mut self, time: f64, displacement: &[[f64; 6]], velocity: &[[f64; 6]]) -> EnergyRow {
+        self.mass.multiply_into(velocity, &mut self.scratch);
+        let kinetic = 0.5 * dot(velocity, &self.scratch);
+        let structure = self.stored(displacement) - self.initial_stored;
+        let wall = self.wall(displacement) - self.initial_wall;
+        let work = &self.work;
+        let dissipated_contact = -work.normal_contact - wall;
+        let dissipated_friction = work.rotation - work.friction;
+        let work_flow = work.flow + work.follower_torque;
+        let gained = kinetic + structure + wall;
+        let balance = work.unbalance + work.rotation + work_flow
+            - work.structure
+            - work.mud
+            - dissipated_friction
+            - dissipated_contact;
+        EnergyRow {
+            time,
+            kinetic,
+            stored: structure + wall,
+            work_unbalance: work.unbalance,
+            work_rotation: work.rotation,
+            work_flow,
+            dissipated_structure: work.structure,
+            dissipated_fluid: work.mud,
+            dissipated_friction,
+            dissipated_contact,
+            contact_work: work.normal_contact + work.friction,
+            residual: gained - balance,
+        }
+    }
+
+    pub(super) fn work(&self) -> Work {
+        self.work
+    }
+
+    pub(super) fn set_work(&mut self, work: Work) {
+        self.work = work;
+    }
+
+    /// Energy of the conservative linear forces and constant loads.
+    fn stored(&mut self, x: &[[f64; 6]]) -> f64 {
+        self.stiffness.multiply_into(x, &mut self.scratch);
+        0.5 * dot(x, &self.scratch) - dot(x, &self.load)
+    }
+
+    /// Energy stored in the wall's springs.
+    fn wall(&self, x: &[[f64; 6]]) -> f64 {
+        if !self.with_contact {
+            return 0.0;
+        }
+        let nodes = x.iter().zip(&self.clearance).skip(1);
+        nodes.map(|(x, &clearance)| self.contact.potential_energy(x[0].hypot(x[1]) - clearance)).sum()
+    }
+}
+
+/// v^T S v of the symmetric part of a matrix, from its diagonal and upper blocks; nothing where that is zero.
+#[derive(Debug, Clone)]
+struct QuadraticForm(Option<(Vec<Block<f64>>, Vec<Block<f64>>)>);
+
+impl QuadraticForm {
+    fn of(m: &BlockTridiagonal<f64>) -> Self {
+        let symmetric = half_sum(m, 0.5);
+        let present = largest(&symmetric) > 0.0;
+        Self(present.then(|| (symmetric.diagonal, symmetric.upper)))
+    }
+
+    fn value(&self, v: &[[f64; 6]]) -> f64 {
+        let Some((diagonal, upper)) = &self.0 else { return 0.0 };
+        let mut sum = 0.0;
+        for i in 0..v.len() {
+            let mut product = times(&diagonal[i], &v[i], [0.0; 6]);
+            if i + 1 < v.len() {
+                let next = &v[i + 1];
+                product = times(&upper[i], &next.map(|value| 2.0 * value), product);
+            }
+            sum += dot_node(&v[i], &product);
+        }
+        sum
+    }
+}
+
+/// a^T B b of a matrix that is nearly empty, entry by entry. The symmetric part of the Coriolis matrix lives where
+/// the section changes, the skew part of the stiffness where the torque does and at the free end: between equal
+/// neighbours the element's boundary terms cancel.
+#[derive(Debug, Clone)]
+struct SparseForm(Vec<(u32, u32, f64)>);
+
+/// Entries below this share of the matrix' largest entry are rounding of terms that cancel.
+const CANCELLED: f64 = 1e-13;
+
+impl SparseForm {
+    /// The symmetric part of `m` for `with_transpose` = 1/2, the skew part for -1/2.
+    fn of(m: &BlockTridiagonal<f64>, with_transpose: f64) -> Self {
+        let part = half_sum(m, with_transpose);
+        let threshold = CANCELLED * largest(m);
+        let n = m.rows();
+        let mut entries = Vec::new();
+        for row in 0..n {
+            let blocks = [
+                (row.checked_sub(1), &part.lower[row]),
+                (Some(row), &part.diagonal[row]),
+                (Some(row + 1).filter(|&next| next < n), &part.upper[row]),
+            ];
+            for (column, block) in blocks {
+                let Some(column) = column else { continue };
+                for j in 0..6 {
+                    for i in 0..6 {
+                        let value = block[(i, j)];
+                        if value.abs() > threshold {
+                            entries.push(((6 * row + i) as u32, (6 * column + j) as u32, value));
+                        }
+                    }
+                }
+            }
+        }
+        Self(entries)
+    }
+
+    fn value(&self, a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+        let (a, b) = (a.as_flattened(), b.as_flattened());
+        let term = |&(i, j, value): &(u32, u32, f64)| a[i as usize] * value * b[j as usize];
+        // Four sums side by side: one alone would wait for its own additions.
+        let (chunks, rest) = self.0.as_chunks::<4>();
+        let mut sums = [0.0; 4];
+        for chunk in chunks {
+            for (sum, entry) in sums.iter_mut().zip(chunk) {
+                *sum += term(entry);
+            }
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest.iter().map(term).sum::<f64>()
+    }
+}
+
+/// `m / 2 + with_transpose m^T`.
+fn half_sum(m: &BlockTridiagonal<f64>, with_transpose: f64) -> BlockTridiagonal<f64> {
+    BlockTridiagonal::combine(0.5, m, with_transpose, &transpose(m), 0.0, m)
+}
+
+fn largest(m: &BlockTridiagonal<f64>) -> f64 {
+    let blocks = m.lower.iter().chain(&m.diagonal).chain(&m.upper);
+    blocks.flat_map(|block| block.columns.iter().flatten()).fold(0.0_f64, |most, v| most.max(v.abs()))
+}
+
+fn times(block: &Block<f64>, x: &[f64; 6], mut sum: [f64; 6]) -> [f64; 6] {
+    for (column, x) in block.columns.iter().zip(x) {
+        for (sum, entry) in sum.iter_mut().zip(column) {
+            *sum = entry.mul_add(*x, *sum);
+        }
+    }
+    sum
+}
+
+fn dot_node(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+}
+
+fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| dot_node(a, b)).sum()
+}
+
+fn transpose(m: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
+    let n = m.rows();
+    let mut t = BlockTridiagonal::zeros(n);
+    let flip = |block: &Block<f64>| Block::from_fn(|row, column| block[(column, row)]);
+    for i in 0..n {
+        t.diagonal[i] = flip(&m.diagonal[i]);
+        if i + 1 < n {
+            t.upper[i] = flip(&m.lower[i + 1]);
+            t.lower[i + 1] = flip(&m.upper[i]);
+        }
+    }
+    t
+}

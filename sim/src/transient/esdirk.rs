@@ -1,0 +1,193 @@
+//! ESDIRK4(3)6L\[2\]SA, the implicit part of ARK4(3)6L\[2\]SA of Kennedy and Carpenter (2003): order 4, L-stable,
+//! stiffly accurate, first stage explicit, diagonal 1/4.
+
+use super::State;
+use super::energy::Ledger;
+use super::forces::Forces;
+use super::implicit::{StageSolver, flat, flat_mut};
+use crate::linalg::SingularBlock;
+use crate::model::{DynamicSystem, NodalVector};
+
+const STAGES: usize = 6;
+pub(super) const DIAGONAL: f64 = 0.25;
+
+const NODES: [f64; STAGES] = [0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0];
+
+/// Rows of the tableau left of the diagonal.
+const STRICTLY_LOWER: [[f64; STAGES - 1]; STAGES] = [
+    [0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.25, 0.0, 0.0, 0.0, 0.0],
+    [8611.0 / 62500.0, -1743.0 / 31250.0, 0.0, 0.0, 0.0],
+    [5012029.0 / 34652500.0, -654441.0 / 2922500.0, 174375.0 / 388108.0, 0.0, 0.0],
+    [
+        15267082809.0 / 155376265600.0,
+        -71443401.0 / 120774400.0,
+        730878875.0 / 902184768.0,
+        2285395.0 / 8070912.0,
+        0.0,
+    ],
+    [82889.0 / 524892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102672.0, -2260.0 / 8211.0],
+];
+
+/// Weights; the last stage is the step's end.
+const WEIGHTS: [f64; STAGES] =
+    [82889.0 / 524892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102672.0, -2260.0 / 8211.0, DIAGONAL];
+
+/// Stage values of one step; the last stage of a step is the first of the next.
+#[derive(Debug, Clone)]
+pub(super) struct Esdirk {
+    step: f64,
+    pub(super) solver: StageSolver,
+    velocities: [NodalVector; STAGES],
+    accelerations: [NodalVector; STAGES],
+    displacement_base: NodalVector,
+    velocity_base: NodalVector,
+    acceleration_offset: NodalVector,
+    velocity_offset: NodalVector,
+}
+
+impl Esdirk {
+    pub(super) fn new(
+        system: &DynamicSystem,
+        initial: &[[f64; 6]],
+        step: f64,
+        sweeps: u32,
+    ) -> Result<Self, SingularBlock> {
+        let c = 1.0 / (DIAGONAL * step);
+        let zero = vec![[0.0; 6]; initial.len()];
+        Ok(Self {
+            step,
+            solver: StageSolver::new(system, initial, c * c, c, sweeps)?,
+            velocities: std::array::from_fn(|_| zero.clone()),
+            accelerations: std::array::from_fn(|_| zero.clone()),
+            displacement_base: zero.clone(),
+            velocity_base: zero.clone(),
+            acceleration_offset: zero.clone(),
+            velocity_offset: zero,
+        })
+    }
+
+    /// Advances `state` by one step from `time`. `state.first_stage` holds the forces of the step's first stage.
+    pub(super) fn advance(
+        &mut self,
+        system: &DynamicSystem,
+        forces: &Forces,
+        time: f64,
+        state: &mut State,
+        ledger: &mut Ledger,
+    ) {
+        let h = self.step;
+        let c = 1.0 / (DIAGONAL * h);
+        self.velocities[0].copy_from_slice(&state.velocity);
+        self.accelerations[0].copy_from_slice(&state.acceleration);
+        ledger.add(WEIGHTS[0] * h, &state.stage_power);
+        for stage in 1..STAGES {
+            combine(&mut self.displacement_base, &state.displacement, h, stage, &self.velocities);
+            combine(&mut self.velocity_base, &state.velocity, h, stage, &self.accelerations);
+            let (xb, vb) = (flat(&self.displacement_base), flat(&self.velocity_base));
+            let last = flat(&self.accelerations[stage - 1]);
+            let a_hat = flat_mut(&mut self.acceleration_offset);
+            let v_hat = flat_mut(&mut self.velocity_offset);
+            let x = flat_mut(&mut self.solver.displacement);
+            let v = flat_mut(&mut self.solver.velocity);
+            for i in 0..xb.len() {
+                v_hat[i] = -c * xb[i];
+                a_hat[i] = c * (v_hat[i] - vb[i]);
+                // Predictor: the acceleration of the stage before.
+                v[i] = vb[i] + DIAGONAL * h * last[i];
+                x[i] = xb[i] + DIAGONAL * h * v[i];
+            }
+            let stage_time = time + NODES[stage] * h;
+            self.solver.solve(system, forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
+            let v = flat(&self.solver.velocity);
+            for ((a, v), vb) in flat_mut(&mut self.accelerations[stage]).iter_mut().zip(v).zip(vb) {
+                *a = (v - vb) * c;
+            }
+            self.velocities[stage].copy_from_slice(&self.solver.velocity);
+            if WEIGHTS[stage] != 0.0 {
+                let power = ledger.power(
+                    &self.solver.velocity,
+                    &self.solver.displacement,
+                    &self.solver.contact,
+                    forces.unbalance_at(stage_time),
+                );
+                ledger.add(WEIGHTS[stage] * h, &power);
+                state.stage_power = power;
+            }
+        }
+        state.displacement.copy_from_slice(&self.solver.displacement);
+        state.velocity.copy_from_slice(&self.solver.velocity);
+        state.acceleration.copy_from_slice(&self.accelerations[STAGES - 1]);
+    }
+}
+
+/// `out = start + h sum_j a_stage,j rates_j` over the stages before `stage`.
+fn combine(out: &mut NodalVector, start: &NodalVector, h: f64, stage: usize, rates: &[NodalVector; STAGES]) {
+    let c: [f64; STAGES - 1] = STRICTLY_LOWER[stage].map(|a| h * a);
+    let [r0, r1, r2, r3, r4, _] = rates.each_ref().map(|rate| flat(rate));
+    let (out, start) = (flat_mut(out), flat(start));
+    match stage {
+        1 => (0..out.len()).for_each(|i| out[i] = r0[i].mul_add(c[0], start[i])),
+        2 => (0..out.len()).for_each(|i| out[i] = r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i]))),
+        3 => (0..out.len()).for_each(|i| {
+            out[i] = r2[i].mul_add(c[2], r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i])));
+        }),
+        4 => (0..out.len()).for_each(|i| {
+            let s = r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i]));
+            out[i] = r3[i].mul_add(c[3], r2[i].mul_add(c[2], s));
+        }),
+        _ => (0..out.len()).for_each(|i| {
+            let s = r2[i].mul_add(c[2], r0[i].mul_add(c[0], start[i]));
+            out[i] = r4[i].mul_add(c[4], r3[i].mul_add(c[3], s));
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tableau() -> [[f64; STAGES]; STAGES] {
+        let mut a = [[0.0; STAGES]; STAGES];
+        for i in 0..STAGES {
+            a[i][..STAGES - 1].copy_from_slice(&STRICTLY_LOWER[i]);
+            if i > 0 {
+                a[i][i] += DIAGONAL;
+            }
+        }
+        a
+    }
+
+    fn weighted(f: impl Fn(usize) -> f64) -> f64 {
+        (0..STAGES).map(|i| WEIGHTS[i] * f(i)).sum()
+    }
+
+    #[test]
+    fn tableau_satisfies_the_order_conditions_up_to_four() {
+        let (a, c) = (tableau(), NODES);
+        let row = |i: usize, f: &dyn Fn(usize) -> f64| (0..STAGES).map(|j| a[i][j] * f(j)).sum::<f64>();
+        for i in 0..STAGES {
+            assert!((row(i, &|_| 1.0) - c[i]).abs() < 1e-14, "row {i}");
+        }
+        // The eight rooted trees of order four or less (Butcher).
+        let conditions = [
+            (weighted(|_| 1.0), 1.0),
+            (weighted(|i| c[i]), 1.0 / 2.0),
+            (weighted(|i| c[i] * c[i]), 1.0 / 3.0),
+            (weighted(|i| row(i, &|j| c[j])), 1.0 / 6.0),
+            (weighted(|i| c[i].powi(3)), 1.0 / 4.0),
+            (weighted(|i| c[i] * row(i, &|j| c[j])), 1.0 / 8.0),
+            (weighted(|i| row(i, &|j| c[j] * c[j])), 1.0 / 12.0),
+            (weighted(|i| row(i, &|j| row(j, &|k| c[k]))), 1.0 / 24.0),
+        ];
+        for (tree, (got, wanted)) in conditions.into_iter().enumerate() {
+            assert!((got - wanted).abs() < 1e-14, "tree {tree}: {got} against {wanted}");
+        }
+    }
+
+    #[test]
+    fn last_stage_is_the_step_so_that_stiff_modes_vanish() {
+        // Stiffly accurate with an invertible lower part: L-stable (Hairer and Wanner II, IV.3).
+        assert_eq!(tableau()[STAGES - 1], WEIGHTS);
+    }
+}

@@ -1,0 +1,433 @@
+//! The run in time: equation (37) from the equilibrium at rest, unbalance on from t = 0.
+//!
+//! Tension, torque and the mud's coefficients are frozen at the equilibrium (physics.md section 8). A run can be
+//! watched, cancelled and suspended through a [`Control`]; a suspended run goes on from its [`Checkpoint`] to the
+//! same bits as one that was never interrupted.
+
+mod checkpoint;
+mod energy;
+mod esdirk;
+mod forces;
+mod generalized_alpha;
+mod implicit;
+mod records;
+mod rk4;
+mod stability;
+
+pub use checkpoint::{Checkpoint, CheckpointError};
+pub use energy::EnergyRow;
+pub use implicit::SweepMonitor;
+pub use records::{ContactStatistics, NodeHistory};
+
+use serde::{Deserialize, Serialize};
+
+use crate::control::Control;
+use crate::linalg::SingularBlock;
+use crate::model::{DynamicSystem, Model, NodalVector};
+use crate::scenario::{Integrator, TimeStepping};
+use crate::statics::Equilibrium;
+use energy::{Ledger, Work};
+use esdirk::Esdirk;
+use forces::{ContactForces, Forces, NodeContact, add_contact};
+use generalized_alpha::GeneralizedAlpha;
+use rk4::Rk4;
+
+/// Rows of the energy ledger per second of simulated time.
+const LEDGER_RATE_HZ: f64 = 10.0;
+
+/// A run under way.
+pub struct Transient<'m> {
+    model: &'m Model,
+    system: DynamicSystem,
+    forces: Forces,
+    stepper: Stepper,
+    ledger: Ledger,
+    /// Samples of a whole run.
+    samples: u64,
+    interval: f64,
+    steps_per_sample: u64,
+    ledger_every: u64,
+    subdivisions: u32,
+    progress: Progress,
+}
+
+/// Everything that changes during a run and is not scratch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Progress {
+    sample: u64,
+    state: State,
+    work: Work,
+    monitor: SweepMonitor,
+    rejected: u64,
+    steps: u64,
+    histories: Vec<NodeHistory>,
+    contacts: Vec<ContactStatistics>,
+    energy: Vec<EnergyRow>,
+}
+
+/// Motion at a step's end, with what the methods carry from step to step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct State {
+    displacement: NodalVector,
+    velocity: NodalVector,
+    acceleration: NodalVector,
+    /// Powers at the step's end (the first stage of the next ESDIRK step).
+    stage_power: Work,
+    /// Step of the adaptive method \[s\].
+    adaptive_step: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Stepper {
+    GeneralizedAlpha(Box<GeneralizedAlpha>),
+    Esdirk(Box<Esdirk>),
+    Rk4(Box<Rk4>),
+}
+
+/// What a finished run leaves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Records {
+    /// Recording rate \[Hz\].
+    pub rate_hz: f64,
+    /// Histories of the recorded nodes.
+    pub histories: Vec<NodeHistory>,
+    /// Contact statistics of every node.
+    pub contacts: Vec<ContactStatistics>,
+    /// The energy ledger, ten rows a second and one at the end.
+    pub energy: Vec<EnergyRow>,
+    /// What the run took.
+    pub effort: TransientEffort,
+}
+
+/// What a run took.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TransientEffort {
+    /// Integrator and step as used.
+    pub stepping: TimeStepping,
+    /// Parts into which each step was cut so that the contact sweeps are stable.
+    pub subdivisions: u32,
+    /// Steps made.
+    pub steps: u64,
+    /// Steps rejected by the adaptive method.
+    pub rejected_steps: u64,
+    /// Contact sweeps and how far from standing still they ended.
+    pub sweeps: SweepMonitor,
+}
+
+/// How a call to [`Transient::run`] ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// The run is complete.
+    Finished(Box<Records>),
+    /// It was cancelled.
+    Cancelled,
+    /// It was suspended, and goes on from here.
+    Suspended(Box<Checkpoint>),
+}
+
+/// Why a run ended without a result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TransientError {
+    /// A matrix cannot be factored.
+    #[error("the matrix of a step is singular at node {}", .0.row + 1)]
+    Singular(#[from] SingularBlock),
+    /// A fixed step beyond the explicit method's stability limit.
+    #[error("a step of {step:e} s is beyond the stability limit of rk4 for this mesh, {limit:.3e} s")]
+    StepBeyondStability {
+        /// The step asked for \[s\].
+        step: f64,
+        /// The largest stable one \[s\].
+        limit: f64,
+    },
+    /// The motion left every bound.
+    #[error("diverged at t = {time:.6} s, node {node} (depth {measured_depth:.2} m): {reason}")]
+    Diverged {
+        /// Simulated time \[s\] up to which the state was finite and inside the hole.
+        time: f64,
+        /// Node, from 1.
+        node: usize,
+        /// Its measured depth \[m\].
+        measured_depth: f64,
+        /// What was seen.
+        reason: DivergenceReason,
+    },
+}
+
+/// How a divergence showed itself.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum DivergenceReason {
+    /// A value was not finite.
+    #[error("a displacement or velocity is not finite")]
+    NotFinite,
+    /// A node was pushed far into the rock.
+    #[error("the string is {radius:.3} m off the axis of a hole of radius {hole_radius:.3} m")]
+    OutsideHole {
+        /// Distance from the axis \[m\].
+        radius: f64,
+        /// Radius of the hole \[m\].
+        hole_radius: f64,
+    },
+    /// The adaptive step shrank to nothing.
+    #[error("the adaptive step collapsed")]
+    StepCollapsed,
+}
+
+impl<'m> Transient<'m> {
+    /// A run of `model` from its equilibrium, as its scenario says.
+    ///
+    /// # Errors
+    /// When a matrix is singular or an explicit step is beyond its stability limit.
+    pub fn new(model: &'m Model, equilibrium: &Equilibrium) -> Result<Self, TransientError> {
+        let scenario = &model.scenario;
+        let system = model.dynamic_system(equilibrium);
+        let forces = Forces::new(model, &system);
+        let initial = &equilibrium.displacement;
+        let ledger = Ledger::new(model, &system, initial);
+        let stepping = scenario.accuracy.time_stepping();
+        let interval = 1.0 / scenario.recording.rate_hz;
+        let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
+        let subdivisions = stability::subdivisions(model, &system, stepping.integrator, stepping.step);
+        let steps_per_sample =
+            (interval / stepping.step * (1.0 - 1e-9)).ceil().max(1.0) as u64 * u64::from(subdivisions);
+        let step = interval / steps_per_sample as f64;
+        let hole_radius = 0.5 * scenario.well.hole_diameter;
+        let stepper = match stepping.integrator {
+            Integrator::GeneralizedAlpha => Stepper::GeneralizedAlpha(Box::new(GeneralizedAlpha::new(
+                &system,
+                initial,
+                step,
+                stepping.contact_sweeps,
+            )?)),
+            Integrator::Esdirk4 => {
+                Stepper::Esdirk(Box::new(Esdirk::new(&system, initial, step, stepping.contact_sweeps)?))
+            }
+            Integrator::Rk4 => {
+                let limit = stability::rk4_limit(model, &system)?;
+                if stepping.tolerance.is_none() && stepping.step > limit {
+                    return Err(TransientError::StepBeyondStability { step: stepping.step, limit });
+                }
+                let largest = stepping.step.min(0.95 * limit);
+                let largest = if stepping.tolerance.is_none() { stepping.step } else { largest };
+                Stepper::Rk4(Box::new(Rk4::new(&system, largest, stepping.tolerance, hole_radius)?))
+            }
+        };
+        let mut transient = Self {
+            progress: Progress {
+                sample: 0,
+                state: State::at_rest(initial, stepping.step),
+                work: Work::default(),
+                monitor: SweepMonitor::default(),
+                rejected: 0,
+                steps: 0,
+                histories: recorded_nodes(model)
+                    .into_iter()
+                    .map(|node| NodeHistory::with_capacity(node, samples as usize))
+                    .collect(),
+                contacts: vec![ContactStatistics::default(); model.node_count()],
+                energy: Vec::new(),
+            },
+            model,
+            system,
+            forces,
+            stepper,
+            ledger,
+            samples,
+            interval,
+            steps_per_sample,
+            ledger_every: (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64,
+            subdivisions,
+        };
+        transient.start()?;
+        Ok(transient)
+    }
+
+    /// A run that goes on from a checkpoint of the same scenario.
+    ///
+    /// # Errors
+    /// When the checkpoint belongs to another scenario or model version, or as [`Transient::new`].
+    pub fn resume(
+        model: &'m Model,
+        equilibrium: &Equilibrium,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, CheckpointError> {
+        let progress = checkpoint.progress_for(&model.scenario)?;
+        let mut transient = Self::new(model, equilibrium)?;
+        transient.ledger.set_work(progress.work);
+        transient.progress = progress;
+        Ok(transient)
+    }
+
+    /// Runs to the end of the scenario's duration, or until `control` stops it.
+    ///
+    /// # Errors
+    /// When the motion diverges.
+    pub fn run(mut self, control: &Control) -> Result<Outcome, TransientError> {
+        while self.progress.sample < self.samples {
+            if control.is_cancelled() {
+                return Ok(Outcome::Cancelled);
+            }
+            if control.is_suspended() {
+                self.progress.work = self.ledger.work();
+                return Ok(Outcome::Suspended(Box::new(Checkpoint::new(
+                    &self.model.scenario,
+                    self.progress,
+                ))));
+            }
+            self.record();
+            self.advance()?;
+            control.report(self.time());
+        }
+        let time = self.time();
+        self.book(time);
+        let scenario = &self.model.scenario;
+        let stepping = scenario.accuracy.time_stepping();
+        Ok(Outcome::Finished(Box::new(Records {
+            rate_hz: scenario.recording.rate_hz,
+            histories: self.progress.histories,
+            contacts: self.progress.contacts,
+            energy: self.progress.energy,
+            effort: TransientEffort {
+                stepping,
+                subdivisions: self.subdivisions,
+                steps: self.progress.steps,
+                rejected_steps: self.progress.rejected,
+                sweeps: self.progress.monitor,
+            },
+        })))
+    }
+
+    /// Simulated time reached \[s\]: a count times an interval, never a sum.
+    fn time(&self) -> f64 {
+        self.progress.sample as f64 * self.interval
+    }
+
+    /// Acceleration and powers at t = 0, with the dynamic friction law: most of the static friction vanishes there.
+    fn start(&mut self) -> Result<(), TransientError> {
+        let state = &mut self.progress.state;
+        let n = state.displacement.len();
+        let mut right = vec![[0.0; 6]; n];
+        let mut linear = vec![[0.0; 6]; n];
+        let mut contact: ContactForces = vec![NodeContact::default(); n];
+        self.forces.external_into(0.0, &mut right);
+        self.forces.contact_into(&state.displacement, &state.velocity, &mut contact);
+        add_contact(&mut right, &contact);
+        self.system.stiffness.multiply_into(&state.displacement, &mut linear);
+        for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
+            for dof in 0..6 {
+                right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
+            }
+        }
+        rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
+        state.acceleration = right;
+        state.stage_power =
+            self.ledger.power(&state.velocity, &state.displacement, &contact, self.forces.unbalance_at(0.0));
+        for ((statistics, x), contact) in
+            self.progress.contacts.iter_mut().zip(&state.displacement).zip(&contact)
+        {
+            statistics.observe(x, contact, 0.0);
+        }
+        Ok(())
+    }
+
+    fn record(&mut self) {
+        for history in &mut self.progress.histories {
+            history.push(&self.progress.state);
+        }
+        if self.progress.sample.is_multiple_of(self.ledger_every) {
+            let time = self.time();
+            self.book(time);
+        }
+    }
+
+    fn book(&mut self, time: f64) {
+        let state = &self.progress.state;
+        self.progress.energy.push(self.ledger.row(time, &state.displacement, &state.velocity));
+    }
+
+    /// Advances by one recording interval.
+    fn advance(&mut self) -> Result<(), TransientError> {
+        let start = self.time();
+        let step = self.interval / self.steps_per_sample as f64;
+        let Self { system, forces, stepper, ledger, progress, .. } = self;
+        let state = &mut progress.state;
+        match stepper {
+            Stepper::GeneralizedAlpha(method) => {
+                for i in 0..self.steps_per_sample {
+                    method.advance(system, forces, start + i as f64 * step, state, ledger);
+                    observe(&mut progress.contacts, state, &method.solver.contact, step);
+                }
+                progress.monitor.merge(&mut method.solver.monitor);
+                progress.steps += self.steps_per_sample;
+            }
+            Stepper::Esdirk(method) => {
+                for i in 0..self.steps_per_sample {
+                    method.advance(system, forces, start + i as f64 * step, state, ledger);
+                    observe(&mut progress.contacts, state, &method.solver.contact, step);
+                }
+                progress.monitor.merge(&mut method.solver.monitor);
+                progress.steps += self.steps_per_sample;
+            }
+            Stepper::Rk4(method) => {
+                let outcome = method.advance(system, forces, start, self.interval, state, ledger);
+                observe(&mut progress.contacts, state, &method.contact, self.interval);
+                progress.steps += std::mem::take(&mut method.steps);
+                progress.rejected += std::mem::take(&mut method.rejected);
+                if outcome.is_err() {
+                    return Err(self.diverged(0, DivergenceReason::StepCollapsed));
+                }
+            }
+        }
+        self.check_bounds()?;
+        self.progress.sample += 1;
+        Ok(())
+    }
+
+    /// Refuses a state that is not finite or outside the hole.
+    fn check_bounds(&self) -> Result<(), TransientError> {
+        let state = &self.progress.state;
+        let hole_radius = 0.5 * self.model.scenario.well.hole_diameter;
+        for (node, (x, v)) in state.displacement.iter().zip(&state.velocity).enumerate() {
+            if !x.iter().chain(v).all(|value| value.is_finite()) {
+                return Err(self.diverged(node, DivergenceReason::NotFinite));
+            }
+            let radius = x[0].hypot(x[1]);
+            if self.model.scenario.effects.contact.is_on() && radius > 2.0 * hole_radius {
+                return Err(self.diverged(node, DivergenceReason::OutsideHole { radius, hole_radius }));
+            }
+        }
+        Ok(())
+    }
+
+    fn diverged(&self, node: usize, reason: DivergenceReason) -> TransientError {
+        TransientError::Diverged {
+            time: self.time(),
+            node: node + 1,
+            measured_depth: self.model.mesh.nodes[node].measured_depth,
+            reason,
+        }
+    }
+}
+
+impl State {
+    fn at_rest(displacement: &NodalVector, adaptive_step: f64) -> Self {
+        let zero = vec![[0.0; 6]; displacement.len()];
+        Self {
+            displacement: displacement.clone(),
+            velocity: zero.clone(),
+            acceleration: zero,
+            stage_power: Work::default(),
+            adaptive_step,
+        }
+    }
+}
+
+/// The nodes whose histories a scenario wants, from 0.
+pub fn recorded_nodes(model: &Model) -> Vec<usize> {
+    model.scenario.recording.nodes.iter().filter_map(|&choice| model.mesh.chosen_node(choice)).collect()
+}
+
+fn observe(statistics: &mut [ContactStatistics], state: &State, contact: &[NodeContact], duration: f64) {
+    for ((statistics, x), contact) in statistics.iter_mut().zip(&state.displacement).zip(contact) {
+        statistics.observe(x, contact, duration);
+    }
+}

@@ -1,0 +1,90 @@
+//! What is kept of a run: histories of chosen nodes, contact statistics of every node.
+
+use serde::{Deserialize, Serialize};
+
+use super::State;
+use super::forces::NodeContact;
+
+/// Motion of one node at the recording rate; sample k is at k / rate. Displacements \[m, rad\] in the node's frame,
+/// counted from the centre line; theta_z is the twist on top of the rotation.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct NodeHistory {
+    /// Node, from 0 at the top.
+    pub node: usize,
+    /// Lateral displacement along e1 \[m\].
+    pub u: Vec<f64>,
+    /// Lateral displacement along e2 \[m\].
+    pub v: Vec<f64>,
+    /// Axial displacement, downhole \[m\].
+    pub w: Vec<f64>,
+    /// Twist \[rad\].
+    pub theta_z: Vec<f64>,
+    /// Rate of u \[m/s\].
+    pub u_rate: Vec<f64>,
+    /// Rate of v \[m/s\].
+    pub v_rate: Vec<f64>,
+    /// Rate of w \[m/s\].
+    pub w_rate: Vec<f64>,
+    /// Rate of the twist \[rad/s\].
+    pub theta_z_rate: Vec<f64>,
+}
+
+impl NodeHistory {
+    pub(super) fn with_capacity(node: usize, samples: usize) -> Self {
+        let series = || Vec::with_capacity(samples);
+        Self {
+            node,
+            u: series(),
+            v: series(),
+            w: series(),
+            theta_z: series(),
+            u_rate: series(),
+            v_rate: series(),
+            w_rate: series(),
+            theta_z_rate: series(),
+        }
+    }
+
+    pub(super) fn push(&mut self, state: &State) {
+        let (x, v) = (&state.displacement[self.node], &state.velocity[self.node]);
+        self.u.push(x[0]);
+        self.v.push(x[1]);
+        self.w.push(x[2]);
+        self.theta_z.push(x[5]);
+        self.u_rate.push(v[0]);
+        self.v_rate.push(v[1]);
+        self.w_rate.push(v[2]);
+        self.theta_z_rate.push(v[5]);
+    }
+}
+
+/// What the wall did to one node over the whole run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactStatistics {
+    largest_radius_squared: f64,
+    /// Number of contacts; one that exists at the start counts.
+    pub contact_count: u64,
+    /// Time in contact \[s\].
+    pub contact_time: f64,
+    /// Largest normal force \[N\].
+    pub largest_normal_force: f64,
+    in_contact: bool,
+}
+
+impl ContactStatistics {
+    /// Largest distance from the hole's axis \[m\].
+    pub fn largest_radius(&self) -> f64 {
+        self.largest_radius_squared.sqrt()
+    }
+
+    /// Takes in one step of `duration` seconds.
+    pub(super) fn observe(&mut self, x: &[f64; 6], contact: &NodeContact, duration: f64) {
+        self.largest_radius_squared = self.largest_radius_squared.max(x[0] * x[0] + x[1] * x[1]);
+        if contact.touching {
+            self.contact_count += u64::from(!self.in_contact);
+            self.contact_time += duration;
+            self.largest_normal_force = self.largest_normal_force.max(contact.normal_force);
+        }
+        self.in_contact = contact.touching;
+    }
+}

@@ -1,0 +1,91 @@
+//! What limits a step before accuracy does.
+
+use super::esdirk;
+use super::implicit::{flat, flat_mut};
+use super::rk4::mass_factor;
+use crate::linalg::{BlockTridiagonal, SingularBlock};
+use crate::model::{DynamicSystem, Model};
+use crate::scenario::Integrator;
+
+/// End of RK4's stability interval on the imaginary axis, 2 sqrt 2, with a margin for damping.
+const RK4_IMAGINARY_LIMIT: f64 = 2.785;
+
+/// Iterations for the highest frequency; the ratio to the next ones is close to one, but the Rayleigh quotient
+/// converges with its square.
+const POWER_ITERATIONS: usize = 300;
+
+/// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass: two contact sweeps stay stable below one
+/// (performance.md section 3). `step` is that of one implicit solve.
+pub(super) fn sweep_number(model: &Model, system: &DynamicSystem, step: f64) -> f64 {
+    if !model.scenario.effects.contact.is_on() {
+        return 0.0;
+    }
+    let contact = &model.scenario.contact;
+    let mass = smallest_lateral_mass(system);
+    (step * contact.damping + step * step * contact.stiffness) / mass
+}
+
+/// The smallest number of equal parts into which `step` must be cut for two contact sweeps to be stable.
+pub(super) fn subdivisions(model: &Model, system: &DynamicSystem, integrator: Integrator, step: f64) -> u32 {
+    let fraction = match integrator {
+        Integrator::GeneralizedAlpha => 1.0,
+        Integrator::Esdirk4 => esdirk::DIAGONAL,
+        Integrator::Rk4 => return 1,
+    };
+    let mut parts = 1;
+    while sweep_number(model, system, fraction * step / f64::from(parts)) >= 1.0 {
+        parts *= 2;
+    }
+    parts
+}
+
+/// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed.
+pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
+    let mass = mass_factor(system)?;
+    let n = model.node_count();
+    let mut x: Vec<[f64; 6]> =
+        (0..n).map(|i| std::array::from_fn(|dof| if (i + dof) % 2 == 0 { 1.0 } else { -0.9 })).collect();
+    let mut product = vec![[0.0; 6]; n];
+    let mut square = 0.0;
+    for _ in 0..POWER_ITERATIONS {
+        for (x, held) in x.iter_mut().zip(&system.held) {
+            for (value, _) in x.iter_mut().zip(held).filter(|(_, held)| **held) {
+                *value = 0.0;
+            }
+        }
+        system.stiffness.multiply_into(&x, &mut product);
+        if model.scenario.effects.contact.is_on() {
+            for (product, x) in product.iter_mut().zip(&x).skip(1) {
+                product[0] += model.scenario.contact.stiffness * x[0];
+                product[1] += model.scenario.contact.stiffness * x[1];
+            }
+        }
+        let potential = dot(&x, &product);
+        square = potential / mass_norm(&system.mass, &x);
+        mass.solve_in_place(&mut product);
+        let norm = flat(&product).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        for (x, product) in flat_mut(&mut x).iter_mut().zip(flat(&product)) {
+            *x = product / norm;
+        }
+    }
+    Ok(RK4_IMAGINARY_LIMIT / square.sqrt())
+}
+
+/// The smallest mass that a node sets against a lateral push \[kg\]: the sum over its row for a rigid shift.
+fn smallest_lateral_mass(system: &DynamicSystem) -> f64 {
+    let n = system.held.len();
+    let shift = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; n];
+    let mut mass = vec![[0.0; 6]; n];
+    system.mass.multiply_into(&shift, &mut mass);
+    mass.iter().skip(1).map(|row| row[0]).fold(f64::INFINITY, f64::min)
+}
+
+fn mass_norm(mass: &BlockTridiagonal<f64>, x: &[[f64; 6]]) -> f64 {
+    let mut product = vec![[0.0; 6]; x.len()];
+    mass.multiply_into(x, &mut product);
+    dot(x, &product)
+}
+
+fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+    flat(a).iter().zip(flat(b)).map(|(a, b)| a * b).sum()
+}

@@ -1,1 +1,24 @@
-//! drillsweep store.
+//! What is asked, what must be computed, what came of it, and where the arrays lie.
+//!
+//! The only crate that knows SQL and blobs. It knows nothing of drillstrings: a work item is a 32-byte key, the
+//! text of a scenario, a state. Every write happens in one statement or one immediate transaction, and every
+//! write of a worker carries the attempt that it was given, so that a late worker changes nothing.
+
+mod blob;
+mod connection;
+mod error;
+mod queue;
+mod sweep;
+mod table;
+mod worker;
+
+pub use blob::{BlobId, BlobStore};
+pub use connection::{Role, Store, StoreConfig};
+pub use error::{Result, StoreError};
+pub use queue::{Claim, FailureClass, Lease, NewArtifact, QueueDepths, Renewal};
+pub use sweep::{
+    Artifact, NewPoint, NewSweep, PointRecord, StateCounts, SubmitOutcome, SweepRecord, TableRecord, WorkKey,
+    WorkState,
+};
+pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};
+pub use worker::WorkerRecord;

@@ -1,0 +1,75 @@
+//! Arrays, by the hash of their bytes.
+
+use std::path::Path;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use bytes::Bytes;
+use object_store::local::LocalFileSystem;
+use object_store::path::Path as ObjectPath;
+use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
+
+use crate::error::{Result, StoreError};
+
+/// A blob's name: the BLAKE3 hash of its bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BlobId(blake3::Hash);
+
+/// Content-addressed objects in a local directory. A blob is written before the row that names it, and writing
+/// the same bytes again changes nothing.
+#[derive(Debug, Clone)]
+pub struct BlobStore {
+    objects: Arc<dyn ObjectStore>,
+}
+
+impl BlobStore {
+    pub(crate) fn open(directory: &Path) -> Result<Self> {
+        std::fs::create_dir_all(directory)
+            .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
+        let objects = LocalFileSystem::new_with_prefix(directory)?.with_fsync(true);
+        Ok(Self { objects: Arc::new(objects) })
+    }
+
+    /// Writes a blob, durably, unless it is there.
+    ///
+    /// # Errors
+    /// When the object store fails.
+    pub async fn put(&self, bytes: Vec<u8>) -> Result<BlobId> {
+        let id = BlobId(blake3::hash(&bytes));
+        let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
+        match self.objects.put_opts(&id.path(), PutPayload::from(bytes), options).await {
+            Ok(_) | Err(object_store::Error::AlreadyExists { .. }) => Ok(id),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Reads a whole blob.
+    ///
+    /// # Errors
+    /// When it is not there, or the object store fails.
+    pub async fn get(&self, id: BlobId) -> Result<Bytes> {
+        Ok(self.objects.get(&id.path()).await?.bytes().await?)
+    }
+}
+
+impl BlobId {
+    /// Two levels of folders keep directories small.
+    fn path(&self) -> ObjectPath {
+        let hex = self.0.to_hex();
+        ObjectPath::from(format!("{}/{}/{hex}", &hex[..2], &hex[2..4]))
+    }
+}
+
+impl std::fmt::Display for BlobId {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.0.to_hex())
+    }
+}
+
+impl FromStr for BlobId {
+    type Err = StoreError;
+
+    fn from_str(text: &str) -> Result<Self> {
+        blake3::Hash::from_hex(text).map(BlobId).map_err(|_| StoreError::Corrupt(format!("blob id {text:?}")))
+    }
+}

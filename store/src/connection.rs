@@ -1,0 +1,113 @@
+//! Opening the store.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use sqlx::sqlite::{
+    SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
+};
+use sqlx::{Sqlite, Transaction};
+
+use crate::blob::BlobStore;
+use crate::error::{Result, StoreError};
+
+/// How long a writer waits for another one.
+const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// Bytes to which the write-ahead log is cut back.
+const JOURNAL_SIZE_LIMIT: &str = "67108864";
+
+/// Where the store lies and who opens it.
+#[derive(Debug, Clone)]
+pub struct StoreConfig {
+    /// The SQLite file; it is made if it does not exist.
+    pub database_path: PathBuf,
+    /// The directory of the object store; likewise.
+    pub blob_directory: PathBuf,
+    /// Who opens it.
+    pub role: Role,
+    /// Added to the database's clock \[ms\]: zero but in tests of what time does.
+    pub clock_offset_ms: i64,
+}
+
+/// Who opens the store; it decides how durable a commit is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// What a client was told must survive a power cut.
+    Server,
+    /// A lost claim or result is only computed again.
+    Worker,
+}
+
+/// The queue, the index of results and the object store. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Store {
+    pub(crate) pool: SqlitePool,
+    pub(crate) clock_offset_ms: i64,
+    blobs: BlobStore,
+}
+
+/// Milliseconds since the epoch by the database's clock; its one parameter is the offset.
+macro_rules! now {
+    () => {
+        "(CAST((julianday('now') - 2440587.5) * 86400000.0 AS INTEGER) + ?1)"
+    };
+}
+pub(crate) use now;
+
+impl Store {
+    /// Opens the store and brings its schema up to date. Any number of processes may do so at once.
+    ///
+    /// # Errors
+    /// When a directory cannot be made, or the database cannot be opened or migrated.
+    pub async fn open(config: &StoreConfig) -> Result<Self> {
+        if let Some(directory) = config.database_path.parent().filter(|path| !path.as_os_str().is_empty()) {
+            std::fs::create_dir_all(directory)
+                .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
+        }
+        let options = SqliteConnectOptions::new()
+            .filename(&config.database_path)
+            .create_if_missing(true)
+            .journal_mode(SqliteJournalMode::Wal)
+            .busy_timeout(BUSY_TIMEOUT)
+            .foreign_keys(true)
+            .synchronous(match config.role {
+                Role::Server => SqliteSynchronous::Full,
+                Role::Worker => SqliteSynchronous::Normal,
+            })
+            .pragma("journal_size_limit", JOURNAL_SIZE_LIMIT);
+        let connections = match config.role {
+            Role::Server => 4,
+            Role::Worker => 2,
+        };
+        let pool = SqlitePoolOptions::new().max_connections(connections).connect_with(options).await?;
+        sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
+        let blobs = BlobStore::open(&config.blob_directory)?;
+        Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, blobs })
+    }
+
+    /// The object store.
+    pub fn blobs(&self) -> &BlobStore {
+        &self.blobs
+    }
+
+    /// Closes all connections; the write-ahead log is folded in.
+    pub async fn close(&self) {
+        self.pool.close().await;
+    }
+
+    /// A transaction that takes the write lock at once: a deferred one fails with "database is locked" however
+    /// long the busy timeout is.
+    pub(crate) async fn write(&self) -> Result<Transaction<'static, Sqlite>> {
+        Ok(self.pool.begin_with("BEGIN IMMEDIATE").await?)
+    }
+
+    /// Milliseconds since the epoch by the database's clock.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn now_ms(&self) -> Result<i64> {
+        let query = concat!("SELECT ", now!());
+        Ok(sqlx::query_scalar(query).bind(self.clock_offset_ms).fetch_one(&self.pool).await?)
+    }
+}

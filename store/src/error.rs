@@ -1,0 +1,54 @@
+//! What can go wrong in the store.
+
+use crate::table::TableError;
+
+/// The store's results.
+pub type Result<T> = std::result::Result<T, StoreError>;
+
+/// What can go wrong in the store.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The database failed or is busy beyond its patience.
+    #[error("database: {0}")]
+    Database(#[from] sqlx::Error),
+    /// The schema could not be brought up to date.
+    #[error("database schema: {0}")]
+    Migration(#[from] sqlx::migrate::MigrateError),
+    /// The object store failed.
+    #[error("object store: {0}")]
+    Blob(#[from] object_store::Error),
+    /// A directory could not be made or read.
+    #[error("{path}: {source}")]
+    Directory {
+        /// The directory.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A stored table cannot be read.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A stored value is not what this program writes.
+    #[error("the database holds an unexpected value: {0}")]
+    Corrupt(String),
+    /// An idempotency key was used for another request.
+    #[error("the idempotency key was used for another request before")]
+    IdempotencyConflict,
+}
+
+impl StoreError {
+    /// True where the same call may succeed a moment later: the database was busy.
+    pub fn is_busy(&self) -> bool {
+        match self {
+            StoreError::Database(sqlx::Error::Database(error)) => {
+                // SQLITE_BUSY and SQLITE_LOCKED with their extended codes.
+                error
+                    .code()
+                    .and_then(|code| code.parse::<i64>().ok())
+                    .is_some_and(|code| matches!(code & 0xff, 5 | 6))
+            }
+            StoreError::Database(sqlx::Error::PoolTimedOut) => true,
+            _ => false,
+        }
+    }
+}

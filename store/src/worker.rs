@@ -1,0 +1,73 @@
+//! The register of workers.
+
+use sqlx::FromRow;
+
+use crate::connection::{Store, now};
+use crate::error::Result;
+
+/// A worker process as it registered itself.
+#[derive(Debug, Clone, PartialEq, FromRow)]
+pub struct WorkerRecord {
+    /// Identifier, made by the worker.
+    pub id: String,
+    /// Host it runs on.
+    pub host: String,
+    /// Its process number there.
+    pub process: i64,
+    /// Version of its program.
+    pub version: String,
+    /// Version of its numbers.
+    pub physics_version: i64,
+    /// When it started \[ms since the epoch\].
+    pub started: i64,
+    /// When it was last heard of \[ms since the epoch\].
+    pub last_seen: i64,
+}
+
+impl Store {
+    /// Registers a worker, or renews its entry. The times of `worker` are taken from the database's clock.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn register_worker(&self, worker: &WorkerRecord) -> Result<()> {
+        let query = concat!(
+            "INSERT INTO worker (id, host, process, version, physics_version, started, last_seen) VALUES (?2, ?3, ?4, ?5, ?6, ",
+            now!(),
+            ", ",
+            now!(),
+            ") ON CONFLICT (id) DO UPDATE SET last_seen = excluded.last_seen"
+        );
+        sqlx::query(query)
+            .bind(self.clock_offset_ms)
+            .bind(&worker.id)
+            .bind(&worker.host)
+            .bind(worker.process)
+            .bind(&worker.version)
+            .bind(worker.physics_version)
+            .execute(&self.pool)
+            .await?;
+        Ok(())
+    }
+
+    /// Removes a worker that ends.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn remove_worker(&self, id: &str) -> Result<()> {
+        sqlx::query("DELETE FROM worker WHERE id = ?1").bind(id).execute(&self.pool).await?;
+        Ok(())
+    }
+
+    /// Workers heard of within the last `within_ms` milliseconds, oldest first.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
+        let query = concat!(
+            "SELECT id, host, process, version, physics_version, started, last_seen FROM worker WHERE last_seen > ",
+            now!(),
+            " - ?2 ORDER BY started, id"
+        );
+        Ok(sqlx::query_as(query).bind(self.clock_offset_ms).bind(within_ms).fetch_all(&self.pool).await?)
+    }
+}

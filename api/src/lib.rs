@@ -1,1 +1,27 @@
-//! drillsweep api.
+//! The contract of the service: what is asked for, what is answered, and how it is derived from results.
+//!
+//! A [`SweepRequest`] is [expanded](expand) into the points to compute; what comes of them is shown as a
+//! [`Sweep`], as [points](point) and as [tables](table::Table); what goes wrong as [problems](problem). The
+//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
+//!
+//! Everything here is pure: no clock, files, SQL or HTTP.
+
+pub mod axis;
+pub mod point;
+pub mod problem;
+pub mod request;
+pub mod service;
+pub mod sweep;
+pub mod table;
+pub mod units;
+pub mod view;
+
+pub use axis::{Axis, Scale};
+pub use point::{FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow, PointState};
+pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
+pub use request::{AxisName, Design, RunRequest, SweepRequest};
+pub use service::{
+    Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
+};
+pub use sweep::{DryRun, PlannedPoint, PointCounts, Sweep, SweepLinks, SweepList, SweepState};
+pub use table::{Column, Table};

@@ -1,0 +1,135 @@
+//! One point of a sweep as the service shows it.
+
+use drillsweep_sim::scenario::Scenario;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+/// Where a point stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PointState {
+    /// Waiting for a worker.
+    Queued,
+    /// A worker simulates it.
+    Running,
+    /// Its result is there.
+    Succeeded,
+    /// It ended without a result; `error` says why. Final unless the sweep is retried.
+    Failed,
+    /// It was cancelled before it had a result.
+    Cancelled,
+}
+
+impl PointState {
+    /// The name on the wire.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            PointState::Queued => "queued",
+            PointState::Running => "running",
+            PointState::Succeeded => "succeeded",
+            PointState::Failed => "failed",
+            PointState::Cancelled => "cancelled",
+        }
+    }
+}
+
+impl std::fmt::Display for PointState {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.as_str())
+    }
+}
+
+/// One row of a sweep's list of points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PointRow {
+    /// Number of the point in its sweep, from 1, the first axis varying slowest.
+    pub ordinal: u32,
+    /// Where the point stands.
+    pub state: PointState,
+    /// The swept parameters of this point, by axis name, then the other axes' values of the scenario.
+    pub parameters: IndexMap<String, f64>,
+    /// Simulated time over duration, 0 to 1.
+    pub progress: f64,
+    /// How often a worker has started it.
+    pub attempts: u32,
+    /// Why it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<PointError>,
+    /// Where to read more.
+    pub links: PointLinks,
+}
+
+/// A page of points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PointList {
+    /// The points, by ordinal.
+    pub points: Vec<PointRow>,
+    /// Cursor of the next page; absent on the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+}
+
+/// Everything about one point but its tables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PointDetail {
+    /// The point as in the list.
+    #[serde(flatten)]
+    pub row: PointRow,
+    /// Content hash of scenario and physics version: equal keys, equal results.
+    pub key: String,
+    /// The scenario as simulated: preset, changes and axes applied.
+    pub scenario: Box<Scenario>,
+    /// The scalar results; the same fields make up the point's row in the sweep's table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub summary: Option<Map<String, Value>>,
+    /// Which code computed it, where, and at what cost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<Map<String, Value>>,
+    /// Names of the tables that the run produced.
+    #[serde(default)]
+    pub tables: Vec<String>,
+}
+
+/// Why a point has failed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PointError {
+    /// The class of failure.
+    pub class: FailureClass,
+    /// What happened, in words.
+    pub reason: String,
+    /// Simulated time at which it happened \[s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+    /// Node at which it happened, 1 at the top.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<u32>,
+    /// Anything else that the worker noted, such as the last finite state.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub details: Map<String, Value>,
+}
+
+/// What kind of failure ended a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FailureClass {
+    /// The simulation itself: it diverged, or there is no equilibrium. Would happen again.
+    Physical,
+    /// Disk, database or object store, after all retries.
+    Infrastructure,
+    /// Workers died on it too often.
+    Crash,
+    /// It ran longer than allowed.
+    Timeout,
+}
+
+/// Where to read more about a point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PointLinks {
+    /// The point itself.
+    #[serde(rename = "self")]
+    pub this: String,
+    /// Its sweep.
+    pub sweep: String,
+}

@@ -1,0 +1,247 @@
+//! Errors on the wire: RFC 9457 problem details, all of a request's problems at once.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use crate::point::PointState;
+
+/// The media type of [`ProblemDetails`].
+pub const PROBLEM_MEDIA_TYPE: &str = "application/problem+json";
+
+/// The kinds of problem. Each has a stable type URI, a title and an HTTP status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ProblemKind {
+    /// The body is not JSON, or not of the documented form.
+    MalformedBody,
+    /// The body is well-formed but what it asks for cannot be simulated.
+    InvalidRequest,
+    /// A path, query or header parameter is missing, unknown or out of range.
+    InvalidParameter,
+    /// The body's media type is not accepted.
+    UnsupportedMediaType,
+    /// None of the media types in `Accept` can be served.
+    NotAcceptable,
+    /// The body is larger than the limit.
+    BodyTooLarge,
+    /// No such route.
+    NoSuchRoute,
+    /// The route exists, the method does not.
+    MethodNotAllowed,
+    /// No such sweep, point or preset.
+    NotFound,
+    /// The node's motion was not recorded.
+    NodeNotRecorded,
+    /// The point has no result, or not yet.
+    NoResult,
+    /// The run did not produce this table.
+    NoSuchTable,
+    /// The sweep's state does not allow the operation.
+    Conflict,
+    /// The idempotency key was used with another request.
+    IdempotencyKeyReused,
+    /// The service cannot answer just now; try again.
+    Unavailable,
+    /// The service failed; its log has the reason under the request id.
+    Internal,
+}
+
+impl ProblemKind {
+    /// Every kind, for documentation.
+    pub const ALL: &'static [ProblemKind] = &[
+        ProblemKind::MalformedBody,
+        ProblemKind::InvalidRequest,
+        ProblemKind::InvalidParameter,
+        ProblemKind::UnsupportedMediaType,
+        ProblemKind::NotAcceptable,
+        ProblemKind::BodyTooLarge,
+        ProblemKind::NoSuchRoute,
+        ProblemKind::MethodNotAllowed,
+        ProblemKind::NotFound,
+        ProblemKind::NodeNotRecorded,
+        ProblemKind::NoResult,
+        ProblemKind::NoSuchTable,
+        ProblemKind::Conflict,
+        ProblemKind::IdempotencyKeyReused,
+        ProblemKind::Unavailable,
+        ProblemKind::Internal,
+    ];
+
+    /// The last part of the type URI.
+    pub fn slug(self) -> &'static str {
+        self.describe().0
+    }
+
+    /// The type URI: stable, meant for programs to compare.
+    pub fn uri(self) -> String {
+        format!("urn:drillsweep:problem:{}", self.slug())
+    }
+
+    /// A short text for people.
+    pub fn title(self) -> &'static str {
+        self.describe().1
+    }
+
+    /// The HTTP status.
+    pub fn status(self) -> u16 {
+        self.describe().2
+    }
+
+    fn describe(self) -> (&'static str, &'static str, u16) {
+        match self {
+            ProblemKind::MalformedBody => ("malformed-body", "The body cannot be read", 400),
+            ProblemKind::InvalidRequest => ("invalid-request", "The request cannot be simulated", 422),
+            ProblemKind::InvalidParameter => ("invalid-parameter", "A parameter is not valid", 400),
+            ProblemKind::UnsupportedMediaType => {
+                ("unsupported-media-type", "The body's media type is not accepted", 415)
+            }
+            ProblemKind::NotAcceptable => ("not-acceptable", "No acceptable format", 406),
+            ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
+            ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
+            ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),
+            ProblemKind::NotFound => ("not-found", "Not found", 404),
+            ProblemKind::NodeNotRecorded => ("node-not-recorded", "The node was not recorded", 422),
+            ProblemKind::NoResult => ("no-result", "The point has no result", 409),
+            ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
+            ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
+            ProblemKind::IdempotencyKeyReused => {
+                ("idempotency-key-reused", "The idempotency key belongs to another request", 422)
+            }
+            ProblemKind::Unavailable => ("unavailable", "Not available just now", 503),
+            ProblemKind::Internal => ("internal", "Internal error", 500),
+        }
+    }
+}
+
+/// A problem document (RFC 9457), served as `application/problem+json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProblemDetails {
+    /// Stable URI of the kind of problem, for programs to compare.
+    #[serde(rename = "type")]
+    #[schema(example = "urn:drillsweep:problem:invalid-request")]
+    pub type_uri: String,
+    /// The kind of problem in words.
+    pub title: String,
+    /// The HTTP status.
+    pub status: u16,
+    /// What is wrong this time.
+    pub detail: String,
+    /// Identifies this occurrence; the same id stands in the service's log.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+    /// Every single problem found, at once.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<FieldProblem>,
+    /// The state of the point, when the problem is that it has no result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<PointState>,
+}
+
+/// One thing that is wrong with a request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FieldProblem {
+    /// JSON Pointer (RFC 6901) into the request's body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "/axes/flow_rate/values/2")]
+    pub pointer: Option<String>,
+    /// Name of the path, query or header parameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parameter: Option<String>,
+    /// What was given; absent when nothing was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub got: Option<Value>,
+    /// What is wrong and what would be valid.
+    pub detail: String,
+}
+
+impl ProblemDetails {
+    /// A problem of one kind, without single errors.
+    pub fn new(kind: ProblemKind, detail: impl Into<String>) -> Self {
+        ProblemDetails {
+            type_uri: kind.uri(),
+            title: kind.title().to_owned(),
+            status: kind.status(),
+            detail: detail.into(),
+            instance: None,
+            errors: Vec::new(),
+            state: None,
+        }
+    }
+
+    /// A body that cannot be simulated, with everything that was found wrong with it.
+    pub fn invalid_request(errors: Vec<FieldProblem>) -> Self {
+        let detail = match errors.as_slice() {
+            [only] => match &only.pointer {
+                Some(pointer) => format!("{pointer}: {}", only.detail),
+                None => only.detail.clone(),
+            },
+            all => format!("{} problems were found", all.len()),
+        };
+        ProblemDetails { errors, ..ProblemDetails::new(ProblemKind::InvalidRequest, detail) }
+    }
+
+    /// A path, query or header parameter that is not valid.
+    pub fn invalid_parameter(name: &str, got: Option<&str>, detail: impl Into<String>) -> Self {
+        let detail = detail.into();
+        let error = FieldProblem {
+            pointer: None,
+            parameter: Some(name.to_owned()),
+            got: got.map(Into::into),
+            detail: detail.clone(),
+        };
+        let detail = format!("{name}: {detail}");
+        ProblemDetails { errors: vec![error], ..ProblemDetails::new(ProblemKind::InvalidParameter, detail) }
+    }
+}
+
+impl std::fmt::Display for ProblemDetails {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{}: {}", self.title, self.detail)?;
+        if self.errors.len() > 1 {
+            for error in &self.errors {
+                write!(formatter, "\n  {error}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for ProblemDetails {}
+
+impl std::fmt::Display for FieldProblem {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(place) = self.pointer.as_ref().or(self.parameter.as_ref()) {
+            write!(formatter, "{place}: ")?;
+        }
+        formatter.write_str(&self.detail)?;
+        match &self.got {
+            Some(got) => write!(formatter, " (got {got})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// One member name as a token of a JSON Pointer (RFC 6901 section 3).
+pub(crate) fn pointer_token(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_kind_has_its_own_uri() {
+        let uris: HashSet<_> = ProblemKind::ALL.iter().map(|kind| kind.uri()).collect();
+        assert_eq!(uris.len(), ProblemKind::ALL.len());
+    }
+
+    #[test]
+    fn pointer_tokens_are_escaped_as_rfc_6901_says() {
+        // The examples of RFC 6901 section 5.
+        assert_eq!(pointer_token("a/b"), "a~1b");
+        assert_eq!(pointer_token("m~n"), "m~0n");
+        assert_eq!(pointer_token("~1"), "~01");
+    }
+}

@@ -1,0 +1,107 @@
+//! What the service says about itself.
+
+use drillsweep_sim::scenario::Scenario;
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// The bounds of what the service accepts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Limits {
+    /// Points in one sweep.
+    pub points_per_sweep: usize,
+    /// Bytes in one request body.
+    pub body_bytes: usize,
+    /// Entries in one page of a list.
+    pub page_size: u32,
+    /// Seconds for which one request may wait for a change.
+    pub wait_seconds: u64,
+    /// Lowest priority.
+    pub lowest_priority: i32,
+    /// Highest priority.
+    pub highest_priority: i32,
+    /// Characters in a sweep's name.
+    pub name_length: usize,
+    /// Characters in an owner's name.
+    pub owner_length: usize,
+}
+
+/// The limits in force.
+pub const LIMITS: Limits = Limits {
+    points_per_sweep: 10_000,
+    body_bytes: 2 << 20,
+    page_size: 500,
+    wait_seconds: 60,
+    lowest_priority: -10,
+    highest_priority: 10,
+    name_length: 200,
+    owner_length: 100,
+};
+
+/// The preset scenarios.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ScenarioList {
+    /// One entry a preset.
+    pub scenarios: Vec<ScenarioEntry>,
+}
+
+/// A preset in the list.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ScenarioEntry {
+    /// Its name, as a sweep's `preset`.
+    pub name: String,
+    /// The whole scenario.
+    pub link: String,
+}
+
+/// A preset in full.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ScenarioDetail {
+    /// Its name, as a sweep's `preset`.
+    pub name: String,
+    /// The scenario.
+    pub scenario: Box<Scenario>,
+}
+
+/// The worker processes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct WorkerList {
+    /// One entry a process.
+    pub workers: Vec<Worker>,
+}
+
+/// One worker process.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Worker {
+    /// Identifier.
+    pub id: String,
+    /// The machine that it runs on.
+    pub host: String,
+    /// Process id there.
+    pub process: u32,
+    /// Points that it can simulate at once.
+    pub slots: u32,
+    /// When it started.
+    pub started: Timestamp,
+    /// When it last gave a sign of life.
+    pub seen: Timestamp,
+}
+
+/// The queue as a whole.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Queue {
+    /// Results waiting to be computed; points that share a key are one.
+    pub queued: u64,
+    /// Under way.
+    pub running: u64,
+    /// When the longest waiting one was queued.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oldest_queued: Option<Timestamp>,
+}
+
+/// The answer of the health checks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Health {
+    /// `ok`.
+    pub status: String,
+}

@@ -1,0 +1,149 @@
+//! A sweep as the service shows it.
+
+use indexmap::IndexMap;
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::point::PointState;
+use crate::request::SweepRequest;
+
+/// A sweep with its counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Sweep {
+    /// Identifier.
+    pub id: String,
+    /// The name given to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Whose share of the workers it counts against.
+    pub owner: String,
+    /// Where it stands as a whole.
+    pub state: SweepState,
+    /// Points by state.
+    pub counts: PointCounts,
+    /// Done part of the work, 0 to 1, points under way counted by their simulated time.
+    pub progress: f64,
+    /// Higher goes first among the sweeps of one owner.
+    pub priority: i32,
+    /// When it was submitted.
+    pub created: Timestamp,
+    /// When its last point became final.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finished: Option<Timestamp>,
+    /// What was asked for; left out of lists.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub request: Option<Box<SweepRequest>>,
+    /// Where to read more.
+    pub links: SweepLinks,
+}
+
+/// Where a sweep stands as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SweepState {
+    /// Some points are not final yet.
+    Running,
+    /// Every point is final, succeeded or failed; `counts` says how many of each.
+    Completed,
+    /// It was cancelled.
+    Cancelled,
+}
+
+/// Numbers of points by state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+pub struct PointCounts {
+    /// All points.
+    pub total: u64,
+    /// Waiting for a worker.
+    pub queued: u64,
+    /// Under way.
+    pub running: u64,
+    /// With a result.
+    pub succeeded: u64,
+    /// Ended without a result.
+    pub failed: u64,
+    /// Cancelled.
+    pub cancelled: u64,
+}
+
+impl PointCounts {
+    /// Counts one point.
+    pub fn add(&mut self, state: PointState, number: u64) {
+        self.total += number;
+        *match state {
+            PointState::Queued => &mut self.queued,
+            PointState::Running => &mut self.running,
+            PointState::Succeeded => &mut self.succeeded,
+            PointState::Failed => &mut self.failed,
+            PointState::Cancelled => &mut self.cancelled,
+        } += number;
+    }
+
+    /// Points that will not change any more.
+    pub fn finished(&self) -> u64 {
+        self.succeeded + self.failed + self.cancelled
+    }
+}
+
+/// Where to read more about a sweep.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SweepLinks {
+    /// The sweep itself.
+    #[serde(rename = "self")]
+    pub this: String,
+    /// Its points.
+    pub points: String,
+    /// One row a point, with its summary.
+    pub table: String,
+    /// Cancels it (POST).
+    pub cancel: String,
+    /// Retries its failed and cancelled points (POST).
+    pub retry: String,
+}
+
+impl SweepLinks {
+    /// The links of the sweep `id`.
+    pub fn new(id: &str) -> Self {
+        let this = format!("/v1/sweeps/{id}");
+        SweepLinks {
+            points: format!("{this}/points"),
+            table: format!("{this}/table"),
+            cancel: format!("{this}/cancel"),
+            retry: format!("{this}/retry"),
+            this,
+        }
+    }
+}
+
+/// A page of sweeps, newest first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SweepList {
+    /// The sweeps.
+    pub sweeps: Vec<Sweep>,
+    /// Cursor of the next page; absent on the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+}
+
+/// What a request would become, without storing anything.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct DryRun {
+    /// Number of points.
+    pub total: u64,
+    /// Points whose result is already there and would not be computed again.
+    pub known: u64,
+    /// The points, by ordinal.
+    pub points: Vec<PlannedPoint>,
+}
+
+/// A point that a request would become.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlannedPoint {
+    /// Number of the point, from 1, the first axis varying slowest.
+    pub ordinal: u32,
+    /// Its parameters, by axis name.
+    pub parameters: IndexMap<String, f64>,
+    /// Content hash of scenario and physics version.
+    pub key: String,
+}

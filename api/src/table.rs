@@ -1,0 +1,118 @@
+//! Tables on the wire: objects of columns.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+/// A table by columns, all of one length. A value that does not exist is `null`, never NaN.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
+pub struct Table {
+    /// What holds for the table as a whole, such as the node, its depth, or the number of samples.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub attributes: IndexMap<String, Value>,
+    /// The columns, by name.
+    #[schema(example = json!({"time": [0.0, 0.001], "u_49": [0.0129, 0.0131]}))]
+    pub columns: IndexMap<String, Column>,
+    /// Units of the columns that have one (`1` for ratios), by column name.
+    #[schema(example = json!({"time": "s", "u_49": "m"}))]
+    pub units: IndexMap<String, String>,
+}
+
+/// The values of one column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Column {
+    /// Whole numbers.
+    Integer(Vec<Option<i64>>),
+    /// Numbers; those that are not finite in memory are `null` on the wire.
+    #[serde(with = "finite_or_null")]
+    #[schema(value_type = Vec<Option<f64>>)]
+    Number(Vec<f64>),
+    /// Texts.
+    Text(Vec<Option<String>>),
+}
+
+impl Column {
+    /// The number of values.
+    pub fn len(&self) -> usize {
+        match self {
+            Column::Integer(values) => values.len(),
+            Column::Number(values) => values.len(),
+            Column::Text(values) => values.len(),
+        }
+    }
+
+    /// True when there are no values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl Table {
+    /// Adds a column, with the unit that its name stands for.
+    pub fn push(&mut self, name: impl Into<String>, column: Column) {
+        let name = name.into();
+        if let Some(unit) = crate::units::unit(&name) {
+            self.units.insert(name.clone(), unit.to_owned());
+        }
+        self.columns.insert(name, column);
+    }
+
+    /// The same with columns added one after the other.
+    #[must_use]
+    pub fn with(mut self, name: impl Into<String>, column: Column) -> Self {
+        self.push(name, column);
+        self
+    }
+
+    /// Sets an attribute of the table as a whole.
+    #[must_use]
+    pub fn attribute(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.attributes.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.values().next().map_or(0, Column::len)
+    }
+}
+
+mod finite_or_null {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(values: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(values.iter().map(|value| value.is_finite().then_some(*value)))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+        let values = Vec::<Option<f64>>::deserialize(deserializer)?;
+        Ok(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_number_is_null_on_the_wire() {
+        let table = Table::default().with("time", Column::Number(vec![0.0, f64::NAN, f64::INFINITY, 2.5]));
+        let json = serde_json::to_value(&table).unwrap();
+        assert_eq!(
+            json,
+            serde_json::json!({"columns": {"time": [0.0, null, null, 2.5]}, "units": {"time": "s"}})
+        );
+    }
+
+    #[test]
+    fn columns_keep_their_kind_through_json() {
+        let table = Table::default()
+            .with("node", Column::Integer(vec![Some(1), None]))
+            .with("time", Column::Number(vec![1.0, 2.0]))
+            .with("regime", Column::Text(vec![Some("laminar".to_owned()), None]));
+        let text = serde_json::to_string(&table).unwrap();
+        assert_eq!(serde_json::from_str::<Table>(&text).unwrap(), table);
+    }
+}

@@ -1,0 +1,6 @@
+//! Views of results: pure functions from the columns of a run's tables to what a client asked to see.
+
+pub mod history;
+pub mod orbit;
+pub mod points;
+pub mod window;

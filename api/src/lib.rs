@@ -7,7 +7,9 @@
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
+pub mod expand;
 pub mod point;
+pub mod preset;
 pub mod problem;
 pub mod request;
 pub mod service;
@@ -17,7 +19,9 @@ pub mod units;
 pub mod view;
 
 pub use axis::{Axis, Scale};
+pub use expand::{Expansion, SweepPoint, expand};
 pub use point::{FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow, PointState};
+pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
 pub use request::{AxisName, Design, RunRequest, SweepRequest};
 pub use service::{

@@ -20,6 +20,8 @@ pub enum ProblemKind {
     InvalidParameter,
     /// The body's media type is not accepted.
     UnsupportedMediaType,
+    /// A browser sent the request from another site's page.
+    CrossSite,
     /// None of the media types in `Accept` can be served.
     NotAcceptable,
     /// The body is larger than the limit.
@@ -53,6 +55,7 @@ impl ProblemKind {
         ProblemKind::InvalidRequest,
         ProblemKind::InvalidParameter,
         ProblemKind::UnsupportedMediaType,
+        ProblemKind::CrossSite,
         ProblemKind::NotAcceptable,
         ProblemKind::BodyTooLarge,
         ProblemKind::NoSuchRoute,
@@ -95,6 +98,7 @@ impl ProblemKind {
             ProblemKind::UnsupportedMediaType => {
                 ("unsupported-media-type", "The body's media type is not accepted", 415)
             }
+            ProblemKind::CrossSite => ("cross-site", "Requests from other sites are refused", 403),
             ProblemKind::NotAcceptable => ("not-acceptable", "No acceptable format", 406),
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
             ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
@@ -222,7 +226,7 @@ impl std::fmt::Display for FieldProblem {
 }
 
 /// One member name as a token of a JSON Pointer (RFC 6901 section 3).
-pub(crate) fn pointer_token(name: &str) -> String {
+pub fn pointer_token(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
 

@@ -1,5 +1,7 @@
 //! What a client asks for: a sweep, or a single run.
 
+use std::collections::BTreeMap;
+
 use drillsweep_sim::scenario::Scenario;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -29,10 +31,12 @@ pub struct SweepRequest {
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
-    /// Changes to the scenario, by the dotted path of the field, such as `operation.rotation_speed_rpm`.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    /// Changes to the scenario, by the path of the field, such as `operation.rotation_speed_rpm` or
+    /// `string.sections[1].count`. An object changes the fields it names; `null` removes what is optional. An
+    /// outer path is applied before those inside it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
-    pub set: IndexMap<String, Value>,
+    pub set: BTreeMap<String, Value>,
     /// How the axes are combined.
     #[serde(default)]
     pub design: Design,
@@ -68,10 +72,10 @@ pub struct RunRequest {
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
-    /// Changes to the scenario, by the dotted path of the field.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    /// Changes to the scenario, by the path of the field.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(example = json!({"mud.flow_rate": 0.04}))]
-    pub set: IndexMap<String, Value>,
+    pub set: BTreeMap<String, Value>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
@@ -117,11 +121,11 @@ impl AxisName {
         }
     }
 
-    /// The scenario's field as a JSON Pointer.
-    pub(crate) fn scenario_pointer(self) -> &'static str {
+    /// The path of the scenario's field.
+    pub fn scenario_path(self) -> &'static str {
         match self {
-            AxisName::FlowRate => "/mud/flow_rate",
-            AxisName::MudDensity => "/mud/density",
+            AxisName::FlowRate => "mud.flow_rate",
+            AxisName::MudDensity => "mud.density",
         }
     }
 
@@ -134,13 +138,13 @@ impl AxisName {
         })
     }
 
-    /// Sets the field; false when the scenario has no mud to hold it.
-    pub(crate) fn set(self, scenario: &mut Scenario, value: f64) -> bool {
-        let Some(mud) = scenario.mud.as_mut() else { return false };
-        match self {
-            AxisName::FlowRate => mud.flow_rate = value,
-            AxisName::MudDensity => mud.density = value,
+    /// Sets the field; a dry hole has none.
+    pub(crate) fn set(self, scenario: &mut Scenario, value: f64) {
+        if let Some(mud) = scenario.mud.as_mut() {
+            match self {
+                AxisName::FlowRate => mud.flow_rate = value,
+                AxisName::MudDensity => mud.density = value,
+            }
         }
-        true
     }
 }

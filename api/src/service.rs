@@ -50,6 +50,8 @@ pub struct ScenarioList {
 pub struct ScenarioEntry {
     /// Its name, as a sweep's `preset`.
     pub name: String,
+    /// What it is, in a line.
+    pub description: String,
     /// The whole scenario.
     pub link: String,
 }
@@ -59,6 +61,8 @@ pub struct ScenarioEntry {
 pub struct ScenarioDetail {
     /// Its name, as a sweep's `preset`.
     pub name: String,
+    /// What it is, in a line.
+    pub description: String,
     /// The scenario.
     pub scenario: Box<Scenario>,
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::point::PointState;
+use crate::problem::FieldProblem;
 use crate::request::SweepRequest;
 
 /// A sweep with its counts.
@@ -31,6 +32,9 @@ pub struct Sweep {
     /// When its last point became final.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished: Option<Timestamp>,
+    /// What can be simulated but is probably not meant; in the answer to a submission only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<FieldProblem>,
     /// What was asked for; left out of lists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,
@@ -135,6 +139,9 @@ pub struct DryRun {
     pub known: u64,
     /// The points, by ordinal.
     pub points: Vec<PlannedPoint>,
+    /// What can be simulated but is probably not meant.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<FieldProblem>,
 }
 
 /// A point that a request would become.

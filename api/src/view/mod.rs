@@ -1,6 +1,8 @@
 //! Views of results: pure functions from the columns of a run's tables to what a client asked to see.
 
 pub mod history;
+pub mod node;
 pub mod orbit;
 pub mod points;
+pub mod spectrum;
 pub mod window;

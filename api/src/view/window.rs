@@ -5,10 +5,10 @@ use std::ops::Range;
 /// The samples of a half-open window \[from, to) of simulated time; an absent end is open.
 ///
 /// `time` increases. Recording times are multiples of the sampling interval formed in floating point, so a
-/// sample within a thousandth of an interval of an end counts as lying on it.
+/// sample within a hundredth of an interval of an end counts as lying on it.
 pub fn samples(time: &[f64], from: Option<f64>, to: Option<f64>) -> Range<usize> {
     let slack = match time {
-        [first, second, ..] => 1e-3 * (second - first),
+        [first, second, ..] => 1e-2 * (second - first),
         _ => 0.0,
     };
     let below = |end: f64| time.partition_point(|&instant| instant < end - slack);

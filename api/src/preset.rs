@@ -1,0 +1,22 @@
+//! The preset scenarios as the service lists them.
+
+use drillsweep_sim::scenario::{PRESETS, preset};
+
+use crate::service::{ScenarioDetail, ScenarioEntry, ScenarioList};
+
+/// Every preset, by name.
+pub fn presets() -> ScenarioList {
+    let entry = |&(name, description): &(&str, &str)| ScenarioEntry {
+        name: name.to_owned(),
+        description: description.to_owned(),
+        link: format!("/v1/scenarios/{name}"),
+    };
+    ScenarioList { scenarios: PRESETS.iter().map(entry).collect() }
+}
+
+/// One preset in full; none if there is none of that name.
+pub fn preset_detail(name: &str) -> Option<ScenarioDetail> {
+    let (name, description) = PRESETS.iter().find(|(preset, _)| *preset == name)?;
+    let scenario = Box::new(preset(name)?);
+    Some(ScenarioDetail { name: (*name).to_owned(), description: (*description).to_owned(), scenario })
+}

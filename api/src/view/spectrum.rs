@@ -1,0 +1,104 @@
+//! The full spectrum of one node's orbit.
+
+use drillsweep_sim::signal::{PeakSearch, full_spectrum};
+use serde_json::json;
+
+use super::orbit::Motion;
+use crate::problem::ProblemDetails;
+use crate::table::{Column, Table};
+
+pub use drillsweep_sim::signal::Window as Weighting;
+
+/// Two lines closer than so many bins are one: the rest is its leakage.
+const LINE_WIDTH_BINS: f64 = 2.0;
+
+/// The full spectrum of all samples of a motion, within plus and minus `range` \[Hz\]: columns `frequency`
+/// \[Hz\], `amplitude` and `peak_to_peak` \[m\], ascending in frequency. Positive frequencies are forward
+/// whirl. Attributes: `samples`, `resolution` \[Hz\], `window`, and `peaks`, the `peaks` highest lines in the
+/// range, highest first, each with `frequency` (interpolated between the bins), `amplitude`, `peak_to_peak`
+/// and `whirl`.
+///
+/// # Errors
+/// When there are too few samples to have a rate.
+pub fn spectrum(
+    motion: &Motion<'_>,
+    weighting: Weighting,
+    range: f64,
+    peaks: usize,
+) -> Result<Table, ProblemDetails> {
+    let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else {
+        return Err(too_few(motion));
+    };
+    let intervals = motion.time.len() - 1;
+    if intervals == 0 {
+        return Err(too_few(motion));
+    }
+    let rate = intervals as f64 / (last - first);
+    let spectrum = full_spectrum(motion.u, motion.v, rate, weighting).restricted_to(&(-range..=range));
+    let min_separation_hz = LINE_WIDTH_BINS * spectrum.resolution_hz;
+    let lines = spectrum.peaks(&PeakSearch { count: peaks, min_separation_hz, exclude_mean: false });
+    let lines: Vec<_> = lines
+        .iter()
+        .map(|line| {
+            json!({
+                "frequency": line.frequency_hz,
+                "amplitude": line.amplitude,
+                "peak_to_peak": 2.0 * line.amplitude,
+                "whirl": line.whirl,
+            })
+        })
+        .collect();
+    let peak_to_peak = spectrum.peak_to_peak();
+    Ok(Table::default()
+        .with("frequency", Column::Number(spectrum.frequency_hz))
+        .with("amplitude", Column::Number(spectrum.amplitude))
+        .with("peak_to_peak", Column::Number(peak_to_peak))
+        .attribute("samples", motion.time.len())
+        .attribute("resolution", spectrum.resolution_hz)
+        .attribute("window", json!(weighting))
+        .attribute("peaks", lines))
+}
+
+fn too_few(motion: &Motion<'_>) -> ProblemDetails {
+    let detail = format!("the window holds {} samples; a spectrum needs 2 or more", motion.time.len());
+    ProblemDetails::invalid_parameter("from", None, detail)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// 10 s at 1 kHz of a forward circle (2 Hz, 3 mm), a backward one (5 Hz, 1 mm) and an offset of (4, 3) mm.
+    fn motion() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let time: Vec<f64> = (0..10_000).map(|i| f64::from(i) * 1e-3).collect();
+        let u = time.iter().map(|t| 4e-3 + 3e-3 * (2.0 * TAU * t).cos() + 1e-3 * (5.0 * TAU * t).cos());
+        let v = time.iter().map(|t| 3e-3 + 3e-3 * (2.0 * TAU * t).sin() - 1e-3 * (5.0 * TAU * t).sin());
+        (time.clone(), u.collect(), v.collect())
+    }
+
+    #[test]
+    fn whirl_stands_at_the_frequency_of_its_sense() {
+        let (time, u, v) = motion();
+        let motion = Motion { time: &time, u: &u, v: &v };
+        let table = spectrum(&motion, Weighting::Rectangular, 20.0, 3).unwrap();
+        assert_eq!(table.rows(), 401, "every 0.1 Hz from -20 to 20 Hz");
+        let peaks = table.attributes["peaks"].as_array().unwrap();
+        let expected = [("offset", 0.0, 5e-3), ("forward", 2.0, 3e-3), ("backward", -5.0, 1e-3)];
+        assert_eq!(peaks.len(), expected.len());
+        for (peak, (whirl, frequency, amplitude)) in peaks.iter().zip(expected) {
+            assert_eq!(peak["whirl"], whirl);
+            // All lines fall on bins, so that what is left is rounding.
+            assert!((peak["frequency"].as_f64().unwrap() - frequency).abs() < 1e-9, "{peak}");
+            assert!((peak["amplitude"].as_f64().unwrap() - amplitude).abs() < 1e-12, "{peak}");
+            assert!((peak["peak_to_peak"].as_f64().unwrap() - 2.0 * amplitude).abs() < 1e-12, "{peak}");
+        }
+    }
+
+    #[test]
+    fn a_window_without_samples_is_refused() {
+        let (time, u, v) = motion();
+        let empty = Motion { time: &time, u: &u, v: &v }.window(Some(20.0), None);
+        assert_eq!(spectrum(&empty, Weighting::Hann, 20.0, 3).unwrap_err().status, 400);
+    }
+}

@@ -20,7 +20,15 @@ pub struct SweepPoint {
     /// The scenario to simulate: preset, changes and axes applied.
     pub scenario: Scenario,
     /// Content hash of physics version and scenario: equal keys, equal results.
-    pub key: String,
+    pub key: PointKey,
+}
+
+/// The content hash of a point.
+pub type PointKey = [u8; 32];
+
+/// A point's key as it is written on the wire, in hexadecimal.
+pub fn key_text(key: &PointKey) -> String {
+    blake3::Hash::from_bytes(*key).to_hex().to_string()
 }
 
 /// What a request expands into.
@@ -58,13 +66,13 @@ pub fn expand(request: &SweepRequest) -> Result<Expansion, ProblemDetails> {
 }
 
 /// The content hash of a scenario: BLAKE3 over a domain tag, the physics version and the scenario's
-/// canonical bytes, in hexadecimal.
-pub fn key(scenario: &Scenario) -> String {
+/// canonical bytes.
+pub fn key(scenario: &Scenario) -> PointKey {
     let mut hasher = blake3::Hasher::new();
     hasher.update(b"drillsweep point\0");
     hasher.update(&PHYSICS_VERSION.to_le_bytes());
     hasher.update(&scenario.canonical_bytes());
-    hasher.finalize().to_hex().to_string()
+    hasher.finalize().into()
 }
 
 fn grid(
@@ -339,7 +347,7 @@ mod tests {
 
     #[test]
     fn equal_points_have_equal_keys_however_they_are_asked_for() {
-        let key_of = |body| expand(&request(body)).unwrap().points[0].key.clone();
+        let key_of = |body| key_text(&expand(&request(body)).unwrap().points[0].key);
         let by_preset = key_of(json!({"preset": "paper-200m"}));
         let mut scenario = serde_json::to_value(preset("paper-200m").unwrap()).unwrap();
         scenario["name"] = "another name".into();

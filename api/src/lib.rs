@@ -19,7 +19,7 @@ pub mod units;
 pub mod view;
 
 pub use axis::{Axis, Scale};
-pub use expand::{Expansion, SweepPoint, expand};
+pub use expand::{Expansion, PointKey, SweepPoint, expand, key_text};
 pub use point::{FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow, PointState};
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
@@ -29,3 +29,5 @@ pub use service::{
 };
 pub use sweep::{DryRun, PlannedPoint, PointCounts, Sweep, SweepLinks, SweepList, SweepState};
 pub use table::{Column, Table};
+
+pub use drillsweep_sim::PHYSICS_VERSION;

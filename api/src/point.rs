@@ -53,7 +53,7 @@ pub struct PointRow {
     /// Simulated time over duration, 0 to 1.
     pub progress: f64,
     /// How often a worker has started it.
-    pub attempts: u32,
+    pub attempts: u64,
     /// Why it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<PointError>,
@@ -92,7 +92,7 @@ pub struct PointDetail {
     pub tables: Vec<String>,
 }
 
-/// Why a point has failed.
+/// Why a point has failed; workers store this very form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PointError {
     /// The class of failure.
@@ -132,4 +132,12 @@ pub struct PointLinks {
     pub this: String,
     /// Its sweep.
     pub sweep: String,
+}
+
+impl PointLinks {
+    /// The links of point `ordinal` of the sweep `id`.
+    pub fn new(id: &str, ordinal: u32) -> Self {
+        let sweep = format!("/v1/sweeps/{id}");
+        PointLinks { this: format!("{sweep}/points/{ordinal}"), sweep }
+    }
 }

@@ -81,26 +81,27 @@ pub struct Worker {
     pub id: String,
     /// The machine that it runs on.
     pub host: String,
-    /// Process id there.
-    pub process: u32,
-    /// Points that it can simulate at once.
-    pub slots: u32,
+    /// Process number there.
+    pub process: i64,
+    /// Version of its program.
+    pub version: String,
+    /// Version of its numbers; it computes only points submitted under the same.
+    pub physics_version: i64,
     /// When it started.
     pub started: Timestamp,
     /// When it last gave a sign of life.
     pub seen: Timestamp,
 }
 
-/// The queue as a whole.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+/// The queue over all sweeps, in results to be computed: points that share a key are one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Queue {
-    /// Results waiting to be computed; points that share a key are one.
+    /// Ready for a worker.
     pub queued: u64,
+    /// Waiting until a retry is due.
+    pub waiting_for_retry: u64,
     /// Under way.
     pub running: u64,
-    /// When the longest waiting one was queued.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub oldest_queued: Option<Timestamp>,
 }
 
 /// The answer of the health checks.

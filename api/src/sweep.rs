@@ -5,7 +5,6 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::point::PointState;
 use crate::problem::FieldProblem;
 use crate::request::SweepRequest;
 
@@ -23,10 +22,10 @@ pub struct Sweep {
     pub state: SweepState,
     /// Points by state.
     pub counts: PointCounts,
-    /// Done part of the work, 0 to 1, points under way counted by their simulated time.
+    /// Done part of the work, points under way counted by their simulated time; 1 when every point is final.
     pub progress: f64,
     /// Higher goes first among the sweeps of one owner.
-    pub priority: i32,
+    pub priority: i64,
     /// When it was submitted.
     pub created: Timestamp,
     /// When its last point became final.
@@ -69,25 +68,6 @@ pub struct PointCounts {
     pub failed: u64,
     /// Cancelled.
     pub cancelled: u64,
-}
-
-impl PointCounts {
-    /// Counts one point.
-    pub fn add(&mut self, state: PointState, number: u64) {
-        self.total += number;
-        *match state {
-            PointState::Queued => &mut self.queued,
-            PointState::Running => &mut self.running,
-            PointState::Succeeded => &mut self.succeeded,
-            PointState::Failed => &mut self.failed,
-            PointState::Cancelled => &mut self.cancelled,
-        } += number;
-    }
-
-    /// Points that will not change any more.
-    pub fn finished(&self) -> u64 {
-        self.succeeded + self.failed + self.cancelled
-    }
 }
 
 /// Where to read more about a sweep.

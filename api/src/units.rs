@@ -7,7 +7,7 @@ pub fn unit(column: &str) -> Option<&'static str> {
     let name = column.trim_end_matches(|character: char| character.is_ascii_digit());
     let name = if name.len() < column.len() { name.strip_suffix('_').unwrap_or(column) } else { column };
     Some(match name {
-        "time" | "contact_time" | "duration" | "wall_time" | "cpu_time" => "s",
+        "time" | "error_time" | "contact_time" | "duration" | "wall_time" | "cpu_time" => "s",
         "frequency" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",

@@ -1,1 +1,26 @@
-//! drillsweep server.
+//! The HTTP service: routes, formats and long polls over the store. It computes nothing but views of results.
+//!
+//! [`serve`] runs it on a listener until told to stop; [`router`] is the same without the network, for tests
+//! and for embedding; [`openapi`] is the document that it serves.
+
+mod app;
+mod artifact;
+mod convert;
+mod error;
+mod extract;
+mod format;
+mod health;
+mod maintenance;
+mod middleware;
+mod openapi;
+mod points;
+mod results;
+mod router;
+mod scenarios;
+mod status;
+mod sweeps;
+mod work;
+
+pub use app::{Config, DEFAULT_ADDRESS, ServeError, serve};
+pub use openapi::{openapi, openapi_json};
+pub use router::router;

@@ -62,8 +62,12 @@ impl Choice {
             Choice::Node(node) => ("node", node.into()),
             Choice::Depth(depth) => ("depth", depth.into()),
         };
-        let error =
-            FieldProblem { pointer: None, parameter: Some(parameter.to_owned()), got: Some(got), detail: nodes.clone() };
+        let error = FieldProblem {
+            pointer: None,
+            parameter: Some(parameter.to_owned()),
+            got: Some(got),
+            detail: nodes.clone(),
+        };
         let detail = format!("{parameter}: {nodes}");
         ProblemDetails { errors: vec![error], ..ProblemDetails::new(ProblemKind::NodeNotRecorded, detail) }
     }

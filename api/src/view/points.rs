@@ -3,40 +3,65 @@
 use indexmap::{IndexMap, IndexSet};
 use serde_json::{Map, Value};
 
-use crate::point::PointRow;
+use crate::point::{PointError, PointState};
 use crate::table::{Column, Table};
 
-/// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, and `error`.
+/// What the table needs to know of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointSummary {
+    /// Number of the point in its sweep, from 1.
+    pub ordinal: u32,
+    /// Where the point stands.
+    pub state: PointState,
+    /// Its parameters, by axis name.
+    pub parameters: IndexMap<String, f64>,
+    /// The scalar results, if there are any.
+    pub summary: Option<Map<String, Value>>,
+    /// Why it failed, if it did.
+    pub error: Option<PointError>,
+}
+
+/// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, and the `error` with its
+/// `error_time` \[s\] and `error_node`.
 ///
 /// Columns are the union over all points, in the order in which they are first met; a point that has no
 /// value has `null` there. Fields of the summary that are objects become columns named
 /// `outer.inner`; lists become JSON text.
-pub fn points<'a>(rows: impl IntoIterator<Item = (&'a PointRow, Option<&'a Map<String, Value>>)>) -> Table {
-    let rows: Vec<_> = rows.into_iter().collect();
+pub fn points(rows: &[PointSummary]) -> Table {
     let mut table = Table::default()
-        .with("ordinal", Column::Integer(rows.iter().map(|(row, _)| Some(row.ordinal.into())).collect()))
-        .with("state", Column::Text(rows.iter().map(|(row, _)| Some(row.state.to_string())).collect()));
+        .with("ordinal", Column::Integer(rows.iter().map(|row| Some(row.ordinal.into())).collect()))
+        .with("state", Column::Text(rows.iter().map(|row| Some(row.state.to_string())).collect()));
 
     let parameters: IndexSet<&str> =
-        rows.iter().flat_map(|(row, _)| row.parameters.keys().map(String::as_str)).collect();
+        rows.iter().flat_map(|row| row.parameters.keys().map(String::as_str)).collect();
     for name in &parameters {
-        let values = rows.iter().map(|(row, _)| row.parameters.get(*name).copied().unwrap_or(f64::NAN));
+        let values = rows.iter().map(|row| row.parameters.get(*name).copied().unwrap_or(f64::NAN));
         table.push(*name, Column::Number(values.collect()));
     }
 
     let summaries: Vec<IndexMap<String, Value>> =
-        rows.iter().map(|(_, summary)| summary.map_or_else(IndexMap::new, flatten)).collect();
+        rows.iter().map(|row| row.summary.as_ref().map_or_else(IndexMap::new, flatten)).collect();
     let fields: IndexSet<&str> =
         summaries.iter().flat_map(|summary| summary.keys().map(String::as_str)).collect();
     for name in &fields {
         // A summary's own flow rate would only repeat the parameter of that name.
         if !table.columns.contains_key(*name) {
-            table.push(*name, column(summaries.iter().map(|summary| summary.get(*name)).collect()));
+            table
+                .push(*name, column(&summaries.iter().map(|summary| summary.get(*name)).collect::<Vec<_>>()));
         }
     }
 
-    let errors = rows.iter().map(|(row, _)| row.error.as_ref().map(|error| error.reason.clone()));
-    table.with("error", Column::Text(errors.collect()))
+    let errors = || rows.iter().map(|row| row.error.as_ref());
+    table
+        .with("error", Column::Text(errors().map(|error| error.map(|error| error.reason.clone())).collect()))
+        .with(
+            "error_time",
+            Column::Number(errors().map(|error| error.and_then(|e| e.time).unwrap_or(f64::NAN)).collect()),
+        )
+        .with(
+            "error_node",
+            Column::Integer(errors().map(|error| error.and_then(|e| e.node).map(i64::from)).collect()),
+        )
 }
 
 fn flatten(summary: &Map<String, Value>) -> IndexMap<String, Value> {
@@ -57,7 +82,7 @@ fn flatten(summary: &Map<String, Value>) -> IndexMap<String, Value> {
 }
 
 /// The narrowest kind of column that holds all values.
-fn column(values: Vec<Option<&Value>>) -> Column {
+fn column(values: &[Option<&Value>]) -> Column {
     let given = || values.iter().flatten().filter(|value| !value.is_null());
     if given().all(|value| value.is_i64()) && given().next().is_some() {
         return Column::Integer(values.iter().map(|value| value.and_then(Value::as_i64)).collect());
@@ -77,37 +102,35 @@ fn column(values: Vec<Option<&Value>>) -> Column {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::{FailureClass, PointError, PointLinks, PointState};
+    use crate::point::FailureClass;
     use serde_json::json;
 
-    fn row(ordinal: u32, state: PointState, density: f64, error: Option<&str>) -> PointRow {
-        PointRow {
-            ordinal,
-            state,
-            parameters: [("mud_density".to_owned(), density)].into(),
-            progress: 1.0,
-            attempts: 1,
-            error: error.map(|reason| PointError {
+    #[test]
+    fn points_without_a_result_have_null_where_others_have_a_value() {
+        let parameters = |density| [("mud_density".to_owned(), density)].into();
+        let summary =
+            json!({"steps": 60000, "residual": 0.5, "orbit": {"radius": 0.037}, "regimes": ["laminar"]});
+        let done = PointSummary {
+            ordinal: 1,
+            state: PointState::Succeeded,
+            parameters: parameters(1200.0),
+            summary: summary.as_object().cloned(),
+            error: None,
+        };
+        let failed = PointSummary {
+            ordinal: 2,
+            state: PointState::Failed,
+            parameters: parameters(1500.0),
+            summary: None,
+            error: Some(PointError {
                 class: FailureClass::Physical,
-                reason: reason.to_owned(),
+                reason: "diverged".to_owned(),
                 time: Some(1.5),
                 node: Some(49),
                 details: Map::new(),
             }),
-            links: PointLinks { this: String::new(), sweep: String::new() },
-        }
-    }
-
-    #[test]
-    fn points_without_a_result_have_null_where_others_have_a_value() {
-        let rows = [
-            row(1, PointState::Succeeded, 1200.0, None),
-            row(2, PointState::Failed, 1500.0, Some("diverged")),
-        ];
-        let summary =
-            json!({"steps": 60000, "residual": 0.5, "orbit": {"radius": 0.037}, "regimes": ["laminar"]});
-        let table = points([(&rows[0], summary.as_object()), (&rows[1], None)]);
-        let json = serde_json::to_value(&table).unwrap();
+        };
+        let json = serde_json::to_value(points(&[done, failed])).unwrap();
         assert_eq!(
             json["columns"],
             json!({
@@ -119,8 +142,10 @@ mod tests {
                 "orbit.radius": [0.037, null],
                 "regimes": ["[\"laminar\"]", null],
                 "error": [null, "diverged"],
+                "error_time": [null, 1.5],
+                "error_node": [null, 49],
             })
         );
-        assert_eq!(json["units"]["mud_density"], "kg/m3");
+        assert_eq!(json["units"], json!({"mud_density": "kg/m3", "error_time": "s", "residual": "J"}));
     }
 }

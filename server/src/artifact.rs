@@ -1,0 +1,147 @@
+//! The tables that workers stored, as they are read back.
+
+use axum::body::Bytes;
+use drillsweep_api::view::node::{self, Choice};
+use drillsweep_api::view::orbit::Motion;
+use drillsweep_api::{Column, PointState, ProblemDetails, ProblemKind, Table};
+use drillsweep_store::{BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet};
+
+use crate::convert;
+use crate::error::{Error, Result};
+
+/// One table of a point's result, as Parquet.
+pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Bytes> {
+    let key = result_key(store, sweep, n).await?;
+    load_of(store, &key, name).await
+}
+
+async fn load_of(store: &Store, key: &WorkKey, name: &str) -> Result<Bytes> {
+    let artifacts = store.artifacts(key).await?;
+    let Some(artifact) = artifacts.iter().find(|artifact| artifact.name == name) else {
+        let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
+        let detail = format!("the run has no table {name}; it has {}", names.join(", "));
+        return Err(Error::new(ProblemKind::NoSuchTable, detail));
+    };
+    let blob: BlobId = artifact.blob.parse()?;
+    Ok(store.blobs().get(blob).await?)
+}
+
+/// The key of a point that has a result.
+async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
+    let Some(point) = store.point(sweep, n.into()).await? else {
+        return Err(convert::no_such_point(store, sweep, n).await?);
+    };
+    let state = convert::point_state(point.state);
+    if state == PointState::Succeeded {
+        return Ok(point.work_key);
+    }
+    let detail = match state {
+        PointState::Queued | PointState::Running => {
+            format!("point {n} is {state}: its result is not there yet")
+        }
+        _ => format!("point {n} is {state}: it has no result"),
+    };
+    Err(ProblemDetails { state: Some(state), ..ProblemDetails::new(ProblemKind::NoResult, detail) }.into())
+}
+
+/// Columns of a stored table, or all of them, for the wire.
+pub(crate) fn decode(parquet: Bytes, columns: Option<&[&str]>) -> Result<Table, TableError> {
+    let mut table = Table::default();
+    for column in decode_parquet(parquet, columns, None)?.columns {
+        let values = match column.data {
+            ColumnData::F64(values) => Column::Number(values),
+            ColumnData::F32(values) => Column::Number(values.into_iter().map(f64::from).collect()),
+            ColumnData::I64(values) => Column::Integer(values.into_iter().map(Some).collect()),
+            ColumnData::Text(values) => Column::Text(values.into_iter().map(Some).collect()),
+        };
+        table.push(&column.name, values);
+        if let Some(unit) = column.unit {
+            table.units.insert(column.name, unit);
+        }
+    }
+    Ok(table)
+}
+
+/// The recorded histories of a run, and where their nodes are.
+pub(crate) struct Recording {
+    history: Bytes,
+    statics: Bytes,
+}
+
+/// The lateral motion of one recorded node.
+pub(crate) struct NodeMotion {
+    pub(crate) node: u32,
+    measured_depth: f64,
+    time: Vec<f64>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl Recording {
+    /// The recording of a point that has a result.
+    pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
+        let key = result_key(store, sweep, n).await?;
+        let history = load_of(store, &key, "history").await?;
+        let statics = load_of(store, &key, "statics").await?;
+        Ok(Recording { history, statics })
+    }
+
+    /// The whole recording.
+    pub(crate) fn table(&self) -> Result<Table> {
+        Ok(decode(self.history.clone(), None)?)
+    }
+
+    /// The recording of one node.
+    pub(crate) fn table_of(&self, choice: Choice) -> Result<Table> {
+        let columns = column_names(self.history.clone())?;
+        let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
+        let suffix = format!("_{node}");
+        let wanted: Vec<&str> = columns
+            .iter()
+            .map(String::as_str)
+            .filter(|name| *name == "time" || name.ends_with(&suffix))
+            .collect();
+        let table = decode(self.history.clone(), Some(&wanted))?;
+        Ok(table.attribute("node", node).attribute("measured_depth", measured_depth))
+    }
+
+    /// The lateral motion of one node.
+    pub(crate) fn motion_of(&self, choice: Choice) -> Result<NodeMotion> {
+        let columns = column_names(self.history.clone())?;
+        let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
+        let (u, v) = (format!("u_{node}"), format!("v_{node}"));
+        let mut table = decode(self.history.clone(), Some(&["time", &u, &v]))?;
+        let mut take = |name: &str| match table.columns.swap_remove(name) {
+            Some(Column::Number(values)) => Ok(values),
+            _ => Err(Error::internal(&format!("a history without numbers in the column {name}"))),
+        };
+        Ok(NodeMotion { node, measured_depth, time: take("time")?, u: take(&u)?, v: take(&v)? })
+    }
+
+    /// The recorded nodes with their measured depths \[m\].
+    fn nodes(&self, columns: &[String]) -> Result<Vec<(u32, f64)>> {
+        let statics = decode(self.statics.clone(), Some(&["node", "measured_depth"]))?;
+        let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
+            (statics.columns.get("node"), statics.columns.get("measured_depth"))
+        else {
+            return Err(Error::internal("a table of statics without nodes and their depths"));
+        };
+        let depth_of = |recorded: u32| {
+            let row = nodes.iter().position(|node| *node == Some(recorded.into()))?;
+            Some((recorded, depths[row]))
+        };
+        Ok(node::recorded(columns.iter().map(String::as_str)).into_iter().filter_map(depth_of).collect())
+    }
+}
+
+impl NodeMotion {
+    /// The samples.
+    pub(crate) fn columns(&self) -> Motion<'_> {
+        Motion { time: &self.time, u: &self.u, v: &self.v }
+    }
+
+    /// A view of this motion with the node that it is of.
+    pub(crate) fn label(&self, table: Table) -> Table {
+        table.attribute("node", self.node).attribute("measured_depth", self.measured_depth)
+    }
+}

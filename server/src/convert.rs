@@ -1,0 +1,190 @@
+//! Between what the store keeps and what clients see.
+
+use drillsweep_api::view::points::PointSummary;
+use drillsweep_api::{
+    Expansion, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
+    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, key_text,
+};
+use drillsweep_store::{NewPoint, NewSweep, PointRecord, Store, SweepRecord, TableRecord, WorkState};
+use jiff::Timestamp;
+use serde::de::DeserializeOwned;
+use serde_json::Map;
+
+use crate::error::{Error, Result};
+
+/// Whose share a sweep counts against when its request does not say.
+const DEFAULT_OWNER: &str = "default";
+
+/// A request and its points as the store takes them; the scenarios are written out in full.
+pub(crate) fn new_sweep(
+    request: &SweepRequest,
+    expansion: &Expansion,
+    idempotency_key: Option<(String, [u8; 32])>,
+) -> Result<NewSweep> {
+    let new_point = |point: &SweepPoint| {
+        Ok(NewPoint {
+            ordinal: point.ordinal.into(),
+            parameters_json: write(&point.parameters)?,
+            work_key: point.key,
+            scenario_json: write(&point.scenario)?,
+            physics_version: drillsweep_api::PHYSICS_VERSION.into(),
+        })
+    };
+    Ok(NewSweep {
+        id: uuid::Uuid::now_v7().to_string(),
+        name: request.name.clone(),
+        owner: request.owner.clone().unwrap_or_else(|| DEFAULT_OWNER.to_owned()),
+        request_json: write(request)?,
+        priority: request.priority.into(),
+        idempotency_key,
+        points: expansion.points.iter().map(new_point).collect::<Result<_>>()?,
+    })
+}
+
+/// A sweep as clients see it, without its request.
+pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
+    let state = match (record.is_cancelled, record.finished) {
+        (true, _) => SweepState::Cancelled,
+        (false, Some(_)) => SweepState::Completed,
+        (false, None) => SweepState::Running,
+    };
+    let counts = &record.counts;
+    let progress = match record.finished {
+        Some(_) => 1.0,
+        None => (record.progress / (counts.total.max(1) as f64)).clamp(0.0, 1.0),
+    };
+    Ok(Sweep {
+        id: record.id.clone(),
+        name: record.name.clone(),
+        owner: record.owner.clone(),
+        state,
+        counts: PointCounts {
+            total: counts.total.unsigned_abs(),
+            queued: counts.queued.unsigned_abs(),
+            running: counts.running.unsigned_abs(),
+            succeeded: counts.done.unsigned_abs(),
+            failed: counts.failed.unsigned_abs(),
+            cancelled: counts.cancelled.unsigned_abs(),
+        },
+        progress,
+        priority: record.priority,
+        created: timestamp(record.created)?,
+        finished: record.finished.map(timestamp).transpose()?,
+        warnings: Vec::new(),
+        request: None,
+        links: SweepLinks::new(&record.id),
+    })
+}
+
+/// The same with the request that made it.
+pub(crate) fn sweep_with_request(record: &SweepRecord) -> Result<Sweep> {
+    let request = Some(Box::new(read(&record.request_json)?));
+    Ok(Sweep { request, ..sweep(record)? })
+}
+
+/// A point's row in a list.
+pub(crate) fn point_row(sweep: &str, record: &PointRecord) -> Result<PointRow> {
+    let state = point_state(record.state);
+    Ok(PointRow {
+        ordinal: ordinal(record.ordinal)?,
+        state,
+        parameters: read(&record.parameters_json)?,
+        progress: if state == PointState::Succeeded { 1.0 } else { record.progress },
+        attempts: record.attempts.unsigned_abs(),
+        error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
+        links: PointLinks::new(sweep, ordinal(record.ordinal)?),
+    })
+}
+
+/// A point with everything but its tables.
+pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String>) -> Result<PointDetail> {
+    Ok(PointDetail {
+        row: point_row(sweep, record)?,
+        key: key_text(&record.work_key),
+        scenario: read(&record.scenario_json)?,
+        summary: record.summary_json.as_deref().map(read).transpose()?,
+        provenance: record.provenance_json.as_deref().map(read).transpose()?,
+        tables,
+    })
+}
+
+/// A point's row in the table of its sweep.
+pub(crate) fn point_summary(record: &TableRecord) -> Result<PointSummary> {
+    Ok(PointSummary {
+        ordinal: ordinal(record.ordinal)?,
+        state: point_state(record.state),
+        parameters: read(&record.parameters_json)?,
+        summary: record.summary_json.as_deref().map(read).transpose()?,
+        error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
+    })
+}
+
+/// The state of a point from that of the work behind it.
+pub(crate) fn point_state(state: WorkState) -> PointState {
+    match state {
+        WorkState::Waiting | WorkState::Queued => PointState::Queued,
+        WorkState::Leased => PointState::Running,
+        WorkState::Done => PointState::Succeeded,
+        WorkState::Failed | WorkState::Dead => PointState::Failed,
+        WorkState::Cancelled => PointState::Cancelled,
+    }
+}
+
+/// The states of work that make up a state of points.
+pub(crate) fn work_states(state: PointState) -> &'static [WorkState] {
+    match state {
+        PointState::Queued => &[WorkState::Waiting, WorkState::Queued],
+        PointState::Running => &[WorkState::Leased],
+        PointState::Succeeded => &[WorkState::Done],
+        PointState::Failed => &[WorkState::Failed, WorkState::Dead],
+        PointState::Cancelled => &[WorkState::Cancelled],
+    }
+}
+
+/// Why a point failed. A text of another form than the workers' comes through as the reason.
+fn point_error(state: WorkState, text: &str) -> PointError {
+    serde_json::from_str(text).unwrap_or_else(|_| PointError {
+        class: match state {
+            WorkState::Dead => FailureClass::Crash,
+            _ => FailureClass::Infrastructure,
+        },
+        reason: text.to_owned(),
+        time: None,
+        node: None,
+        details: Map::new(),
+    })
+}
+
+/// The problem that a sweep has no such point, or that there is no such sweep.
+pub(crate) async fn no_such_point(store: &Store, sweep: &str, n: u32) -> Result<Error> {
+    Ok(match store.sweep(sweep).await? {
+        None => no_such_sweep(sweep),
+        Some(record) => {
+            let detail =
+                format!("sweep {sweep} has no point {n}; its points are 1 to {}", record.counts.total);
+            Error::new(ProblemKind::NotFound, detail)
+        }
+    })
+}
+
+/// The problem that there is no such sweep.
+pub(crate) fn no_such_sweep(id: &str) -> Error {
+    Error::new(ProblemKind::NotFound, format!("there is no sweep {id}"))
+}
+
+/// A time of the store, in milliseconds since the epoch.
+pub(crate) fn timestamp(milliseconds: i64) -> Result<Timestamp> {
+    Timestamp::from_millisecond(milliseconds).map_err(|error| Error::internal(&error))
+}
+
+fn ordinal(number: i64) -> Result<u32> {
+    u32::try_from(number).map_err(|error| Error::internal(&error))
+}
+
+fn write(value: &impl serde::Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(|error| Error::internal(&error))
+}
+
+fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
+    serde_json::from_str(text).map_err(|error| Error::internal(&error))
+}

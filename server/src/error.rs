@@ -1,0 +1,84 @@
+//! What a handler answers when it cannot answer: a problem document.
+
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::{ProblemDetails, ProblemKind};
+use drillsweep_store::{StoreError, TableError};
+
+/// The result of a handler.
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// A problem on its way to the client. What only the operator should see is logged where it is made.
+#[derive(Debug, Clone)]
+pub(crate) struct Error {
+    problem: Box<ProblemDetails>,
+    /// Seconds after which another try may succeed.
+    retry_after: Option<u32>,
+}
+
+impl Error {
+    /// A problem of one kind.
+    pub(crate) fn new(kind: ProblemKind, detail: impl Into<String>) -> Self {
+        ProblemDetails::new(kind, detail).into()
+    }
+
+    /// A path, query or header parameter that is not valid.
+    pub(crate) fn parameter(name: &str, got: Option<&str>, detail: impl Into<String>) -> Self {
+        ProblemDetails::invalid_parameter(name, got, detail).into()
+    }
+
+    /// A failure of the service itself: the log gets the reason, the client does not.
+    pub(crate) fn internal(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
+        tracing::error!(%reason, "a request failed");
+        Error::new(ProblemKind::Internal, "the service failed; its log has the reason under this request id")
+    }
+
+    /// A failure that is expected to pass.
+    pub(crate) fn unavailable(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
+        tracing::warn!(%reason, "a request could not be served just now");
+        let error = Error::new(ProblemKind::Unavailable, "the service is busy; try again in a second");
+        Error { retry_after: Some(1), ..error }
+    }
+
+    /// The problem, to be written out by [`crate::middleware::write_problems`].
+    pub(crate) fn into_problem(self) -> ProblemDetails {
+        *self.problem
+    }
+}
+
+impl From<ProblemDetails> for Error {
+    fn from(problem: ProblemDetails) -> Self {
+        Error { problem: Box::new(problem), retry_after: None }
+    }
+}
+
+impl From<StoreError> for Error {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::IdempotencyConflict => {
+                Error::new(ProblemKind::IdempotencyKeyReused, error.to_string())
+            }
+            error if error.is_busy() => Error::unavailable(&error),
+            error => Error::internal(&error),
+        }
+    }
+}
+
+impl From<TableError> for Error {
+    fn from(error: TableError) -> Self {
+        Error::internal(&error)
+    }
+}
+
+impl IntoResponse for Error {
+    /// A response without a body: the middleware that knows the request's id writes it.
+    fn into_response(self) -> Response {
+        let status = StatusCode::from_u16(self.problem.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let mut response = status.into_response();
+        if let Some(seconds) = self.retry_after {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        response.extensions_mut().insert(self);
+        response
+    }
+}

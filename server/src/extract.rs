@@ -1,0 +1,192 @@
+//! Extractors that answer with problems naming what is wrong: the field, the parameter, what would be valid.
+
+use axum::body::Bytes;
+use axum::extract::{FromRequest, FromRequestParts, Request};
+use axum::http::request::Parts;
+use axum::http::{StatusCode, header};
+use drillsweep_api::problem::pointer_token;
+use drillsweep_api::{FieldProblem, LIMITS, ProblemDetails, ProblemKind};
+use serde::de::DeserializeOwned;
+
+use crate::error::Error;
+
+/// A JSON body, together with the bytes that came in.
+pub(crate) struct Json<T> {
+    /// The body.
+    pub(crate) value: T,
+    /// As it was sent.
+    pub(crate) bytes: Bytes,
+}
+
+impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
+        if let Some(media_type) = request.headers().get(header::CONTENT_TYPE) {
+            let essence =
+                media_type.to_str().unwrap_or_default().split(';').next().unwrap_or_default().trim();
+            if essence != "application/json"
+                && !(essence.starts_with("application/") && essence.ends_with("+json"))
+            {
+                let detail = format!("the body must be application/json, not {essence}");
+                return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
+            }
+        }
+        let bytes = Bytes::from_request(request, state).await.map_err(|rejection| {
+            if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
+                let detail = format!("a body has at most {} bytes", LIMITS.body_bytes);
+                Error::new(ProblemKind::BodyTooLarge, detail)
+            } else {
+                Error::new(ProblemKind::MalformedBody, "the body broke off")
+            }
+        })?;
+        let value = parse(&bytes)?;
+        Ok(Json { value, bytes })
+    }
+}
+
+fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
+    let mut deserializer = serde_json::Deserializer::from_slice(bytes);
+    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let pointer = pointer(error.path());
+        malformed(pointer, error.inner())
+    })?;
+    deserializer.end().map_err(|error| malformed(String::new(), &error))?;
+    Ok(value)
+}
+
+fn malformed(pointer: String, error: &serde_json::Error) -> Error {
+    let detail = error.to_string();
+    let place = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
+    let problem = ProblemDetails::new(ProblemKind::MalformedBody, format!("{place}{detail}"));
+    let error = FieldProblem { pointer: Some(pointer), parameter: None, got: None, detail };
+    ProblemDetails { errors: vec![error], ..problem }.into()
+}
+
+/// A path of serde's as a JSON Pointer. Enum variants are not members of the document.
+fn pointer(path: &serde_path_to_error::Path) -> String {
+    use serde_path_to_error::Segment;
+    let mut pointer = String::new();
+    for segment in path.iter() {
+        match segment {
+            Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
+            Segment::Map { key } => {
+                pointer.push('/');
+                pointer.push_str(&pointer_token(key));
+            }
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    pointer
+}
+
+/// Query parameters; an unknown one is refused by name.
+pub(crate) struct Query<T>(pub(crate) T);
+
+impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Query<T> {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Error> {
+        let query = parts.uri.query().unwrap_or_default().as_bytes();
+        let deserializer = serde_urlencoded::Deserializer::new(form_urlencoded::parse(query));
+        serde_path_to_error::deserialize(deserializer).map(Query).map_err(|error| {
+            let detail = error.inner().to_string();
+            let name = match error.path().iter().next() {
+                Some(serde_path_to_error::Segment::Map { key }) => key.clone(),
+                _ => String::new(),
+            };
+            let got = form_urlencoded::parse(query).find(|(key, _)| *key == name).map(|(_, value)| value);
+            Error::parameter(&name, got.as_deref(), detail)
+        })
+    }
+}
+
+/// Path parameters.
+pub(crate) struct Path<T>(pub(crate) T);
+
+impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Path<T> {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Error> {
+        use axum::extract::path::{ErrorKind, Path as AxumPath};
+        use axum::extract::rejection::PathRejection;
+        match AxumPath::<T>::from_request_parts(parts, state).await {
+            Ok(AxumPath(value)) => Ok(Path(value)),
+            Err(PathRejection::FailedToDeserializePathParams(failure)) => Err(match failure.kind() {
+                ErrorKind::ParseErrorAtKey { key, value, expected_type } => {
+                    Error::parameter(key, Some(value), format!("must be {}", describe(expected_type)))
+                }
+                ErrorKind::DeserializeError { key, value, message } => {
+                    Error::parameter(key, Some(value), message)
+                }
+                kind => Error::parameter("path", None, kind.to_string()),
+            }),
+            Err(rejection) => Err(Error::internal(&rejection)),
+        }
+    }
+}
+
+fn describe(expected_type: &str) -> &str {
+    match expected_type {
+        "u32" | "u64" => "a whole number",
+        other => other,
+    }
+}
+
+/// Query values by what they are, with messages that say what would be valid.
+pub(crate) mod value {
+    use serde::{Deserialize, Deserializer, de::Error};
+    use std::time::Duration;
+
+    /// A finite number.
+    pub(crate) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        match text.parse() {
+            Ok(number) if f64::is_finite(number) => Ok(Some(number)),
+            _ => Err(D::Error::custom("must be a number")),
+        }
+    }
+
+    /// A whole number of 1 or more.
+    pub(crate) fn count<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        match text.parse() {
+            Ok(number) if number > 0 => Ok(Some(number)),
+            _ => Err(D::Error::custom("must be a whole number of 1 or more")),
+        }
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn truth<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        text.parse().map_err(|_| D::Error::custom("must be true or false"))
+    }
+
+    /// A time span: `30s`, `500ms` or, in seconds, `30`.
+    pub(crate) fn span<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Duration>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let (digits, scale) = match text.strip_suffix("ms") {
+            Some(digits) => (digits, 1e-3),
+            None => (text.strip_suffix('s').unwrap_or(&text), 1.0),
+        };
+        let seconds = digits.parse().ok().map(|number: f64| number * scale);
+        seconds
+            .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+            .map(Some)
+            .ok_or_else(|| D::Error::custom("must be a time span such as 30s, 500ms or 30 (seconds)"))
+    }
+}
+
+/// The number of entries in a page: as asked for, else 50.
+pub(crate) fn page_size(limit: Option<u32>) -> Result<u32, Error> {
+    match limit {
+        None => Ok(DEFAULT_PAGE_SIZE),
+        Some(limit) if limit <= LIMITS.page_size => Ok(limit),
+        Some(limit) => {
+            let detail = format!("must be at most {}", LIMITS.page_size);
+            Err(Error::parameter("limit", Some(&limit.to_string()), detail))
+        }
+    }
+}
+
+const DEFAULT_PAGE_SIZE: u32 = 50;

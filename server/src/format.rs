@@ -1,0 +1,205 @@
+//! Which format a table is served in, and how.
+
+use axum::body::Body;
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::{Column, ProblemKind, Table};
+use drillsweep_store::{ColumnData, TableError, encode_parquet};
+use serde::Deserialize;
+use utoipa::ToSchema;
+
+use crate::error::{Error, Result};
+
+/// The formats in which tables are served.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Format {
+    /// An object of columns.
+    Json,
+    /// One line a row, after a line of column names; a missing value is empty.
+    Csv,
+    /// Apache Parquet.
+    Parquet,
+}
+
+impl Format {
+    const ALL: [Format; 3] = [Format::Json, Format::Csv, Format::Parquet];
+
+    /// The media type that the format is served as.
+    pub(crate) fn media_type(self) -> &'static str {
+        match self {
+            Format::Json => "application/json",
+            Format::Csv => "text/csv",
+            Format::Parquet => "application/vnd.apache.parquet",
+        }
+    }
+
+    fn extension(self) -> &'static str {
+        match self {
+            Format::Json => "json",
+            Format::Csv => "csv",
+            Format::Parquet => "parquet",
+        }
+    }
+
+    /// The format to serve: `?format=` if given, else the best that `Accept` allows, else JSON.
+    pub(crate) fn choose(asked: Option<Format>, headers: &HeaderMap) -> Result<Format> {
+        if let Some(format) = asked {
+            return Ok(format);
+        }
+        let accepted: Vec<&str> =
+            headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok()).collect();
+        if accepted.is_empty() {
+            return Ok(Format::Json);
+        }
+        let accepted = accepted.join(",");
+        best(&accepted).ok_or_else(|| {
+            let offered = Format::ALL.map(Format::media_type).join(", ");
+            Error::new(
+                ProblemKind::NotAcceptable,
+                format!("tables are served as {offered}, not as {accepted}"),
+            )
+        })
+    }
+}
+
+/// The format with the greatest weight in an `Accept` header (RFC 9110 section 12.5.1); on a tie, the one
+/// that JSON, CSV, Parquet names first. A media range that is more specific overrides one that is less.
+fn best(accept: &str) -> Option<Format> {
+    let weight = |format: Format| {
+        let media_type = format.media_type();
+        let family = media_type.split('/').next().unwrap_or_default();
+        accept
+            .split(',')
+            .filter_map(|range| {
+                let mut parts = range.split(';').map(str::trim);
+                let range = parts.next()?.to_ascii_lowercase();
+                let specificity = match range.split_once('/')? {
+                    ("*", "*") => 0,
+                    (of_family, "*") if of_family == family => 1,
+                    _ if range == media_type => 2,
+                    _ => return None,
+                };
+                let weight =
+                    parts.find_map(|part| part.strip_prefix("q=")).map_or(Some(1.0), |q| q.parse().ok())?;
+                Some((specificity, weight))
+            })
+            .max_by_key(|(specificity, _)| *specificity)
+            .map_or(0.0_f64, |(_, weight)| weight)
+    };
+    let mut chosen = None;
+    let mut greatest = 0.0;
+    for format in Format::ALL {
+        if weight(format) > greatest {
+            (chosen, greatest) = (Some(format), weight(format));
+        }
+    }
+    chosen
+}
+
+/// A table in a format, as a file called `name` for those who save it.
+pub(crate) fn respond(table: &Table, format: Format, name: &str) -> Result<Response> {
+    let body = match format {
+        Format::Json => serde_json::to_vec(table).map_err(|error| Error::internal(&error))?,
+        Format::Csv => csv(table).map_err(|error| Error::internal(&error))?,
+        Format::Parquet => parquet(table)?,
+    };
+    Ok(file(body, format, name))
+}
+
+/// Bytes that are already in a format.
+pub(crate) fn file(body: impl Into<Body>, format: Format, name: &str) -> Response {
+    let mut response = body.into().into_response();
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(format.media_type()));
+    headers.insert(header::VARY, HeaderValue::from_static("accept"));
+    let disposition = format!("inline; filename=\"{name}.{}\"", format.extension());
+    if let Ok(disposition) = disposition.parse() {
+        headers.insert(header::CONTENT_DISPOSITION, disposition);
+    }
+    response
+}
+
+/// Every column is required there, so that a missing number is NaN and a missing text is empty.
+fn parquet(table: &Table) -> Result<Vec<u8>, TableError> {
+    let mut stored = drillsweep_store::Table::default();
+    for (name, column) in &table.columns {
+        let data = match column {
+            Column::Number(values) => ColumnData::F64(values.clone()),
+            Column::Integer(values) => match values.iter().copied().collect::<Option<Vec<_>>>() {
+                Some(values) => ColumnData::I64(values),
+                None => {
+                    let number = |value: &Option<i64>| value.map_or(f64::NAN, |value| value as f64);
+                    ColumnData::F64(values.iter().map(number).collect())
+                }
+            },
+            Column::Text(values) => {
+                ColumnData::Text(values.iter().map(|value| value.clone().unwrap_or_default()).collect())
+            }
+        };
+        stored.push(name, table.units.get(name).map(String::as_str), data);
+    }
+    encode_parquet(&stored)
+}
+
+fn csv(table: &Table) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(table.columns.keys())?;
+    let mut number = String::new();
+    for row in 0..table.rows() {
+        for column in table.columns.values() {
+            use std::fmt::Write as _;
+            number.clear();
+            match column {
+                Column::Integer(values) => {
+                    if let Some(value) = values[row] {
+                        let _ = write!(number, "{value}");
+                    }
+                    writer.write_field(&number)?;
+                }
+                Column::Number(values) => {
+                    if values[row].is_finite() {
+                        // The shortest digits that give the same number back, as in JSON.
+                        let _ = write!(number, "{:?}", values[row]);
+                    }
+                    writer.write_field(&number)?;
+                }
+                Column::Text(values) => writer.write_field(values[row].as_deref().unwrap_or_default())?,
+            }
+        }
+        writer.write_record(None::<&[u8]>)?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_specific_range_gives_the_weight() {
+        for (accept, format) in [
+            ("*/*", Some(Format::Json)),
+            ("text/csv", Some(Format::Csv)),
+            ("text/*", Some(Format::Csv)),
+            ("text/csv;q=0.5, application/json", Some(Format::Json)),
+            ("application/json;q=0.1, text/csv;q=0.5, */*;q=0.2", Some(Format::Csv)),
+            ("application/json;q=0, */*", Some(Format::Csv)),
+            ("APPLICATION/VND.APACHE.PARQUET", Some(Format::Parquet)),
+            ("image/png", None),
+            ("application/json;q=0", None),
+        ] {
+            assert_eq!(best(accept), format, "{accept}");
+        }
+    }
+
+    #[test]
+    fn csv_leaves_missing_values_empty_and_quotes_what_needs_it() {
+        let table = Table::default()
+            .with("node", Column::Integer(vec![Some(1), None]))
+            .with("radius", Column::Number(vec![1e-7, f64::NAN]))
+            .with("error", Column::Text(vec![None, Some("diverged, at once".to_owned())]));
+        let text = String::from_utf8(csv(&table).unwrap()).unwrap();
+        assert_eq!(text, "node,radius,error\n1,1e-7,\n,,\"diverged, at once\"\n");
+    }
+}

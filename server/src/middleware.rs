@@ -1,0 +1,104 @@
+//! What every request passes through.
+
+use std::any::Any;
+use std::time::Duration;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{DefaultBodyLimit, Request};
+use axum::http::{HeaderName, HeaderValue, Response, header};
+use axum::middleware::{Next, from_fn};
+use axum::response::IntoResponse;
+use drillsweep_api::{LIMITS, PROBLEM_MEDIA_TYPE, ProblemKind};
+use tower::ServiceBuilder;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::predicate::{DefaultPredicate, NotForContentType, Predicate};
+use tower_http::compression::{CompressionLayer, CompressionLevel};
+use tower_http::csrf::{CsrfLayer, ProtectionError};
+use tower_http::request_id::{MakeRequestId, PropagateRequestIdLayer, RequestId, SetRequestIdLayer};
+use tower_http::trace::TraceLayer;
+use tracing::Span;
+
+use crate::error::Error;
+
+const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+
+/// Wraps the routes: request ids, spans, problem documents, compression, refusal of other sites' pages,
+/// panics, body limit; in this order from the outside.
+pub(crate) fn wrap(routes: Router) -> Router {
+    let compressible =
+        DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
+    routes.layer(
+        ServiceBuilder::new()
+            .layer(SetRequestIdLayer::new(REQUEST_ID, RequestIds))
+            .layer(TraceLayer::new_for_http().make_span_with(span).on_request(()).on_response(log_response))
+            .layer(PropagateRequestIdLayer::new(REQUEST_ID))
+            .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
+            .layer(from_fn(write_problems))
+            .layer(CatchPanicLayer::custom(answer_panic))
+            .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
+            .layer(DefaultBodyLimit::max(LIMITS.body_bytes)),
+    )
+}
+
+/// Ids in order of time, so that a log can be searched by either.
+#[derive(Clone)]
+struct RequestIds;
+
+impl MakeRequestId for RequestIds {
+    fn make_request_id<B>(&mut self, _: &axum::http::Request<B>) -> Option<RequestId> {
+        uuid::Uuid::now_v7().to_string().parse().ok().map(RequestId::new)
+    }
+}
+
+fn span(request: &Request) -> Span {
+    let id = request.extensions().get::<RequestId>().and_then(|id| id.header_value().to_str().ok());
+    tracing::info_span!(
+        "request",
+        request.id = id.unwrap_or_default(),
+        http.method = %request.method(),
+        http.path = request.uri().path(),
+    )
+}
+
+fn log_response<B>(response: &Response<B>, latency: Duration, _: &Span) {
+    tracing::debug!(
+        http.status = response.status().as_u16(),
+        latency_ms = latency.as_secs_f64() * 1e3,
+        "answered"
+    );
+}
+
+/// Gives every problem its body, with the request's id as `instance`.
+async fn write_problems(request: Request, next: Next) -> Response<Body> {
+    let id = request.extensions().get::<RequestId>().cloned();
+    let mut response = next.run(request).await;
+    let Some(error) = response.extensions_mut().remove::<Error>() else { return response };
+    let mut problem = error.into_problem();
+    problem.instance =
+        id.and_then(|id| Some(format!("urn:drillsweep:request:{}", id.header_value().to_str().ok()?)));
+    match serde_json::to_vec(&problem) {
+        Ok(body) => {
+            let headers = response.headers_mut();
+            headers.remove(header::CONTENT_LENGTH);
+            headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(PROBLEM_MEDIA_TYPE));
+            *response.body_mut() = Body::from(body);
+        }
+        Err(reason) => tracing::error!(%reason, "a problem could not be written"),
+    }
+    response
+}
+
+// The signature is the layer's.
+#[expect(clippy::needless_pass_by_value)]
+fn answer_panic(panic: Box<dyn Any + Send>) -> Response<Body> {
+    let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
+    Error::internal(text.unwrap_or("a panic without a message")).into_response()
+}
+
+// The signature is the layer's.
+#[expect(clippy::needless_pass_by_value)]
+fn refuse_other_sites(error: ProtectionError) -> Response<Body> {
+    tracing::warn!(reason = ?error.kind(), "a page of another site sent a request");
+    Error::new(ProblemKind::CrossSite, "the request comes from a page of another site").into_response()
+}

@@ -1,0 +1,102 @@
+//! The OpenAPI document of the service.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use axum::http::header;
+use axum::response::IntoResponse;
+use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemDetails, Table};
+use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type};
+use utoipa::{IntoResponses, OpenApi, ToSchema};
+
+use crate::format::Format;
+use crate::router;
+
+/// What the document says about the service as a whole; the routes add themselves.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "drillsweep",
+        version = "1",
+        description = "Sweeps over flow rate and mud density of a nonlinear drillstring simulation. \
+            SI units throughout; a field in another unit says so in its name.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    components(schemas(ProblemDetails, Table)),
+    tags(
+        (name = "sweeps", description = "Submit sweeps and single runs, and follow them"),
+        (name = "points", description = "The points of a sweep and their results"),
+        (name = "scenarios", description = "Preset scenarios"),
+        (name = "service", description = "The service itself"),
+    )
+)]
+pub(crate) struct Document;
+
+/// What every route may answer instead of a result.
+pub(crate) struct Problems;
+
+impl IntoResponses for Problems {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let problem = ContentBuilder::new().schema(Some(reference::<ProblemDetails>())).build();
+        let response = ResponseBuilder::new()
+            .description("A problem document (RFC 9457); its `type` tells the kinds apart")
+            .content(PROBLEM_MEDIA_TYPE, problem);
+        [("default".to_owned(), response.build().into())].into()
+    }
+}
+
+/// A table in the format that was asked for.
+pub(crate) struct TableResponse;
+
+impl IntoResponses for TableResponse {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let file = |format: Format, description| {
+            let text = ObjectBuilder::new().schema_type(Type::String).description(Some(description));
+            let schema = Schema::Object(text.content_media_type(format.media_type()).build());
+            (format.media_type(), ContentBuilder::new().schema(Some(schema)).build())
+        };
+        let json = ContentBuilder::new().schema(Some(reference::<Table>())).build();
+        let (csv, csv_content) =
+            file(Format::Csv, "A line of column names, then a line a row; a missing value is empty.");
+        let (parquet, parquet_content) =
+            file(Format::Parquet, "Apache Parquet; a missing number is NaN, a missing text empty.");
+        let response = ResponseBuilder::new()
+            .description("The table")
+            .content(Format::Json.media_type(), json)
+            .content(csv, csv_content)
+            .content(parquet, parquet_content);
+        [("200".to_owned(), response.build().into())].into()
+    }
+}
+
+fn reference<T: ToSchema>() -> Ref {
+    Ref::from_schema_name(T::name())
+}
+
+/// The OpenAPI 3.1 document of the service.
+pub fn openapi() -> utoipa::openapi::OpenApi {
+    router::documented().into_openapi()
+}
+
+/// The document as it is served and committed: indented JSON with a final newline.
+pub fn openapi_json() -> &'static str {
+    static TEXT: LazyLock<String> = LazyLock::new(|| {
+        let mut text =
+            openapi().to_pretty_json().expect("a document made of strings and numbers has a JSON form");
+        text.push('\n');
+        text
+    });
+    &TEXT
+}
+
+/// The OpenAPI document of the service
+#[utoipa::path(
+    get,
+    path = "/openapi.json",
+    tag = "service",
+    operation_id = "get_openapi",
+    responses((status = 200, description = "The document", content_type = "application/json"), Problems)
+)]
+pub(crate) async fn show() -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/json")], openapi_json())
+}

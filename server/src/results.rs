@@ -1,0 +1,357 @@
+//! The tables of one point's result, and the views cut from them.
+
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::view::{history, node, orbit, spectrum};
+use serde::{Deserialize, Deserializer};
+use utoipa::IntoParams;
+
+use crate::app::App;
+use crate::artifact::{self, Recording};
+use crate::error::{Error, Result};
+use crate::extract::{Path, Query, value};
+use crate::format::{self, Format};
+use crate::openapi::{Problems, TableResponse};
+use crate::work::blocking;
+
+/// Which point's result.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct PointPath {
+    /// Identifier of the sweep.
+    pub(crate) id: String,
+    /// Number of the point in the sweep, from 1.
+    #[param(minimum = 1)]
+    pub(crate) n: u32,
+}
+
+/// How a table is served.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TableQuery {
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    pub(crate) format: Option<Format>,
+}
+
+/// Geometry, hydraulics and forces of every element
+///
+/// Eccentricity, friction coefficient C_f, apparent viscosity, flow regime, pressures, tension and torque at
+/// the equilibrium, from the top down.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/profile",
+    tag = "points",
+    operation_id = "get_profile",
+    params(PointPath, TableQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn profile(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table("profile", app, path, query, headers).await
+}
+
+/// The static equilibrium, node by node
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/statics",
+    tag = "points",
+    operation_id = "get_statics",
+    params(PointPath, TableQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn statics(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table("statics", app, path, query, headers).await
+}
+
+/// Contacts of every node with the hole over the run
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/contacts",
+    tag = "points",
+    operation_id = "get_contacts",
+    params(PointPath, TableQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn contacts(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table("contacts", app, path, query, headers).await
+}
+
+/// The energy ledger over the run
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/energy",
+    tag = "points",
+    operation_id = "get_energy",
+    params(PointPath, TableQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn energy(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table("energy", app, path, query, headers).await
+}
+
+/// A table as the worker stored it; Parquet goes out as it lies there.
+async fn whole_table(
+    name: &'static str,
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    let parquet = artifact::load(&app.store, &id, n, name).await?;
+    let file_name = file_name(&id, n, name);
+    if format == Format::Parquet {
+        return Ok(format::file(parquet, format, &file_name));
+    }
+    blocking(move || format::respond(&artifact::decode(parquet, None)?, format, &file_name)).await
+}
+
+/// Which part of the recorded histories is wanted.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct HistoryQuery {
+    /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    node: Option<u32>,
+    /// Measured depth \[m\]; the nearest recorded node is taken.
+    #[serde(default, deserialize_with = "value::number")]
+    depth: Option<f64>,
+    /// Start of the window \[s\], included.
+    #[serde(default, deserialize_with = "value::number")]
+    from: Option<f64>,
+    /// End of the window \[s\], not included.
+    #[serde(default, deserialize_with = "value::number")]
+    to: Option<f64>,
+    /// At most so many rows: every k-th one stays. Absent means all.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    max_points: Option<u32>,
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<Format>,
+}
+
+/// The recorded motion of the recorded nodes
+///
+/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/history",
+    tag = "points",
+    operation_id = "get_history",
+    params(PointPath, HistoryQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn history(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<HistoryQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    check_window(query.from, query.to)?;
+    let choice = match (query.node, query.depth) {
+        (None, None) => None,
+        (node, depth) => Some(node::Choice::from_parameters(node, depth)?),
+    };
+    let file_name = file_name(&id, n, "history");
+    let recording = Recording::load(&app.store, &id, n).await?;
+    blocking(move || {
+        let table = match choice {
+            None => recording.table()?,
+            Some(choice) => recording.table_of(choice)?,
+        };
+        let max_points = query.max_points.map(|points| points as usize);
+        format::respond(&history::history(table, query.from, query.to, max_points), format, &file_name)
+    })
+    .await
+}
+
+/// Which part of one node's orbit is wanted.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OrbitQuery {
+    /// A recorded node, 1 at the top; either this or `depth`.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    node: Option<u32>,
+    /// Measured depth \[m\]; the nearest recorded node is taken.
+    #[serde(default, deserialize_with = "value::number")]
+    depth: Option<f64>,
+    /// Start of the window \[s\], included.
+    #[serde(default, deserialize_with = "value::number")]
+    from: Option<f64>,
+    /// End of the window \[s\], not included.
+    #[serde(default, deserialize_with = "value::number")]
+    to: Option<f64>,
+    /// At most so many points, 4 or more; those with the extremes of u and v in each part of the window stay.
+    /// Absent means all.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 4)]
+    max_points: Option<u32>,
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<Format>,
+}
+
+/// The path of one node across the hole
+///
+/// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
+/// `samples`, the number of samples in the window.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/orbit",
+    tag = "points",
+    operation_id = "get_orbit",
+    params(PointPath, OrbitQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn orbit(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<OrbitQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    check_window(query.from, query.to)?;
+    let choice = node::Choice::from_parameters(query.node, query.depth)?;
+    let max_points = query.max_points.map(|points| points as usize);
+    if let Some(points) = max_points.filter(|points| *points < orbit::FEWEST_POINTS) {
+        let detail = format!("must be {} or more", orbit::FEWEST_POINTS);
+        return Err(Error::parameter("max_points", Some(&points.to_string()), detail));
+    }
+    let recording = Recording::load(&app.store, &id, n).await?;
+    blocking(move || {
+        let motion = recording.motion_of(choice)?;
+        let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
+        format::respond(&table, format, &file_name(&id, n, &format!("orbit-{}", motion.node)))
+    })
+    .await
+}
+
+/// Which full spectrum is wanted.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpectrumQuery {
+    /// A recorded node, 1 at the top; either this or `depth`.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    node: Option<u32>,
+    /// Measured depth \[m\]; the nearest recorded node is taken.
+    #[serde(default, deserialize_with = "value::number")]
+    depth: Option<f64>,
+    /// Start of the window \[s\], included.
+    #[serde(default, deserialize_with = "value::number")]
+    from: Option<f64>,
+    /// End of the window \[s\], not included.
+    #[serde(default, deserialize_with = "value::number")]
+    to: Option<f64>,
+    /// Weighting of the samples in the window.
+    #[serde(default)]
+    #[param(inline)]
+    window: spectrum::Weighting,
+    /// Frequencies from minus to plus this \[Hz\] are shown.
+    #[serde(default = "default_range", deserialize_with = "range")]
+    #[param(default = 20.0, exclusive_minimum = 0.0)]
+    range_hz: f64,
+    /// At most so many of the highest peaks are listed.
+    #[serde(default = "default_peaks", deserialize_with = "peaks")]
+    #[param(default = 10)]
+    peaks: usize,
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<Format>,
+}
+
+fn default_range() -> f64 {
+    20.0
+}
+
+fn default_peaks() -> usize {
+    10
+}
+
+fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let range = value::number(deserializer)?.filter(|range| *range > 0.0);
+    range.ok_or_else(|| serde::de::Error::custom("must be a number greater than 0"))
+}
+
+fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    text.parse().map_err(|_| serde::de::Error::custom("must be a whole number, 0 or more"))
+}
+
+/// The full spectrum of one node's orbit
+///
+/// Of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward.
+/// Columns `frequency`, `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the
+/// highest peaks with their whirl direction. Lines outside the range enter neither.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/spectrum",
+    tag = "points",
+    operation_id = "get_spectrum",
+    params(PointPath, SpectrumQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn spectrum(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<SpectrumQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    check_window(query.from, query.to)?;
+    let choice = node::Choice::from_parameters(query.node, query.depth)?;
+    let recording = Recording::load(&app.store, &id, n).await?;
+    blocking(move || {
+        let motion = recording.motion_of(choice)?;
+        let part = motion.columns().window(query.from, query.to);
+        let spectrum = spectrum::spectrum(&part, query.window, query.range_hz, query.peaks)?;
+        format::respond(
+            &motion.label(spectrum),
+            format,
+            &file_name(&id, n, &format!("spectrum-{}", motion.node)),
+        )
+    })
+    .await
+}
+
+fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
+    match (from, to) {
+        (Some(from), Some(to)) if from >= to => {
+            Err(Error::parameter("to", Some(&to.to_string()), format!("must be greater than from, {from}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn file_name(id: &str, n: u32, what: &str) -> String {
+    format!("sweep-{id}-point-{n}-{what}")
+}

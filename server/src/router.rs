@@ -1,0 +1,59 @@
+//! All routes, in the order in which a newcomer should read them.
+
+use axum::Router;
+use axum::http::{Method, Uri};
+use drillsweep_api::ProblemKind;
+use drillsweep_store::Store;
+use tokio::sync::watch;
+use utoipa::OpenApi;
+use utoipa_axum::{router::OpenApiRouter, routes};
+
+use crate::app::{App, Config};
+use crate::error::Error;
+use crate::{health, middleware, openapi, points, results, scenarios, status, sweeps};
+
+/// The service without the network. `stopping` ends long polls when it turns true.
+pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
+    let app = App { store, config: config.into(), stopping };
+    let (routes, _) = documented().split_for_parts();
+    let routes =
+        routes.fallback(no_such_route).method_not_allowed_fallback(method_not_allowed).with_state(app);
+    middleware::wrap(routes)
+}
+
+/// Routes and their OpenAPI document; a route cannot exist without its entry there.
+pub(crate) fn documented() -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(openapi::Document::openapi())
+        .routes(routes!(sweeps::create, sweeps::list))
+        .routes(routes!(sweeps::show))
+        .routes(routes!(sweeps::cancel))
+        .routes(routes!(sweeps::retry))
+        .routes(routes!(sweeps::table))
+        .routes(routes!(sweeps::create_run))
+        .routes(routes!(points::list))
+        .routes(routes!(points::show))
+        .routes(routes!(results::profile))
+        .routes(routes!(results::statics))
+        .routes(routes!(results::history))
+        .routes(routes!(results::orbit))
+        .routes(routes!(results::spectrum))
+        .routes(routes!(results::contacts))
+        .routes(routes!(results::energy))
+        .routes(routes!(scenarios::list))
+        .routes(routes!(scenarios::show))
+        .routes(routes!(status::workers))
+        .routes(routes!(status::queue))
+        .routes(routes!(status::limits))
+        .routes(routes!(openapi::show))
+        .routes(routes!(health::alive))
+        .routes(routes!(health::ready))
+}
+
+async fn no_such_route(uri: Uri) -> Error {
+    let detail = format!("there is nothing at {}; the routes are listed at /openapi.json", uri.path());
+    Error::new(ProblemKind::NoSuchRoute, detail)
+}
+
+async fn method_not_allowed(method: Method, uri: Uri) -> Error {
+    Error::new(ProblemKind::MethodNotAllowed, format!("{} cannot be asked for with {method}", uri.path()))
+}

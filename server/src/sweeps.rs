@@ -1,0 +1,325 @@
+//! Sweeps: submitting, following, stopping and retrying them, and their table.
+
+use std::time::Duration;
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::view::points;
+use drillsweep_api::{
+    DryRun, Expansion, LIMITS, PlannedPoint, RunRequest, Sweep, SweepList, SweepPoint, SweepRequest, expand,
+    key_text,
+};
+use drillsweep_store::SubmitOutcome;
+use serde::Deserialize;
+use tokio::time::Instant;
+use utoipa::{IntoParams, ToSchema};
+
+use crate::app::App;
+use crate::convert;
+use crate::error::{Error, Result};
+use crate::extract::{self, Path, Query, value};
+use crate::format::{self, Format};
+use crate::openapi::{Problems, TableResponse};
+use crate::results::TableQuery;
+use crate::work::blocking;
+
+const IDEMPOTENCY_KEY: &str = "idempotency-key";
+
+/// How a submission is meant.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SubmitQuery {
+    /// True answers with the points that the request would become, and stores nothing.
+    #[serde(default, deserialize_with = "value::truth")]
+    dry_run: bool,
+}
+
+/// Submit a sweep
+///
+/// The points are the scenario at every combination of the axes' values, the first axis varying slowest.
+/// Everything that is wrong with the request or any of its points is reported at once.
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "create_sweep",
+    request_body = SweepRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "A text of the client's making, such as a UUID. \
+            The same request sent again under the same key is answered with the sweep that it made the first time."),
+    ),
+    responses(
+        (status = 201, description = "The sweep is stored and waits for workers", body = Sweep,
+            headers(("Location" = String, description = "The sweep"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
+    )
+)]
+pub(crate) async fn create(
+    State(app): State<App>,
+    Query(query): Query<SubmitQuery>,
+    headers: HeaderMap,
+    extract::Json { value: request, bytes }: extract::Json<SweepRequest>,
+) -> Result<Response> {
+    submit(app, request, bytes, query.dry_run, &headers).await
+}
+
+/// Submit a single run
+///
+/// A sweep of one point: the answer is that sweep, the result is at its point 1.
+#[utoipa::path(
+    post,
+    path = "/v1/runs",
+    tag = "sweeps",
+    operation_id = "create_run",
+    request_body = RunRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
+    ),
+    responses(
+        (status = 201, description = "The run is stored and waits for a worker", body = Sweep,
+            headers(("Location" = String, description = "The sweep of one point"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
+    )
+)]
+pub(crate) async fn create_run(
+    State(app): State<App>,
+    Query(query): Query<SubmitQuery>,
+    headers: HeaderMap,
+    extract::Json { value: request, bytes }: extract::Json<RunRequest>,
+) -> Result<Response> {
+    submit(app, request.into(), bytes, query.dry_run, &headers).await
+}
+
+async fn submit(
+    app: App,
+    request: SweepRequest,
+    body: Bytes,
+    is_dry_run: bool,
+    headers: &HeaderMap,
+) -> Result<Response> {
+    let idempotency_key = idempotency_key(headers)?.map(|key| (key, *blake3::hash(&body).as_bytes()));
+    // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
+    let (expansion, new_sweep) = blocking(move || {
+        let expansion = expand(&request)?;
+        let new_sweep = convert::new_sweep(&request, &expansion, idempotency_key)?;
+        Ok((expansion, new_sweep))
+    })
+    .await?;
+    if is_dry_run {
+        return Ok(Json(plan(&app, expansion).await?).into_response());
+    }
+    let id = match app.store.submit_sweep(&new_sweep).await? {
+        SubmitOutcome::Created => new_sweep.id,
+        SubmitOutcome::Known(id) => id,
+    };
+    let sweep = Sweep { warnings: expansion.warnings, ..load(&app, &id).await? };
+    let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
+    Ok((StatusCode::CREATED, [(header::LOCATION, location)], Json(sweep)).into_response())
+}
+
+async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
+    let keys: Vec<_> = expansion.points.iter().map(|point| point.key).collect();
+    let known = app.store.known_results(&keys).await?;
+    let planned = |point: SweepPoint| PlannedPoint {
+        ordinal: point.ordinal,
+        parameters: point.parameters,
+        key: key_text(&point.key),
+    };
+    Ok(DryRun {
+        total: keys.len() as u64,
+        known,
+        points: expansion.points.into_iter().map(planned).collect(),
+        warnings: expansion.warnings,
+    })
+}
+
+/// The key under which a submission may be repeated: a text of visible ASCII.
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>> {
+    let Some(value) = headers.get(IDEMPOTENCY_KEY) else { return Ok(None) };
+    let key = value.to_str().unwrap_or_default();
+    if key.is_empty() || key.len() > 255 {
+        return Err(Error::parameter("Idempotency-Key", None, "must have 1 to 255 visible ASCII characters"));
+    }
+    Ok(Some(key.to_owned()))
+}
+
+/// Which sweeps are listed.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ListQuery {
+    /// Entries in a page; absent means 50.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1, maximum = 500)]
+    limit: Option<u32>,
+    /// `next` of the page before.
+    cursor: Option<String>,
+    /// Only sweeps of this owner.
+    owner: Option<String>,
+}
+
+/// The sweeps, newest first
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "list_sweeps",
+    params(ListQuery),
+    responses((status = 200, description = "A page of sweeps", body = SweepList), Problems)
+)]
+pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
+    let limit = extract::page_size(query.limit)?;
+    // One more than asked for tells whether there is a next page.
+    let (owner, before) = (query.owner.as_deref(), query.cursor.as_deref());
+    let mut records = app.store.sweeps(owner, before, i64::from(limit) + 1).await?;
+    let is_last = records.len() <= limit as usize;
+    records.truncate(limit as usize);
+    let next = records.last().filter(|_| !is_last).map(|record| record.id.clone());
+    let sweeps = records.iter().map(convert::sweep).collect::<Result<_>>()?;
+    Ok(Json(SweepList { sweeps, next }))
+}
+
+async fn load(app: &App, id: &str) -> Result<Sweep> {
+    match app.store.sweep(id).await? {
+        Some(record) => convert::sweep_with_request(&record),
+        None => Err(convert::no_such_sweep(id)),
+    }
+}
+
+/// Whether and for what a request waits.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ShowQuery {
+    /// Waits so long, at most 60 s, before it answers: `30s`, `500ms`, or seconds as a number.
+    #[serde(default, deserialize_with = "value::span")]
+    #[param(value_type = Option<String>, example = "30s")]
+    wait: Option<Duration>,
+    /// What ends the wait early.
+    #[serde(default)]
+    #[param(inline)]
+    until: Until,
+}
+
+/// What a long poll waits for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Until {
+    /// Any change of state, counts or progress.
+    #[default]
+    Change,
+    /// Every point is final.
+    Completed,
+}
+
+/// A sweep: its state, counts and progress
+///
+/// With `wait` the answer is held back until something changes, so that a script needs no polling loop of
+/// its own. A sweep whose points are all final is answered at once.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "get_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(query): Query<ShowQuery>,
+) -> Result<Json<Sweep>> {
+    let sweep = load(&app, &id).await?;
+    match query.wait {
+        Some(wait) => Ok(Json(wait_for(&app, sweep, wait, query.until).await?)),
+        None => Ok(Json(sweep)),
+    }
+}
+
+async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Result<Sweep> {
+    let deadline = Instant::now() + wait.min(Duration::from_secs(LIMITS.wait_seconds));
+    let mut stopping = app.stopping.clone();
+    let seen = |sweep: &Sweep| (sweep.state, sweep.counts, sweep.progress.to_bits());
+    let mut sweep = before.clone();
+    while sweep.finished.is_none() && (until == Until::Completed || seen(&sweep) == seen(&before)) {
+        let now = Instant::now();
+        if now >= deadline {
+            break;
+        }
+        tokio::select! {
+            () = tokio::time::sleep_until((now + app.config.poll_interval).min(deadline)) => {}
+            // An error means that the service is gone.
+            _ = stopping.wait_for(|stopping| *stopping) => break,
+        }
+        sweep = load(app, &before.id).await?;
+    }
+    Ok(sweep)
+}
+
+/// Cancel a sweep
+///
+/// Points that wait are cancelled at once, points under way within a heartbeat of their worker. Points whose
+/// result another sweep wants too go on for that sweep. Cancelling again changes nothing.
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/cancel",
+    tag = "sweeps",
+    operation_id = "cancel_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
+    app.store.cancel_sweep(&id).await?;
+    Ok(Json(load(&app, &id).await?))
+}
+
+/// Retry the failed and cancelled points of a sweep
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/retry",
+    tag = "sweeps",
+    operation_id = "retry_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
+    app.store.retry_sweep(&id).await?;
+    Ok(Json(load(&app, &id).await?))
+}
+
+/// One row a point: its parameters and the scalars of its result
+///
+/// Points without a result have their row too, with empty fields; `state` and `error` say why.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table",
+    tag = "sweeps",
+    operation_id = "get_sweep_table",
+    params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn table(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(query): Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    if app.store.sweep_version(&id).await?.is_none() {
+        return Err(convert::no_such_sweep(&id));
+    }
+    let records = app.store.table_rows(&id).await?;
+    blocking(move || {
+        let rows: Vec<_> = records.iter().map(convert::point_summary).collect::<Result<_>>()?;
+        format::respond(&points::points(&rows), format, &format!("sweep-{id}"))
+    })
+    .await
+}

@@ -1,1 +1,15 @@
-//! drillsweep worker.
+//! A worker process: it claims points, simulates them one after the other, keeps their leases from a thread of its
+//! own, and stores what comes out.
+//!
+//! One process simulates one point at a time, sequentially: the numbers do not depend on how many run. The async
+//! runtime does input and output only; [`compute`] is plain code on a thread that may be cancelled through the
+//! simulation's own control handle.
+
+mod claim;
+mod compute;
+mod lease;
+mod tables;
+
+pub use claim::{WorkerConfig, WorkerError, run};
+pub use compute::{ComputeError, Computed, compute};
+pub use tables::{point_tables, summary_row};

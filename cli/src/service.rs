@@ -1,0 +1,229 @@
+//! The roles of the binary that keep running: server, worker, and both together.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::process::Stdio;
+use std::time::Duration;
+
+use anyhow::Context;
+use clap::Args;
+use drillsweep_server::{Config, DEFAULT_ADDRESS};
+use drillsweep_store::{Role, Store, StoreConfig};
+use drillsweep_worker::WorkerConfig;
+use rustix::process::{Signal, set_parent_process_death_signal};
+use tokio::process::{Child, Command};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::watch;
+
+/// Added to the niceness of a worker: the server answers while all cores simulate.
+const WORKER_NICENESS: i32 = 10;
+
+/// How long children may take to give their points back.
+const CHILD_GRACE: Duration = Duration::from_secs(15);
+
+/// Where the data lies.
+#[derive(Args, Clone)]
+pub(crate) struct DataArguments {
+    /// Directory of the database and the object store.
+    #[arg(long, env = "DRILLSWEEP_DATA", default_value = "data")]
+    data: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct UpArguments {
+    #[command(flatten)]
+    data: DataArguments,
+    /// Address to listen on; anything but this machine is open to everybody there.
+    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
+    listen: SocketAddr,
+    /// Number of worker processes; one a core unless said otherwise.
+    #[arg(long)]
+    workers: Option<usize>,
+    /// Seconds that a point stays with a silent worker.
+    #[arg(long, default_value_t = 60.0)]
+    lease_seconds: f64,
+}
+
+#[derive(Args)]
+pub(crate) struct ServeArguments {
+    #[command(flatten)]
+    data: DataArguments,
+    /// Address to listen on; anything but this machine is open to everybody there.
+    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
+    listen: SocketAddr,
+}
+
+#[derive(Args)]
+pub(crate) struct WorkerArguments {
+    #[command(flatten)]
+    data: DataArguments,
+    /// Seconds that a point stays with a silent worker.
+    #[arg(long, default_value_t = 60.0)]
+    lease_seconds: f64,
+    /// End when there is nothing left to claim.
+    #[arg(long)]
+    drain: bool,
+    /// End when the process that started this one ends.
+    #[arg(long, hide = true)]
+    with_parent: bool,
+}
+
+impl DataArguments {
+    fn store(&self, role: Role) -> StoreConfig {
+        StoreConfig {
+            database_path: self.data.join("drillsweep.sqlite"),
+            blob_directory: self.data.join("blobs"),
+            role,
+            clock_offset_ms: 0,
+        }
+    }
+}
+
+/// Server and workers on one machine.
+pub(crate) fn up(arguments: UpArguments) -> anyhow::Result<()> {
+    let workers = match arguments.workers {
+        Some(number) => number,
+        None => std::thread::available_parallelism()?.get(),
+    };
+    runtime()?.block_on(async {
+        let stop = stop_on_signal()?;
+        let served = serve_until(&arguments.data, arguments.listen, stop.clone());
+        let kept = keep_workers(&arguments, workers, stop);
+        let (served, kept) = tokio::join!(served, kept);
+        served.and(kept)
+    })
+}
+
+/// The server alone.
+pub(crate) fn serve(arguments: ServeArguments) -> anyhow::Result<()> {
+    runtime()?.block_on(async { serve_until(&arguments.data, arguments.listen, stop_on_signal()?).await })
+}
+
+/// A worker.
+pub(crate) fn worker(arguments: WorkerArguments) -> anyhow::Result<()> {
+    if arguments.with_parent {
+        set_parent_process_death_signal(Some(Signal::TERM))
+            .context("the worker cannot follow the process that started it")?;
+    }
+    rustix::process::nice(WORKER_NICENESS).context("the worker cannot lower its priority")?;
+    let config = WorkerConfig {
+        lease: lease(arguments.lease_seconds)?,
+        drain: arguments.drain,
+        ..WorkerConfig::new(arguments.data.store(Role::Worker))
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?).await?) })
+}
+
+fn lease(seconds: f64) -> anyhow::Result<Duration> {
+    anyhow::ensure!(
+        (1.0..=3600.0).contains(&seconds),
+        "--lease-seconds must be from 1 to 3600, got {seconds}"
+    );
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
+    Ok(tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?)
+}
+
+/// Turns true on SIGTERM or Ctrl-C.
+fn stop_on_signal() -> anyhow::Result<watch::Receiver<bool>> {
+    let (sender, receiver) = watch::channel(false);
+    let mut terminate = signal(SignalKind::terminate())?;
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    tokio::spawn(async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+        }
+        sender.send_replace(true);
+        // Keeps the channel open until the process ends.
+        sender.closed().await;
+    });
+    Ok(receiver)
+}
+
+async fn stopped(mut stop: watch::Receiver<bool>) {
+    // The sender lives as long as the runtime.
+    let _ = stop.wait_for(|stop| *stop).await;
+}
+
+async fn serve_until(
+    data: &DataArguments,
+    listen: SocketAddr,
+    stop: watch::Receiver<bool>,
+) -> anyhow::Result<()> {
+    let store = Store::open(&data.store(Role::Server)).await?;
+    let listener =
+        tokio::net::TcpListener::bind(listen).await.with_context(|| format!("cannot listen on {listen}"))?;
+    tracing::info!("listening on http://{}", listener.local_addr()?);
+    drillsweep_server::serve(listener, store.clone(), Config::default(), stopped(stop)).await?;
+    store.close().await;
+    Ok(())
+}
+
+/// Keeps a number of worker processes alive until told to stop.
+async fn keep_workers(
+    arguments: &UpArguments,
+    number: usize,
+    stop: watch::Receiver<bool>,
+) -> anyhow::Result<()> {
+    lease(arguments.lease_seconds)?;
+    let keepers = (0..number).map(|_| {
+        let command = worker_command(arguments);
+        let stop = stop.clone();
+        tokio::spawn(async move { keep_worker(command?, stop).await })
+    });
+    for keeper in keepers.collect::<Vec<_>>() {
+        keeper.await??;
+    }
+    Ok(())
+}
+
+fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command
+        .arg("worker")
+        .arg("--with-parent")
+        .arg("--data")
+        .arg(&arguments.data.data)
+        .arg("--lease-seconds")
+        .arg(arguments.lease_seconds.to_string())
+        .stdin(Stdio::null())
+        // Ctrl-C reaches the whole group: the parent decides when its workers end.
+        .process_group(0);
+    Ok(command)
+}
+
+async fn keep_worker(mut command: Command, stop: watch::Receiver<bool>) -> anyhow::Result<()> {
+    while !*stop.borrow() {
+        let mut child = command.spawn().context("a worker cannot be started")?;
+        tokio::select! {
+            status = child.wait() => {
+                tracing::warn!(status = %status?, "a worker ended; another one is started");
+                tokio::select! {
+                    () = tokio::time::sleep(Duration::from_secs(1)) => {}
+                    () = stopped(stop.clone()) => {}
+                }
+            }
+            () = stopped(stop.clone()) => end_child(child).await?,
+        }
+    }
+    Ok(())
+}
+
+/// Asks a child to end, and ends it after a while.
+async fn end_child(mut child: Child) -> anyhow::Result<()> {
+    if let Some(pid) = child.id().and_then(|id| rustix::process::Pid::from_raw(id as i32)) {
+        // A child that is gone already cannot be signalled, and need not be.
+        let _ = rustix::process::kill_process(pid, Signal::TERM);
+    }
+    if tokio::time::timeout(CHILD_GRACE, child.wait()).await.is_err() {
+        tracing::warn!(
+            "a worker did not end in time and is killed; its point is taken over when its lease ends"
+        );
+        child.kill().await?;
+    }
+    Ok(())
+}

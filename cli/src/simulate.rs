@@ -1,0 +1,213 @@
+//! One point without a server.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use clap::Args;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::scenario::{PRESETS, Scenario, preset};
+use drillsweep_worker::{Computed, compute};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
+
+use crate::print;
+
+#[derive(Args)]
+pub(crate) struct SimulateArguments {
+    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
+    scenario: String,
+    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
+    set: Vec<(String, Value)>,
+    /// Accuracy: draft, standard or reference.
+    #[arg(long)]
+    accuracy: Option<String>,
+    /// Directory for the tables, as Parquet.
+    #[arg(long)]
+    output: Option<PathBuf>,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Simulates and prints a summary.
+pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
+    let mut scenario = read_scenario(&arguments.scenario)?;
+    let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
+    for (path, value) in arguments.set.iter().cloned().chain(accuracy) {
+        scenario = scenario.with(&path, value)?;
+    }
+    let warnings = scenario.validate()?;
+    for warning in warnings {
+        tracing::warn!("{}: {}", warning.path, warning.message);
+    }
+    let computed = with_progress(&scenario)?;
+    if let Some(directory) = &arguments.output {
+        write_tables(&computed, directory)?;
+    }
+    if arguments.json {
+        let mut summary = computed.summary_row();
+        summary.insert("provenance".into(), Value::Object(computed.provenance.clone()));
+        print(&serde_json::to_string_pretty(&summary)?);
+    } else {
+        print(summary_text(&scenario, &computed)?.trim_end());
+    }
+    Ok(())
+}
+
+/// Prints a preset as TOML, or the list of presets.
+pub(crate) fn print_scenario(name: Option<&str>) -> anyhow::Result<()> {
+    match name {
+        None => {
+            for (name, description) in PRESETS {
+                print(&format!("{name:24} {description}"));
+            }
+        }
+        Some(name) => print(&read_scenario(name)?.to_toml()),
+    }
+    Ok(())
+}
+
+/// A preset by name, or a scenario from a file.
+pub(crate) fn read_scenario(name: &str) -> anyhow::Result<Scenario> {
+    let path = Path::new(name);
+    let read = || std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"));
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("toml") => Scenario::from_toml(&read()?).with_context(|| name.to_owned()),
+        Some("json") => Scenario::from_json(&read()?).with_context(|| name.to_owned()),
+        _ => match preset(name) {
+            Some(scenario) => Ok(scenario),
+            None => {
+                let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+                bail!("no scenario {name:?}: presets are {}, files end in .toml or .json", names.join(", "))
+            }
+        },
+    }
+}
+
+/// `path=value`; the value is JSON, or else a text.
+pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
+    let (path, value) = text.split_once('=').with_context(|| format!("write PATH=VALUE, got {text:?}"))?;
+    let value = serde_json::from_str(value).unwrap_or_else(|_| json!(value));
+    Ok((path.trim().to_owned(), value))
+}
+
+fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
+    let bar = ProgressBar::new((scenario.duration * 1000.0) as u64);
+    bar.set_style(ProgressStyle::with_template("{bar:40} {msg} of simulated time, {elapsed}, {eta} left")?);
+    let control = Arc::new(Control::new());
+    let done = AtomicBool::new(false);
+    let computed = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                let time = control.simulated_time();
+                bar.set_position((time * 1000.0) as u64);
+                bar.set_message(format!("{time:.1} of {:.1} s", scenario.duration));
+                std::thread::park_timeout(Duration::from_millis(200));
+            }
+        });
+        let computed = compute(scenario, &control);
+        done.store(true, Ordering::Relaxed);
+        computed
+    });
+    bar.finish_and_clear();
+    Ok(computed?)
+}
+
+fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
+    for (name, _, bytes) in computed.encode()? {
+        let path = directory.join(format!("{name}.parquet"));
+        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(())
+}
+
+fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<String> {
+    let mut text = String::new();
+    let statics = &computed.statics;
+    let cost = |name: &str| computed.provenance.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+    writeln!(text, "{}", if scenario.name.is_empty() { "scenario" } else { &scenario.name })?;
+    writeln!(text, "equilibrium")?;
+    writeln!(
+        text,
+        "  contacts            {:>10} nodes, {:.1} kN in all",
+        statics.contacts,
+        statics.normal_force_total / 1e3
+    )?;
+    writeln!(
+        text,
+        "  effective tension   {:>10.2} kN at the top, {:.2} kN at the bit",
+        statics.tension_top / 1e3,
+        statics.tension_bit / 1e3
+    )?;
+    writeln!(
+        text,
+        "  torque              {:>10.3} kN m at the top, {:.3} kN m at the bit",
+        statics.torque_top / 1e3,
+        statics.torque_bit / 1e3
+    )?;
+    if let (Some([least, largest]), Some([k_least, k_largest])) =
+        (statics.friction_coefficient_range, statics.rotation_damping_range)
+    {
+        writeln!(text, "  C_f                 {least:>10.5} to {largest:.5}")?;
+        writeln!(text, "  damping k           {k_least:>10.2} to {k_largest:.2} N s/m2")?;
+    }
+    if let Some(transient) = &computed.transient {
+        for orbit in &transient.orbits {
+            writeln!(
+                text,
+                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, mean radius {:.2} mm, largest {:.2} mm",
+                orbit.node,
+                orbit.measured_depth,
+                orbit.window.from,
+                orbit.window.to,
+                orbit.orbit_radius_rms * 1e3,
+                orbit.mean_radius * 1e3,
+                orbit.largest_radius * 1e3
+            )?;
+        }
+        for spectrum in &transient.spectra {
+            let lines: Vec<String> = spectrum
+                .lines
+                .iter()
+                .map(|line| format!("{:+.3} Hz {:.4} mm", line.frequency_hz, line.amplitude * 1e3))
+                .collect();
+            writeln!(
+                text,
+                "lines of node {} over [{}, {}) s (+ forward, - backward whirl): {}",
+                spectrum.node,
+                spectrum.window.from,
+                spectrum.window.to,
+                lines.join(", ")
+            )?;
+        }
+        let ratio = transient.energy_residual_ratio.unwrap_or(0.0);
+        writeln!(
+            text,
+            "energy residual {:.3} J, {:.2e} of the contacts' net work",
+            transient.energy_residual, ratio
+        )?;
+        let simulated = scenario.duration;
+        writeln!(
+            text,
+            "{} steps, {:.2} s wall, {:.2} s CPU ({:.4} CPU s per simulated s)",
+            cost("steps"),
+            cost("transient_wall_time"),
+            cost("transient_cpu_time"),
+            cost("transient_cpu_time") / simulated
+        )?;
+    }
+    writeln!(
+        text,
+        "equilibrium with hydraulics: {:.1} ms, {} Newton iterations in {} passes",
+        cost("statics_wall_time") * 1e3,
+        cost("newton_iterations"),
+        cost("hydraulic_passes")
+    )?;
+    Ok(text)
+}

@@ -1,0 +1,151 @@
+//! One point from its scenario to its encoded tables: no queue, no database, no network.
+
+use std::time::Instant;
+
+use drillsweep_sim::PHYSICS_VERSION;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::{Model, ModelError};
+use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::statics::{Equilibrium, StaticsError};
+use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
+use drillsweep_sim::transient::{Outcome, Transient, TransientError};
+use drillsweep_store::{Table, TableError, encode_parquet};
+use serde_json::{Map, Value, json};
+
+use crate::tables::{point_tables, summary_row};
+
+/// A finished point.
+#[derive(Debug)]
+pub struct Computed {
+    /// The tables, by name.
+    pub tables: Vec<(&'static str, Table)>,
+    /// The equilibrium in scalars.
+    pub statics: StaticsSummary,
+    /// The run in time in scalars; absent where the scenario has none.
+    pub transient: Option<TransientSummary>,
+    /// Versions, integrator, steps and cost.
+    pub provenance: Map<String, Value>,
+}
+
+/// Why a point has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ComputeError {
+    /// The scenario cannot be read or is out of range; the server refuses such requests, so it is of another version.
+    #[error("the scenario is not valid: {0}")]
+    Invalid(String),
+    /// No model can be built.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// There is no equilibrium.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
+    /// The run in time failed.
+    #[error(transparent)]
+    Transient(#[from] TransientError),
+    /// It was told to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl ComputeError {
+    /// The error as the service shows it: class, reason, and time and node where there are any.
+    pub fn to_json(&self) -> Value {
+        let mut error = json!({ "class": "physical", "reason": self.to_string() });
+        match self {
+            ComputeError::Transient(TransientError::Diverged { time, node, .. }) => {
+                error["time"] = json!(time);
+                error["node"] = json!(node);
+            }
+            ComputeError::Statics(StaticsError::NotConverged { node, .. }) => error["node"] = json!(node),
+            ComputeError::Statics(StaticsError::Singular(block)) => error["node"] = json!(block.row + 1),
+            _ => {}
+        }
+        error
+    }
+}
+
+impl Computed {
+    /// The flat row that the sweep's table shows.
+    pub fn summary_row(&self) -> Map<String, Value> {
+        summary_row(&self.statics, self.transient.as_ref())
+    }
+
+    /// The tables as Parquet: name, rows, bytes.
+    ///
+    /// # Errors
+    /// When a table cannot be encoded.
+    pub fn encode(&self) -> Result<Vec<(&'static str, usize, Vec<u8>)>, TableError> {
+        self.tables.iter().map(|(name, table)| Ok((*name, table.rows(), encode_parquet(table)?))).collect()
+    }
+}
+
+/// Simulates one point; `control` watches and stops it.
+///
+/// # Errors
+/// When the scenario is not valid, there is no equilibrium, the run diverges, or it is cancelled.
+pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, ComputeError> {
+    scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
+    let started = Stopwatch::start();
+    let model = Model::new(scenario)?;
+    let equilibrium = Equilibrium::find(&model)?;
+    let statics = StaticsSummary::new(&equilibrium);
+    let statics_cost = started.elapsed();
+
+    let started = Stopwatch::start();
+    let records = if scenario.effects.transient.is_on() {
+        match Transient::new(&model, &equilibrium)?.run(control)? {
+            Outcome::Finished(records) => Some(*records),
+            Outcome::Cancelled | Outcome::Suspended(_) => return Err(ComputeError::Cancelled),
+        }
+    } else {
+        None
+    };
+    let transient_cost = started.elapsed();
+    let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
+
+    let mut provenance = Map::new();
+    provenance.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
+    provenance.insert("physics_version".into(), json!(PHYSICS_VERSION));
+    provenance.insert("target".into(), json!(std::env::consts::ARCH));
+    provenance.insert("elements".into(), json!(model.elements.len()));
+    provenance.insert("newton_iterations".into(), json!(equilibrium.effort.newton_iterations));
+    provenance.insert("hydraulic_passes".into(), json!(equilibrium.effort.hydraulic_passes));
+    provenance.insert("statics_wall_time".into(), json!(statics_cost.0));
+    provenance.insert("statics_cpu_time".into(), json!(statics_cost.1));
+    if let Some(records) = &records {
+        let effort = &records.effort;
+        provenance.insert("integrator".into(), json!(effort.stepping.integrator));
+        provenance.insert("step".into(), json!(effort.stepping.step));
+        provenance.insert("contact_sweeps".into(), json!(effort.stepping.contact_sweeps));
+        provenance.insert("step_subdivisions".into(), json!(effort.subdivisions));
+        provenance.insert("steps".into(), json!(effort.steps));
+        provenance.insert("rejected_steps".into(), json!(effort.rejected_steps));
+        provenance.insert("sweep_largest_change".into(), json!(effort.sweeps.largest_change));
+        provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
+        provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
+    }
+    let tables = point_tables(&model, &equilibrium, records.as_ref());
+    Ok(Computed { tables, statics, transient, provenance })
+}
+
+/// Wall and processor time of the calling thread.
+struct Stopwatch {
+    wall: Instant,
+    cpu: f64,
+}
+
+impl Stopwatch {
+    fn start() -> Self {
+        Self { wall: Instant::now(), cpu: thread_cpu_time() }
+    }
+
+    /// Wall and processor time since the start \[s\].
+    fn elapsed(&self) -> (f64, f64) {
+        (self.wall.elapsed().as_secs_f64(), thread_cpu_time() - self.cpu)
+    }
+}
+
+fn thread_cpu_time() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}

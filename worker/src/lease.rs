@@ -1,0 +1,169 @@
+//! The heartbeat: renews the lease of the point under way, from an OS thread with its own connection, so that no
+//! amount of computing can starve it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use drillsweep_sim::control::Control;
+use drillsweep_store::{Lease, Renewal, Store, StoreConfig, WorkerRecord};
+
+/// Renewals per lease: two may fail before it runs out.
+const RENEWALS_PER_LEASE: u32 = 3;
+
+/// A point whose lease is kept.
+#[derive(Debug, Clone)]
+pub(crate) struct Watched {
+    pub(crate) lease: Lease,
+    pub(crate) control: Arc<Control>,
+    /// Simulated time of the whole run \[s\].
+    pub(crate) duration: f64,
+    pub(crate) verdict: Arc<Verdict>,
+}
+
+/// Why a point was told to stop, if it was.
+#[derive(Debug, Default)]
+pub(crate) struct Verdict(AtomicU8);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StopReason {
+    /// Nobody asked for it.
+    None,
+    /// Its sweep was cancelled.
+    Cancelled,
+    /// Its lease is gone.
+    LeaseLost,
+}
+
+impl Verdict {
+    pub(crate) fn get(&self) -> StopReason {
+        match self.0.load(Ordering::Acquire) {
+            0 => StopReason::None,
+            1 => StopReason::Cancelled,
+            _ => StopReason::LeaseLost,
+        }
+    }
+
+    fn set(&self, reason: StopReason) {
+        let code = match reason {
+            StopReason::None => 0,
+            StopReason::Cancelled => 1,
+            StopReason::LeaseLost => 2,
+        };
+        self.0.store(code, Ordering::Release);
+    }
+}
+
+/// The running heartbeat thread.
+pub(crate) struct Heartbeat {
+    jobs: Option<mpsc::Sender<Option<Watched>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Heartbeat {
+    /// Starts the thread; it registers `worker` and keeps its entry fresh while idle too.
+    pub(crate) fn start(config: StoreConfig, worker: WorkerRecord, lease: Duration) -> std::io::Result<Self> {
+        let (jobs, inbox) = mpsc::channel();
+        let thread = std::thread::Builder::new()
+            .name("heartbeat".to_owned())
+            .spawn(move || beat(&config, &worker, lease, &inbox))?;
+        Ok(Self { jobs: Some(jobs), thread: Some(thread) })
+    }
+
+    /// Keeps the lease of a point from now on, or of none.
+    pub(crate) fn watch(&self, point: Option<Watched>) {
+        if let Some(jobs) = &self.jobs {
+            // A thread that has ended is noticed when the lease runs out: the write is then refused.
+            let _ = jobs.send(point);
+        }
+    }
+}
+
+impl Drop for Heartbeat {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn beat(
+    config: &StoreConfig,
+    worker: &WorkerRecord,
+    lease: Duration,
+    inbox: &mpsc::Receiver<Option<Watched>>,
+) {
+    let runtime = match tokio::runtime::Builder::new_current_thread().enable_all().build() {
+        Ok(runtime) => runtime,
+        Err(error) => {
+            tracing::error!(%error, "no heartbeat: its runtime cannot be built");
+            return;
+        }
+    };
+    let lease_ms = lease.as_millis() as i64;
+    let interval = lease / RENEWALS_PER_LEASE;
+    let mut store: Option<Store> = None;
+    let mut point: Option<Watched> = None;
+    let mut renewed = Instant::now();
+    let mut next = Instant::now();
+    loop {
+        match inbox.recv_timeout(next.saturating_duration_since(Instant::now())) {
+            Ok(watched) => {
+                point = watched;
+                renewed = Instant::now();
+                next = renewed + interval;
+                continue;
+            }
+            Err(RecvTimeoutError::Disconnected) => {
+                if let Some(store) = store {
+                    if let Err(error) = runtime.block_on(store.remove_worker(&worker.id)) {
+                        tracing::warn!(%error, "the worker's entry stays until it is stale");
+                    }
+                    runtime.block_on(store.close());
+                }
+                return;
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        next = Instant::now() + interval;
+        if let Err(error) = runtime.block_on(renew(config, worker, lease_ms, &mut store, point.as_ref())) {
+            tracing::warn!(%error, "a heartbeat failed");
+            // Better to lose the work than to compute as a zombie.
+            if let Some(point) = point.as_ref().filter(|_| renewed.elapsed() * 2 > lease) {
+                point.verdict.set(StopReason::LeaseLost);
+                point.control.cancel();
+            }
+            next = Instant::now() + interval / 4;
+        } else {
+            renewed = Instant::now();
+        }
+    }
+}
+
+async fn renew(
+    config: &StoreConfig,
+    worker: &WorkerRecord,
+    lease_ms: i64,
+    store: &mut Option<Store>,
+    point: Option<&Watched>,
+) -> drillsweep_store::Result<()> {
+    if store.is_none() {
+        *store = Some(Store::open(config).await?);
+    }
+    let Some(store) = store else { return Ok(()) };
+    store.register_worker(worker).await?;
+    let Some(point) = point else { return Ok(()) };
+    let progress = (point.control.simulated_time() / point.duration).clamp(0.0, 1.0);
+    let reason = match store.renew(&point.lease, lease_ms, progress).await? {
+        Renewal::Held => return Ok(()),
+        Renewal::CancelRequested => StopReason::Cancelled,
+        Renewal::Lost => StopReason::LeaseLost,
+    };
+    tracing::info!(?reason, "the point under way is told to stop");
+    point.verdict.set(reason);
+    point.control.cancel();
+    Ok(())
+}

@@ -21,13 +21,14 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "torque" => "N m",
         "friction_gradient" | "bore_friction_gradient" => "Pa/m",
         "annulus_pressure" | "bore_pressure" => "Pa",
-        "apparent_viscosity" => "Pa s",
-        "rotation_damping" => "Pa s",
+        "apparent_viscosity" => "m2/s",
+        "rotation_damping" | "friction_damping" => "N s/m2",
+        "annulus_speed" | "bore_speed" => "m/s",
         "eccentricity" | "friction_coefficient" | "added_mass_coefficient" | "reynolds_number" => "1",
         "progress" => "1",
         "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "work_gravity" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
-        "residual" => "J",
+        "contact_work" | "residual" | "energy_residual" => "J",
         _ => return None,
     })
 }

@@ -5,6 +5,8 @@ mod common;
 
 use common::{STEEL, StraightBeam, critical_factor, eigenvalues, frequencies, select};
 use drillsweep_sim::beam::BeamSection;
+use drillsweep_sim::model::FlowMomentum;
+use drillsweep_sim::scenario::preset;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
@@ -228,4 +230,27 @@ fn cantilever_conveying_fluid_flutters_at_the_published_speeds() {
         assert!((stable / critical - 1.0).abs() < 5e-4, "beta {beta}: {stable} against {critical}");
         assert!((most_unstable(stable).im / frequency - 1.0).abs() < 1e-3, "beta {beta}");
     }
+}
+
+#[test]
+fn mud_lowers_frequencies_by_the_root_of_the_mass_ratio() {
+    // sqrt(m / (m + M_f + chi rho_f A_o)), chi = (D_ch^2 + D_o^2) / (D_ch^2 - D_o^2) = 2.0582 for the drillpipe.
+    let mut mud = preset("paper-200m").expect("shipped preset").mud.expect("wet");
+    mud.flow_rate = 0.0;
+    let s = BeamSection::pipe(0.127, 0.108, &STEEL);
+    let momentum = FlowMomentum::new(&mud, &s, 0.2159);
+    assert!((momentum.added_mass_coefficient - 2.0582).abs() < 5e-5);
+    let added = 1200.0 * PI / 4.0 * (0.108_f64.powi(2) + 2.0582 * 0.127_f64.powi(2));
+    assert!((momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass - added).abs() < 1e-3);
+    let beam = StraightBeam::new(s, 20.0, 8);
+    let dofs = beam.pinned_pinned();
+    let k = select(&beam.assemble(&beam.element.stiffness()), &dofs);
+    let lowest = |mass: f64| {
+        let m = select(&beam.assemble(&(beam.element.mass() + beam.element.lateral_mass() * mass)), &dofs);
+        frequencies(&m, &DMatrix::zeros(m.nrows(), m.nrows()), &k)[0]
+    };
+    let steel = s.density * s.area;
+    let expected = (steel / (steel + added)).sqrt();
+    // Rotary inertia, (pi r / L)^2 = 4e-5 of the mass, is not added to.
+    assert!((lowest(added) / lowest(0.0) / expected - 1.0).abs() < 5e-5);
 }

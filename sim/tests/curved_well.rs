@@ -240,3 +240,25 @@ fn equilibrium_leaves_no_force_unbalanced() {
     // Rounding of forces E S u / l of 1e10 N/m times 0.1 m.
     assert!(equilibrium.effort.residual < 1e-5, "{}", equilibrium.effort.residual);
 }
+
+#[test]
+fn base_case_rests_as_in_the_paper() {
+    // Section 4.2 of the paper: contacts at the tool joints and at almost all collars; node 49 sits at 0.037 m.
+    let model = Model::new(&base()).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("rests");
+    let radius = |node: usize| equilibrium.displacement[node][0].hypot(equilibrium.displacement[node][1]);
+    assert!((radius(48) - 0.037).abs() < 5e-4, "{}", radius(48));
+    let touches = |node: usize| equilibrium.normal_force[node] > 0.0;
+    // The connection of each pair of drillpipes is the node between two tool joints.
+    let connections = (1..=8).map(|pipe| model.mesh.nearest_node(4.0 + 9.5 * f64::from(pipe)));
+    assert_eq!(connections.filter(|&node| touches(node)).count(), 8);
+    let collars: Vec<usize> =
+        (0..model.node_count()).filter(|&node| model.mesh.nodes[node].measured_depth > 89.5).collect();
+    let resting = collars.iter().filter(|&&node| touches(node)).count();
+    assert!(resting * 10 > collars.len() * 5, "{resting} of {} collar nodes", collars.len());
+    // Nothing is pushed into the rock further than its contact stiffness allows for.
+    for (node, force) in equilibrium.normal_force.iter().enumerate().filter(|(_, force)| **force > 0.0) {
+        let penetration = radius(node) - model.mesh.nodes[node].clearance;
+        assert!(*force <= 1.0e7 * penetration * (1.0 + 1e-9) && *force >= 0.5e7 * penetration);
+    }
+}

@@ -1,0 +1,223 @@
+//! The whole system as real processes: sweeps end to end, workers and servers killed for real.
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::{Value, json};
+
+/// Longest that any state may take to be reached on a loaded machine.
+const PATIENCE: Duration = Duration::from_secs(180);
+
+/// Builds the binary (nothing to do when it is fresh) and tells where it is.
+fn binary() -> PathBuf {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let built = Command::new(&cargo).args(["build", "--locked", "-q", "-p", "drillsweep"]).status().unwrap();
+    assert!(built.success(), "the binary does not build");
+    let metadata = cargo_metadata::MetadataCommand::new().no_deps().exec().unwrap();
+    metadata.target_directory.join("debug").join("drillsweep").into_std_path_buf()
+}
+
+/// A process that does not outlive its test.
+struct Process(Child);
+
+impl Process {
+    fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_raw(self.0.id() as i32).unwrap(), signal).unwrap();
+    }
+
+    fn kill(mut self) {
+        self.signal(Signal::KILL);
+        self.0.wait().unwrap();
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn start(data: &Path, arguments: &[&str]) -> (Process, BufReader<std::process::ChildStderr>) {
+    let mut child = Command::new(binary())
+        .args(arguments)
+        .arg("--data")
+        .arg(data)
+        .env("DRILLSWEEP_LOG", "info")
+        .env("NO_COLOR", "1")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let log = BufReader::new(child.stderr.take().unwrap());
+    (Process(child), log)
+}
+
+/// Starts a role that listens and returns its address; its log is read on, so that the pipe never fills.
+fn listen(data: &Path, arguments: &[&str]) -> (Process, String) {
+    let (process, mut log) = start(data, &[arguments, &["--listen", "127.0.0.1:0"]].concat());
+    let mut line = String::new();
+    let address = loop {
+        line.clear();
+        assert!(log.read_line(&mut line).unwrap() > 0, "the server ended before it listened");
+        if let Some(at) = line.find("http://") {
+            break line[at..].split_whitespace().next().unwrap().to_owned();
+        }
+    };
+    drain(log);
+    (process, address)
+}
+
+fn worker(data: &Path) -> Process {
+    let (process, log) = start(data, &["worker", "--lease-seconds", "2"]);
+    drain(log);
+    process
+}
+
+fn drain(mut log: BufReader<std::process::ChildStderr>) {
+    std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
+}
+
+fn get(url: &str) -> Value {
+    ureq::get(url).call().unwrap().body_mut().read_json().unwrap()
+}
+
+fn post(url: &str, body: &Value) -> Value {
+    ureq::post(url).send_json(body).unwrap().body_mut().read_json().unwrap()
+}
+
+/// A sweep of the paper's string over `seconds` of simulated time.
+fn submit(server: &str, seconds: f64, changes: &Value) -> String {
+    let mut set = json!({
+        "duration": seconds,
+        "recording.spectrum_windows": [],
+        "recording.orbit_window": null,
+        "accuracy": "draft",
+    });
+    set.as_object_mut().unwrap().extend(changes.as_object().unwrap().clone());
+    let request = json!({ "preset": "paper-200m", "set": set, "axes": { "flow_rate": { "values": [0.01, 0.02] } } });
+    post(&format!("{server}/v1/sweeps"), &request)["id"].as_str().unwrap().to_owned()
+}
+
+/// Long-polls the sweep until `reached`.
+fn wait(server: &str, sweep: &str, reached: impl Fn(&Value) -> bool) -> Value {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        let state = get(&format!("{server}/v1/sweeps/{sweep}?wait=1s"));
+        if reached(&state) {
+            return state;
+        }
+        assert!(Instant::now() < deadline, "not reached: {state}");
+    }
+}
+
+fn completed(sweep: &Value) -> bool {
+    sweep["state"] != "running"
+}
+
+#[test]
+fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);
+    let id = submit(&server, 0.5, &json!({}));
+    let sweep = wait(&server, &id, completed);
+    assert_eq!(sweep["counts"]["succeeded"], 2, "{sweep}");
+
+    let alone = Command::new(binary())
+        .args(["simulate", "paper-200m", "--json", "--accuracy", "draft", "--set", "duration=0.5"])
+        .args(["--set", "recording.spectrum_windows=[]", "--set", "recording.orbit_window=null"])
+        .args(["--set", "mud.flow_rate=0.02"])
+        .output()
+        .unwrap();
+    assert!(alone.status.success());
+    let alone: Value = serde_json::from_slice(&alone.stdout).unwrap();
+    let point = get(&format!("{server}/v1/sweeps/{id}/points/2"));
+    for (name, value) in point["summary"].as_object().unwrap() {
+        assert_eq!(value, &alone[name], "{name}: the same bits wherever a point runs");
+    }
+
+    // The density of the annulus' mud can be read off the pressures of the profile: hydrostatics dominate.
+    let profile = get(&format!("{server}/v1/sweeps/{id}/points/1/profile"));
+    assert_eq!(profile["columns"]["friction_coefficient"].as_array().unwrap().len(), 296);
+    let orbit = get(&format!("{server}/v1/sweeps/{id}/points/1/orbit?node=49&from=0.1&to=0.3"));
+    assert_eq!(orbit["columns"]["u"].as_array().unwrap().len(), 200, "half-open window at 1 kHz");
+    let spectrum = get(&format!("{server}/v1/sweeps/{id}/points/1/spectrum?node=49&from=0&to=0.5"));
+    assert!(spectrum["columns"]["frequency"].as_array().unwrap().len() > 2);
+}
+
+#[test]
+fn killed_workers_points_are_taken_over_when_their_leases_end() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let id = submit(&server, 4.0, &json!({}));
+    let doomed = worker(data.path());
+    wait(&server, &id, |sweep| sweep["counts"]["running"] == 1 && sweep["progress"].as_f64().unwrap() > 0.0);
+    doomed.kill();
+    let _heir = worker(data.path());
+    let sweep = wait(&server, &id, completed);
+    assert_eq!(sweep["counts"]["succeeded"], 2, "{sweep}");
+    let attempts: Vec<u64> = (1..=2)
+        .map(|n| get(&format!("{server}/v1/sweeps/{id}/points/{n}"))["attempts"].as_u64().unwrap())
+        .collect();
+    assert_eq!(attempts.iter().sum::<u64>(), 3, "one point was started twice: {attempts:?}");
+}
+
+#[test]
+fn killed_server_loses_nothing() {
+    let data = tempfile::tempdir().unwrap();
+    let (first, address) = listen(data.path(), &["serve"]);
+    let id = submit(&address, 0.2, &json!({}));
+    first.kill();
+    let (_second, server) = listen(data.path(), &["serve"]);
+    let sweep = get(&format!("{server}/v1/sweeps/{id}"));
+    assert_eq!(sweep["counts"]["queued"], 2, "{sweep}");
+    let _worker = worker(data.path());
+    let sweep = wait(&server, &id, completed);
+    assert_eq!(sweep["counts"]["succeeded"], 2, "{sweep}");
+}
+
+#[test]
+fn stopped_worker_gives_its_point_back_untried() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let id = submit(&server, 60.0, &json!({}));
+    let mut stopping = worker(data.path());
+    wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
+    stopping.signal(Signal::TERM);
+    assert!(stopping.0.wait().unwrap().success(), "a stopped worker ends in order");
+    let sweep = get(&format!("{server}/v1/sweeps/{id}"));
+    assert_eq!(sweep["counts"]["queued"], 2, "{sweep}");
+    for n in 1..=2 {
+        assert_eq!(get(&format!("{server}/v1/sweeps/{id}/points/{n}"))["attempts"], 0);
+    }
+}
+
+#[test]
+fn cancelled_sweep_stops_its_running_point() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let id = submit(&server, 60.0, &json!({}));
+    let _worker = worker(data.path());
+    wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
+    post(&format!("{server}/v1/sweeps/{id}/cancel"), &json!({}));
+    let sweep = wait(&server, &id, |sweep| sweep["counts"]["cancelled"] == 2);
+    assert_eq!(sweep["state"], "cancelled", "{sweep}");
+}
+
+#[test]
+fn diverging_point_ends_as_failed_with_time_node_and_reason() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    // Without its wall the string is buckled by the weight on bit, and swings out of every bound.
+    let id = submit(&server, 60.0, &json!({ "effects.contact": "off" }));
+    let _worker = worker(data.path());
+    let sweep = wait(&server, &id, completed);
+    assert_eq!(sweep["counts"]["failed"], 2, "{sweep}");
+    let error = get(&format!("{server}/v1/sweeps/{id}/points/1"))["error"].clone();
+    assert_eq!(error["class"], "physical", "{error}");
+    assert!(error["time"].as_f64().is_some_and(|time| (0.0..60.0).contains(&time)), "{error}");
+    assert!(error["node"].as_u64().is_some_and(|node| (1..=297).contains(&node)), "{error}");
+    assert!(error["reason"].as_str().unwrap().contains("diverged"), "{error}");
+}

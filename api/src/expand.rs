@@ -46,7 +46,7 @@ pub struct Expansion {
 ///
 /// # Errors
 /// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request.
-pub fn expand(request: &SweepRequest) -> Result<Expansion, ProblemDetails> {
+pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
     let mut problems = Found::default();
     let mut warnings = Found::default();
     let mut points = Vec::new();
@@ -61,7 +61,7 @@ pub fn expand(request: &SweepRequest) -> Result<Expansion, ProblemDetails> {
     }
     match problems.0.is_empty() {
         true => Ok(Expansion { points, warnings: warnings.into_vec() }),
-        false => Err(ProblemDetails::invalid_request(problems.into_vec())),
+        false => Err(Box::new(ProblemDetails::invalid_request(problems.into_vec()))),
     }
 }
 

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use drillsweep_sim::scenario::Scenario;
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -100,13 +101,22 @@ pub enum Design {
 }
 
 /// The parameters that can be swept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AxisName {
     /// Flow rate of the mud, `mud.flow_rate` \[m3/s\].
     FlowRate,
     /// Density of the mud, `mud.density` \[kg/m3\].
     MudDensity,
+}
+
+impl<'de> Deserialize<'de> for AxisName {
+    /// As a string rather than as a variant, so that the name shows up in the path of an error below it.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let axis = AxisName::ALL.into_iter().find(|axis| axis.as_str() == name);
+        axis.ok_or_else(|| D::Error::unknown_variant(&name, &["flow_rate", "mud_density"]))
+    }
 }
 
 impl AxisName {

@@ -46,9 +46,15 @@ impl Error {
     }
 }
 
+impl From<Box<ProblemDetails>> for Error {
+    fn from(problem: Box<ProblemDetails>) -> Self {
+        Error { problem, retry_after: None }
+    }
+}
+
 impl From<ProblemDetails> for Error {
     fn from(problem: ProblemDetails) -> Self {
-        Error { problem: Box::new(problem), retry_after: None }
+        Box::new(problem).into()
     }
 }
 

@@ -22,15 +22,13 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
     type Rejection = Error;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
-        if let Some(media_type) = request.headers().get(header::CONTENT_TYPE) {
-            let essence =
-                media_type.to_str().unwrap_or_default().split(';').next().unwrap_or_default().trim();
-            if essence != "application/json"
-                && !(essence.starts_with("application/") && essence.ends_with("+json"))
-            {
-                let detail = format!("the body must be application/json, not {essence}");
-                return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
-            }
+        let media_type = request.headers().get(header::CONTENT_TYPE);
+        let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
+        let essence = media_type.split(';').next().unwrap_or_default().trim();
+        if !essence.eq_ignore_ascii_case("application/json") {
+            let found = if essence.is_empty() { "without one" } else { essence };
+            let detail = format!("the body must come with Content-Type: application/json, not {found}");
+            return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
         }
         let bytes = Bytes::from_request(request, state).await.map_err(|rejection| {
             if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {

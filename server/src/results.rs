@@ -155,6 +155,16 @@ pub(crate) struct HistoryQuery {
     format: Option<Format>,
 }
 
+impl HistoryQuery {
+    fn is_whole(&self) -> bool {
+        self.node.is_none()
+            && self.depth.is_none()
+            && self.from.is_none()
+            && self.to.is_none()
+            && self.max_points.is_none()
+    }
+}
+
 /// The recorded motion of the recorded nodes
 ///
 /// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...
@@ -179,6 +189,10 @@ pub(crate) async fn history(
         (node, depth) => Some(node::Choice::from_parameters(node, depth)?),
     };
     let file_name = file_name(&id, n, "history");
+    if format == Format::Parquet && query.is_whole() {
+        let parquet = artifact::load(&app.store, &id, n, "history").await?;
+        return Ok(format::file(parquet, format, &file_name));
+    }
     let recording = Recording::load(&app.store, &id, n).await?;
     blocking(move || {
         let table = match choice {

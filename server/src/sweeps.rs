@@ -28,6 +28,9 @@ use crate::work::blocking;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
+/// How often a long poll looks for progress within points; workers report it every 20 s.
+const PROGRESS_INTERVAL: Duration = Duration::from_secs(2);
+
 /// How a submission is meant.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
@@ -245,10 +248,11 @@ pub(crate) async fn show(
 }
 
 async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Result<Sweep> {
-    let deadline = Instant::now() + wait.min(Duration::from_secs(LIMITS.wait_seconds));
+    let start = Instant::now();
+    let deadline = start + wait.min(Duration::from_secs(LIMITS.wait_seconds));
     let mut stopping = app.stopping.clone();
     let seen = |sweep: &Sweep| (sweep.state, sweep.counts, sweep.progress.to_bits());
-    let mut sweep = before.clone();
+    let (mut sweep, mut version, mut read) = (before.clone(), None, start);
     while sweep.finished.is_none() && (until == Until::Completed || seen(&sweep) == seen(&before)) {
         let now = Instant::now();
         if now >= deadline {
@@ -259,7 +263,12 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
             // An error means that the service is gone.
             _ = stopping.wait_for(|stopping| *stopping) => break,
         }
-        sweep = load(app, &before.id).await?;
+        // The version tells of new states cheaply; progress within a point does not raise it.
+        let current = app.store.sweep_version(&before.id).await?;
+        if version != Some(current) || read.elapsed() >= PROGRESS_INTERVAL {
+            sweep = load(app, &before.id).await?;
+            (version, read) = (Some(current), Instant::now());
+        }
     }
     Ok(sweep)
 }

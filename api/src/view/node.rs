@@ -24,15 +24,17 @@ impl Choice {
     ///
     /// # Errors
     /// When both are given, or none.
-    pub fn from_parameters(node: Option<u32>, depth: Option<f64>) -> Result<Self, ProblemDetails> {
+    pub fn from_parameters(node: Option<u32>, depth: Option<f64>) -> Result<Self, Box<ProblemDetails>> {
         match (node, depth) {
             (Some(node), None) => Ok(Choice::Node(node)),
             (None, Some(depth)) => Ok(Choice::Depth(depth)),
             (Some(_), Some(_)) => {
-                Err(ProblemDetails::invalid_parameter("depth", None, "`node` and `depth` exclude each other"))
+                Err(ProblemDetails::invalid_parameter("depth", None, "`node` and `depth` exclude each other")
+                    .into())
             }
             (None, None) => {
-                Err(ProblemDetails::invalid_parameter("node", None, "either `node` or `depth` must be given"))
+                Err(ProblemDetails::invalid_parameter("node", None, "either `node` or `depth` must be given")
+                    .into())
             }
         }
     }
@@ -42,14 +44,14 @@ impl Choice {
     ///
     /// # Errors
     /// A problem that lists the recorded nodes, when the one asked for is not among them.
-    pub fn among(self, recorded: &[(u32, f64)]) -> Result<(u32, f64), ProblemDetails> {
+    pub fn among(self, recorded: &[(u32, f64)]) -> Result<(u32, f64), Box<ProblemDetails>> {
         let found = match self {
             Choice::Node(asked) => recorded.iter().find(|(node, _)| *node == asked),
             Choice::Depth(depth) => {
                 recorded.iter().min_by(|(_, a), (_, b)| (a - depth).abs().total_cmp(&(b - depth).abs()))
             }
         };
-        found.copied().ok_or_else(|| self.not_among(recorded))
+        found.copied().ok_or_else(|| Box::new(self.not_among(recorded)))
     }
 
     fn not_among(self, recorded: &[(u32, f64)]) -> ProblemDetails {

@@ -25,13 +25,13 @@ pub fn spectrum(
     weighting: Weighting,
     range: f64,
     peaks: usize,
-) -> Result<Table, ProblemDetails> {
+) -> Result<Table, Box<ProblemDetails>> {
     let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else {
-        return Err(too_few(motion));
+        return Err(too_few(motion).into());
     };
     let intervals = motion.time.len() - 1;
     if intervals == 0 {
-        return Err(too_few(motion));
+        return Err(too_few(motion).into());
     }
     let rate = intervals as f64 / (last - first);
     let spectrum = full_spectrum(motion.u, motion.v, rate, weighting).restricted_to(&(-range..=range));

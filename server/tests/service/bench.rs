@@ -1,0 +1,180 @@
+//! A service over a store in a temporary directory, and a worker that stores tables made up here.
+
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+use axum::Router;
+use axum::body::{Body, Bytes};
+use axum::http::{HeaderMap, Method, Request, StatusCode, header};
+use drillsweep_server::{Config, router};
+use drillsweep_store::{
+    Claim, ColumnData, FailureClass, NewArtifact, Role, Store, StoreConfig, Table, encode_parquet,
+};
+use http_body_util::BodyExt;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tokio::sync::watch;
+use tower::ServiceExt;
+
+pub(crate) struct Bench {
+    pub(crate) store: Store,
+    pub(crate) stop: watch::Sender<bool>,
+    routes: Router,
+    _directory: TempDir,
+}
+
+pub(crate) struct Answer {
+    pub(crate) status: StatusCode,
+    pub(crate) headers: HeaderMap,
+    pub(crate) body: Bytes,
+}
+
+impl Answer {
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {:?}", self.body))
+    }
+
+    /// The body, which must be a problem document of this kind.
+    pub(crate) fn problem(&self, status: u16, slug: &str) -> Value {
+        let problem = self.json();
+        assert_eq!(self.status, status, "{problem}");
+        assert_eq!(self.headers[header::CONTENT_TYPE], "application/problem+json");
+        assert_eq!(problem["type"], format!("urn:drillsweep:problem:{slug}"), "{problem}");
+        assert_eq!(problem["status"], status);
+        let id = self.headers["x-request-id"].to_str().unwrap();
+        assert_eq!(problem["instance"], format!("urn:drillsweep:request:{id}"));
+        problem
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        std::str::from_utf8(&self.body).unwrap()
+    }
+}
+
+impl Bench {
+    pub(crate) async fn new() -> Self {
+        let directory = TempDir::new().unwrap();
+        let store = Store::open(&StoreConfig {
+            database_path: directory.path().join("drillsweep.sqlite"),
+            blob_directory: directory.path().join("blobs"),
+            role: Role::Server,
+            clock_offset_ms: 0,
+        })
+        .await
+        .unwrap();
+        let (stop, stopping) = watch::channel(false);
+        let config = Config { poll_interval: Duration::from_millis(10), ..Config::default() };
+        Bench { routes: router(store.clone(), config, stopping), store, stop, _directory: directory }
+    }
+
+    pub(crate) async fn send(&self, request: Request<Body>) -> Answer {
+        let response = self.routes.clone().oneshot(request).await.unwrap();
+        let (parts, body) = response.into_parts();
+        let body = body.collect().await.unwrap().to_bytes();
+        Answer { status: parts.status, headers: parts.headers, body }
+    }
+
+    pub(crate) async fn get(&self, path: &str) -> Answer {
+        self.send(Request::get(path).body(Body::empty()).unwrap()).await
+    }
+
+    pub(crate) async fn post(&self, path: &str, body: Value) -> Answer {
+        self.send(json_request(Method::POST, path, body.to_string())).await
+    }
+
+    /// Submits a sweep and gives its id.
+    pub(crate) async fn submit(&self, body: Value) -> String {
+        let answer = self.post("/v1/sweeps", body).await;
+        assert_eq!(answer.status, StatusCode::CREATED, "{}", answer.text());
+        answer.json()["id"].as_str().unwrap().to_owned()
+    }
+
+    pub(crate) async fn claim(&self) -> Claim {
+        let physics_version = drillsweep_api::PHYSICS_VERSION.into();
+        self.store.claim("bench", physics_version, 60_000).await.unwrap().expect("a point waits")
+    }
+
+    /// Claims the next point and ends it with the tables of [`tables`].
+    pub(crate) async fn succeed(&self) {
+        let claim = self.claim().await;
+        let scenario: Value = serde_json::from_str(&claim.scenario_json).unwrap();
+        let mut artifacts = Vec::new();
+        for (name, table) in tables() {
+            let parquet = encode_parquet(&table).unwrap();
+            artifacts.push(NewArtifact {
+                name: name.to_owned(),
+                media_type: "application/vnd.apache.parquet".to_owned(),
+                bytes: parquet.len().try_into().unwrap(),
+                row_count: table.rows().try_into().unwrap(),
+                blob: self.store.blobs().put(parquet).await.unwrap(),
+            });
+        }
+        let summary = json!({"steps": 10_000, "density_seen": scenario["mud"]["density"], "residual": 1e-9});
+        let provenance = json!({"version": "bench"});
+        let is_taken = self
+            .store
+            .finish_done(&claim.lease, &summary.to_string(), &provenance.to_string(), &artifacts)
+            .await
+            .unwrap();
+        assert!(is_taken);
+    }
+
+    /// Claims the next point and ends it as diverged.
+    pub(crate) async fn diverge(&self) {
+        let claim = self.claim().await;
+        let error =
+            json!({"class": "physical", "reason": "the state is not finite", "time": 1.25, "node": 49});
+        assert!(
+            self.store.finish_failed(&claim.lease, FailureClass::Physical, &error.to_string()).await.unwrap()
+        );
+    }
+}
+
+pub(crate) fn json_request(method: Method, path: &str, body: String) -> Request<Body> {
+    Request::builder()
+        .method(method)
+        .uri(path)
+        .header(header::CONTENT_TYPE, "application/json")
+        .body(Body::from(body))
+        .unwrap()
+}
+
+/// Rate of the made-up recording \[Hz\].
+pub(crate) const RATE: f64 = 1000.0;
+
+/// Duration of the made-up recording \[s\].
+pub(crate) const DURATION: f64 = 10.0;
+
+/// The recorded nodes with their measured depths \[m\].
+pub(crate) const NODES: [(u32, f64); 2] = [(10, 11.72), (49, 57.73)];
+
+/// Node 49 turns forward with 30 mm at 2 Hz and backward with 10 mm at 3 Hz about (4, 3) mm; node 10 rests.
+fn tables() -> Vec<(&'static str, Table)> {
+    let samples = (RATE * DURATION) as usize;
+    let time: Vec<f64> = (0..samples).map(|k| k as f64 / RATE).collect();
+    let of_time = |f: fn(f64) -> f64| ColumnData::F64(time.iter().map(|t| f(*t)).collect());
+    let mut history = Table::default();
+    history.push("time", Some("s"), ColumnData::F64(time.clone()));
+    history.push("u_10", Some("m"), of_time(|_| 0.01));
+    history.push("v_10", Some("m"), of_time(|_| 0.0));
+    history.push(
+        "u_49",
+        Some("m"),
+        of_time(|t| 0.004 + 0.03 * (2.0 * TAU * t).cos() + 0.01 * (3.0 * TAU * t).cos()),
+    );
+    history.push(
+        "v_49",
+        Some("m"),
+        of_time(|t| 0.003 + 0.03 * (2.0 * TAU * t).sin() - 0.01 * (3.0 * TAU * t).sin()),
+    );
+
+    let mut statics = Table::default();
+    statics.push("node", None, ColumnData::I64(vec![1, 10, 49, 50]));
+    statics.push("measured_depth", Some("m"), ColumnData::F64(vec![0.0, NODES[0].1, NODES[1].1, 59.2]));
+
+    let mut profile = Table::default();
+    profile.push("element", None, ColumnData::I64(vec![1, 2]));
+    profile.push("friction_coefficient", Some("1"), ColumnData::F64(vec![0.0192, f64::NAN]));
+    profile.push("regime", None, ColumnData::Text(vec!["laminar".to_owned(), "turbulent".to_owned()]));
+    vec![("history", history), ("statics", statics), ("profile", profile)]
+}

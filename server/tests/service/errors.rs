@@ -1,0 +1,119 @@
+//! What is answered to requests that cannot be served.
+
+use axum::body::Body;
+use axum::http::{Method, Request, StatusCode, header};
+use drillsweep_api::LIMITS;
+use serde_json::json;
+
+use crate::bench::{Bench, json_request};
+
+#[tokio::test]
+async fn what_does_not_exist_is_answered_with_a_problem() {
+    let bench = Bench::new().await;
+    bench.get("/v2/sweeps").await.problem(404, "no-such-route");
+    bench.get("/v1/sweeps/unknown").await.problem(404, "not-found");
+    bench.get("/v1/sweeps/unknown/table").await.problem(404, "not-found");
+    bench.get("/v1/sweeps/unknown/points").await.problem(404, "not-found");
+    bench.get("/v1/scenarios/unknown").await.problem(404, "not-found");
+    bench.post("/v1/sweeps/unknown/cancel", json!({})).await.problem(404, "not-found");
+    bench.post("/v1/sweeps/unknown/retry", json!({})).await.problem(404, "not-found");
+    let answer = bench.send(Request::delete("/v1/sweeps").body(Body::empty()).unwrap()).await;
+    answer.problem(405, "method-not-allowed");
+    let mut allowed: Vec<_> = answer.headers[header::ALLOW].to_str().unwrap().split(',').collect();
+    allowed.sort_unstable();
+    assert_eq!(allowed, ["GET", "HEAD", "POST"]);
+}
+
+#[tokio::test]
+async fn a_wrong_parameter_is_named_with_what_would_be_valid() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m"})).await;
+    for (path, name, got, words) in [
+        ("?wait=soon", "wait", "soon", "30s"),
+        ("?wait=-1s", "wait", "-1s", "30s"),
+        ("?until=done", "until", "done", "`change` or `completed`"),
+        ("?wiat=3s", "wiat", "3s", "`wait`"),
+        ("/points?limit=0", "limit", "0", "whole number of 1 or more"),
+        ("/points?limit=501", "limit", "501", "at most 500"),
+        ("/points?cursor=x", "cursor", "x", "next"),
+        ("/points?state=done", "state", "done", "`succeeded`"),
+        ("/points/one", "n", "one", "whole number"),
+        ("/points/1/orbit?node=x", "node", "x", "whole number"),
+        ("/points/1/orbit?node=49&from=5&to=2", "to", "2", "greater than from"),
+        ("/points/1/orbit?node=49&max_points=3", "max_points", "3", "4 or more"),
+        ("/points/1/orbit?node=49&from=NaN", "from", "NaN", "number"),
+        ("/points/1/spectrum?node=49&window=blackman", "window", "blackman", "`rectangular` or `hann`"),
+        ("/points/1/spectrum?node=49&range_hz=0", "range_hz", "0", "greater than 0"),
+        ("/points/1/profile?format=xlsx", "format", "xlsx", "`parquet`"),
+    ] {
+        let problem = bench.get(&format!("/v1/sweeps/{id}{path}")).await.problem(400, "invalid-parameter");
+        let error = &problem["errors"][0];
+        assert_eq!(error["parameter"], name, "{path}: {problem}");
+        assert_eq!(error["got"], got, "{path}: {problem}");
+        assert!(error["detail"].as_str().unwrap().contains(words), "{path}: {problem}");
+    }
+    bench.get(&format!("/v1/sweeps/{id}/points/1/orbit")).await.problem(400, "invalid-parameter");
+    bench
+        .get(&format!("/v1/sweeps/{id}/points/1/orbit?node=1&depth=2"))
+        .await
+        .problem(400, "invalid-parameter");
+}
+
+#[tokio::test]
+async fn a_body_that_is_too_large_or_of_another_type_is_refused() {
+    let bench = Bench::new().await;
+    let large = format!("{{\"name\": \"{}\"}}", "x".repeat(LIMITS.body_bytes));
+    bench.send(json_request(Method::POST, "/v1/sweeps", large)).await.problem(413, "body-too-large");
+    let form = Request::post("/v1/sweeps")
+        .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+        .body(Body::from("{\"preset\": \"paper-200m\"}"))
+        .unwrap();
+    bench.send(form).await.problem(415, "unsupported-media-type");
+    let untyped = Request::post("/v1/sweeps").body(Body::from("{\"preset\": \"paper-200m\"}")).unwrap();
+    bench.send(untyped).await.problem(415, "unsupported-media-type");
+}
+
+#[tokio::test]
+async fn a_table_is_not_served_in_formats_that_there_are_not() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m"})).await;
+    let request = Request::get(format!("/v1/sweeps/{id}/table")).header(header::ACCEPT, "image/png");
+    bench.send(request.body(Body::empty()).unwrap()).await.problem(406, "not-acceptable");
+}
+
+#[tokio::test]
+async fn a_page_of_another_site_cannot_submit() {
+    let bench = Bench::new().await;
+    let mut request = json_request(Method::POST, "/v1/sweeps", "{\"preset\": \"paper-200m\"}".to_owned());
+    request.headers_mut().insert("sec-fetch-site", "cross-site".parse().unwrap());
+    bench.send(request).await.problem(403, "cross-site");
+}
+
+#[tokio::test]
+async fn a_failure_of_the_store_tells_the_client_nothing_of_it() {
+    let bench = Bench::new().await;
+    bench.store.close().await;
+    let problem = bench.get("/v1/sweeps").await.problem(500, "internal");
+    let text = problem.to_string().to_lowercase();
+    assert!(!text.contains("pool") && !text.contains("sql"), "{text}");
+    assert_eq!(bench.get("/readyz").await.status, StatusCode::INTERNAL_SERVER_ERROR);
+    assert_eq!(bench.get("/livez").await.json(), json!({"status": "ok"}));
+}
+
+#[tokio::test]
+async fn the_service_describes_itself() {
+    let bench = Bench::new().await;
+    assert_eq!(bench.get("/readyz").await.json(), json!({"status": "ok"}));
+    assert_eq!(bench.get("/v1/limits").await.json()["points_per_sweep"], 10_000);
+    assert_eq!(bench.get("/v1/workers").await.json(), json!({"workers": []}));
+    bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})).await;
+    bench.claim().await;
+    let queue = bench.get("/v1/queue").await.json();
+    assert_eq!(queue, json!({"queued": 1, "waiting_for_retry": 0, "running": 1}));
+    let scenarios = bench.get("/v1/scenarios").await.json();
+    for entry in scenarios["scenarios"].as_array().unwrap() {
+        let detail = bench.get(entry["link"].as_str().unwrap()).await.json();
+        assert_eq!(detail["name"], entry["name"]);
+        assert_eq!(detail["scenario"]["name"], entry["name"]);
+    }
+}

@@ -1,0 +1,138 @@
+//! Following, cancelling and retrying sweeps.
+
+use std::time::Duration;
+
+use axum::body::Body;
+use axum::http::Request;
+use serde_json::{Value, json};
+use tokio::time::{Instant, timeout};
+
+use crate::bench::Bench;
+
+fn two_points() -> Value {
+    json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})
+}
+
+/// Longer than anything here takes, shorter than the waits that must end early.
+const SOON: Duration = Duration::from_secs(20);
+
+#[tokio::test]
+async fn a_sweep_counts_its_points_until_all_are_final() {
+    let bench = Bench::new().await;
+    let id = bench.submit(two_points()).await;
+    let path = format!("/v1/sweeps/{id}");
+    bench.succeed().await;
+    let sweep = bench.get(&path).await.json();
+    assert_eq!(sweep["state"], "running");
+    assert_eq!(sweep["progress"], 0.5);
+    bench.diverge().await;
+    let sweep = bench.get(&path).await.json();
+    assert_eq!(sweep["state"], "completed");
+    assert_eq!(sweep["progress"], 1.0);
+    assert_eq!(
+        sweep["counts"],
+        json!({"total": 2, "queued": 0, "running": 0, "succeeded": 1, "failed": 1, "cancelled": 0})
+    );
+    let finished: jiff::Timestamp = sweep["finished"].as_str().unwrap().parse().unwrap();
+    let created: jiff::Timestamp = sweep["created"].as_str().unwrap().parse().unwrap();
+    assert!(created <= finished);
+
+    let point = bench.get(&format!("{path}/points/2")).await.json();
+    assert_eq!(point["state"], "failed");
+    assert_eq!(point["attempts"], 1);
+    assert_eq!(
+        point["error"],
+        json!({"class": "physical", "reason": "the state is not finite", "time": 1.25, "node": 49})
+    );
+    let failed = bench.get(&format!("{path}/points?state=failed")).await.json();
+    assert_eq!(failed["points"].as_array().unwrap().len(), 1);
+    assert_eq!(failed["points"][0]["ordinal"], 2);
+}
+
+#[tokio::test]
+async fn a_long_poll_ends_when_something_changes() {
+    let bench = Bench::new().await;
+    let id = bench.submit(two_points()).await;
+    let path = format!("/v1/sweeps/{id}?wait=60s");
+    let (waited, ()) =
+        timeout(SOON, async { tokio::join!(bench.get(&path), bench.succeed()) }).await.unwrap();
+    let sweep = waited.json();
+    assert_ne!(sweep["counts"]["queued"], 2, "{sweep}");
+
+    let path = format!("/v1/sweeps/{id}?wait=60s&until=completed");
+    let (waited, ()) =
+        timeout(SOON, async { tokio::join!(bench.get(&path), bench.succeed()) }).await.unwrap();
+    assert_eq!(waited.json()["state"], "completed");
+    let again = timeout(SOON, bench.get(&path)).await.expect("a finished sweep is answered at once");
+    assert_eq!(again.json()["state"], "completed");
+}
+
+#[tokio::test]
+async fn a_long_poll_ends_when_its_time_is_over() {
+    let bench = Bench::new().await;
+    let id = bench.submit(two_points()).await;
+    let start = Instant::now();
+    let sweep = bench.get(&format!("/v1/sweeps/{id}?wait=300ms")).await.json();
+    assert!(start.elapsed() >= Duration::from_millis(300));
+    assert_eq!(sweep["state"], "running");
+}
+
+#[tokio::test]
+async fn a_long_poll_ends_when_the_service_stops() {
+    let bench = Bench::new().await;
+    let id = bench.submit(two_points()).await;
+    let path = format!("/v1/sweeps/{id}?wait=60s");
+    let stop = async { bench.stop.send(true).unwrap() };
+    let (waited, ()) = timeout(SOON, async { tokio::join!(bench.get(&path), stop) }).await.unwrap();
+    assert_eq!(waited.json()["state"], "running");
+}
+
+#[tokio::test]
+async fn a_cancelled_sweep_can_be_retried() {
+    let bench = Bench::new().await;
+    let id = bench.submit(two_points()).await;
+    bench.diverge().await;
+    let post = async |action: &str| {
+        let request = Request::post(format!("/v1/sweeps/{id}/{action}")).body(Body::empty()).unwrap();
+        bench.send(request).await.json()
+    };
+    let cancelled = post("cancel").await;
+    assert_eq!(cancelled["state"], "cancelled");
+    assert_eq!(cancelled["counts"]["cancelled"], 1);
+    assert_eq!(cancelled["counts"]["failed"], 1);
+    assert_eq!(post("cancel").await["counts"], cancelled["counts"], "again changes nothing");
+    let retried = post("retry").await;
+    assert_eq!(retried["state"], "running");
+    assert_eq!(retried["counts"]["queued"], 2);
+    assert_eq!(retried["finished"], Value::Null);
+    bench.succeed().await;
+    bench.succeed().await;
+    assert_eq!(bench.get(&format!("/v1/sweeps/{id}")).await.json()["state"], "completed");
+}
+
+#[tokio::test]
+async fn sweeps_are_listed_newest_first_in_pages() {
+    let bench = Bench::new().await;
+    let mut ids = Vec::new();
+    for number in 0..5 {
+        let owner = if number == 2 { "ann" } else { "bob" };
+        ids.push(
+            bench.submit(json!({"preset": "paper-200m", "owner": owner, "name": number.to_string()})).await,
+        );
+    }
+    ids.reverse();
+    let mut listed = Vec::new();
+    let mut path = "/v1/sweeps?limit=2".to_owned();
+    loop {
+        let page = bench.get(&path).await.json();
+        let of_page = page["sweeps"].as_array().unwrap();
+        assert!(of_page.len() <= 2);
+        listed.extend(of_page.iter().map(|sweep| sweep["id"].as_str().unwrap().to_owned()));
+        let Some(next) = page["next"].as_str() else { break };
+        path = format!("/v1/sweeps?limit=2&cursor={next}");
+    }
+    assert_eq!(listed, ids);
+    let of_ann = bench.get("/v1/sweeps?owner=ann").await.json();
+    assert_eq!(of_ann["sweeps"].as_array().unwrap().len(), 1);
+    assert_eq!(of_ann["sweeps"][0]["name"], "2");
+}

@@ -1,0 +1,11 @@
+//! The service over a real store, without the network but where shutting down is the matter.
+
+#![expect(clippy::unwrap_used, reason = "in a test a failure is a panic")]
+
+mod bench;
+mod errors;
+mod follow;
+mod openapi;
+mod results;
+mod shutdown;
+mod submit;

@@ -1,0 +1,198 @@
+//! Reading results: tables as stored, and the views cut from the history.
+
+use std::f64::consts::TAU;
+
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
+use drillsweep_store::{ColumnData, decode_parquet};
+use serde_json::{Value, json};
+
+use crate::bench::{Bench, DURATION, RATE};
+
+/// A sweep of two points, the first with a result, the second diverged.
+async fn finished() -> (Bench, String) {
+    let bench = Bench::new().await;
+    let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
+    let id = bench.submit(body).await;
+    bench.succeed().await;
+    bench.diverge().await;
+    let path = format!("/v1/sweeps/{id}");
+    (bench, path)
+}
+
+fn numbers(table: &Value, column: &str) -> Vec<f64> {
+    let values =
+        table["columns"][column].as_array().unwrap_or_else(|| panic!("no column {column} in {table}"));
+    values.iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+#[tokio::test]
+async fn a_stored_table_is_served_in_every_format() {
+    let (bench, path) = finished().await;
+    let json = bench.get(&format!("{path}/points/1/profile")).await;
+    assert_eq!(json.headers[header::CONTENT_TYPE], "application/json");
+    assert_eq!(
+        json.json(),
+        json!({
+            "columns": {"element": [1, 2], "friction_coefficient": [0.0192, null], "regime": ["laminar", "turbulent"]},
+            "units": {"friction_coefficient": "1"}
+        })
+    );
+    let request = Request::get(format!("{path}/points/1/profile")).header(header::ACCEPT, "text/csv");
+    let csv = bench.send(request.body(Body::empty()).unwrap()).await;
+    assert_eq!(csv.headers[header::CONTENT_TYPE], "text/csv");
+    assert_eq!(csv.text(), "element,friction_coefficient,regime\n1,0.0192,laminar\n2,,turbulent\n");
+    let parquet = bench.get(&format!("{path}/points/1/profile?format=parquet")).await;
+    assert_eq!(parquet.headers[header::CONTENT_TYPE], "application/vnd.apache.parquet");
+    let table = decode_parquet(parquet.body, None, None).unwrap();
+    assert_eq!(table.column("element").unwrap().data, ColumnData::I64(vec![1, 2]));
+}
+
+#[tokio::test]
+async fn the_table_of_a_sweep_has_a_row_for_every_point() {
+    let (bench, path) = finished().await;
+    let table = bench.get(&format!("{path}/table")).await.json();
+    assert_eq!(
+        table["columns"],
+        json!({
+            "ordinal": [1, 2],
+            "state": ["succeeded", "failed"],
+            "mud_density": [1200.0, 1500.0],
+            "flow_rate": [0.01, 0.01],
+            "steps": [10_000, null],
+            "density_seen": [1200.0, null],
+            "residual": [1e-9, null],
+            "error": [null, "the state is not finite"],
+            "error_time": [null, 1.25],
+            "error_node": [null, 49],
+        })
+    );
+    let csv = bench.get(&format!("{path}/table?format=csv")).await;
+    let header =
+        "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,error,error_time,error_node";
+    assert_eq!(
+        csv.text(),
+        format!(
+            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,,,\n2,failed,1500.0,0.01,,,,the state is not finite,1.25,49\n"
+        )
+    );
+    let parquet = bench.get(&format!("{path}/table?format=parquet")).await;
+    let table = decode_parquet(parquet.body, None, None).unwrap();
+    assert_eq!(table.column("mud_density").unwrap().data, ColumnData::F64(vec![1200.0, 1500.0]));
+    assert_eq!(table.column("mud_density").unwrap().unit.as_deref(), Some("kg/m3"));
+}
+
+#[tokio::test]
+async fn an_orbit_is_cut_from_the_history() {
+    let (bench, path) = finished().await;
+    let orbit = bench.get(&format!("{path}/points/1/orbit?node=49&from=2&to=3")).await.json();
+    assert_eq!(orbit["attributes"], json!({"samples": 1000, "node": 49, "measured_depth": 57.73}));
+    assert_eq!(orbit["units"], json!({"time": "s", "u": "m", "v": "m", "radius": "m"}));
+    let (time, u, v, radius) =
+        (numbers(&orbit, "time"), numbers(&orbit, "u"), numbers(&orbit, "v"), numbers(&orbit, "radius"));
+    assert_eq!(time.len(), 1000);
+    assert_eq!((time[0], time[999]), (2.0, 2.999));
+    for (i, t) in time.iter().enumerate() {
+        assert_eq!(u[i], 0.004 + 0.03 * (2.0 * TAU * t).cos() + 0.01 * (3.0 * TAU * t).cos());
+        assert_eq!(radius[i], u[i].hypot(v[i]));
+    }
+    let thinned =
+        bench.get(&format!("{path}/points/1/orbit?depth=55&from=2&to=3&max_points=100")).await.json();
+    assert_eq!(thinned["attributes"]["node"], 49);
+    let thin_u = numbers(&thinned, "u");
+    assert!(thin_u.len() <= 100 && thin_u.len() > 50, "{}", thin_u.len());
+    let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(largest(&thin_u), largest(&u));
+    let csv = bench.get(&format!("{path}/points/1/orbit?depth=0&to=0.002&format=csv")).await;
+    assert_eq!(csv.text(), "time,u,v,radius\n0.0,0.01,0.0,0.01\n0.001,0.01,0.0,0.01\n");
+}
+
+#[tokio::test]
+async fn a_spectrum_finds_the_lines_of_a_known_orbit() {
+    let (bench, path) = finished().await;
+    // 6 s hold whole periods of both lines, so that what is left beside them is rounding.
+    let query = "node=49&from=2&to=8&range_hz=5&peaks=3";
+    let spectrum = bench.get(&format!("{path}/points/1/spectrum?{query}")).await.json();
+    let frequency = numbers(&spectrum, "frequency");
+    let amplitude = numbers(&spectrum, "amplitude");
+    let peak_to_peak = numbers(&spectrum, "peak_to_peak");
+    assert_eq!(frequency.len(), 61, "every 1/6 Hz from -5 to 5 Hz");
+    assert!((spectrum["attributes"]["resolution"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-9);
+    for (i, f) in frequency.iter().enumerate() {
+        let expected = match (f * 6.0).round() {
+            12.0 => 0.03,
+            -18.0 => 0.01,
+            0.0 => 0.005,
+            _ => 0.0,
+        };
+        assert!((amplitude[i] - expected).abs() < 1e-12, "{f} Hz: {}", amplitude[i]);
+        assert_eq!(peak_to_peak[i], 2.0 * amplitude[i]);
+    }
+    let peaks = spectrum["attributes"]["peaks"].as_array().unwrap();
+    let found: Vec<_> = peaks
+        .iter()
+        .map(|peak| (peak["whirl"].as_str().unwrap(), peak["frequency"].as_f64().unwrap().round()))
+        .collect();
+    assert_eq!(found, [("forward", 2.0), ("backward", -3.0), ("offset", 0.0)]);
+
+    let hann = bench.get(&format!("{path}/points/1/spectrum?{query}&window=hann")).await.json();
+    assert_eq!(hann["attributes"]["window"], "hann");
+    // The Hann window spreads a line on a bin over its neighbours, half as high.
+    let of =
+        |f: f64| numbers(&hann, "amplitude")[frequency.iter().position(|g| (g - f).abs() < 1e-6).unwrap()];
+    assert!((of(2.0) - 0.03).abs() < 1e-12);
+    assert!((of(2.0 + 1.0 / 6.0) - 0.015).abs() < 1e-12);
+}
+
+#[tokio::test]
+async fn a_history_is_served_whole_or_of_one_node() {
+    let (bench, path) = finished().await;
+    let whole = bench.get(&format!("{path}/points/1/history?max_points=1000")).await.json();
+    assert_eq!(whole["attributes"]["samples"], RATE * DURATION);
+    assert_eq!(numbers(&whole, "time").len(), 1000);
+    let columns: Vec<_> = whole["columns"].as_object().unwrap().keys().cloned().collect();
+    assert_eq!(columns, ["time", "u_10", "v_10", "u_49", "v_49"]);
+    let parquet = bench.get(&format!("{path}/points/1/history?format=parquet")).await;
+    assert_eq!(decode_parquet(parquet.body, None, None).unwrap().rows(), 10_000);
+    let of_node = bench.get(&format!("{path}/points/1/history?node=10&from=1&to=1.003")).await.json();
+    assert_eq!(
+        of_node["columns"],
+        json!({"time": [1.0, 1.001, 1.002], "u_10": [0.01, 0.01, 0.01], "v_10": [0.0, 0.0, 0.0]})
+    );
+}
+
+#[tokio::test]
+async fn a_node_that_was_not_recorded_is_answered_with_those_that_were() {
+    let (bench, path) = finished().await;
+    let problem =
+        bench.get(&format!("{path}/points/1/orbit?node=50")).await.problem(422, "node-not-recorded");
+    let detail = problem["detail"].as_str().unwrap();
+    assert!(detail.contains("10 (11.72 m), 49 (57.73 m)"), "{detail}");
+    bench.get(&format!("{path}/points/1/spectrum?node=50")).await.problem(422, "node-not-recorded");
+}
+
+#[tokio::test]
+async fn a_point_without_a_result_says_where_it_stands() {
+    let (bench, path) = finished().await;
+    let problem = bench.get(&format!("{path}/points/2/orbit?node=49")).await.problem(409, "no-result");
+    assert_eq!(problem["state"], "failed");
+    let id = bench.submit(json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.02}})).await;
+    let problem = bench.get(&format!("/v1/sweeps/{id}/points/1/profile")).await.problem(409, "no-result");
+    assert_eq!(problem["state"], "queued");
+    bench.get(&format!("{path}/points/3/profile")).await.problem(404, "not-found");
+    bench.get("/v1/sweeps/none/points/1/profile").await.problem(404, "not-found");
+    bench.get(&format!("{path}/points/1/energy")).await.problem(404, "no-such-table");
+}
+
+#[tokio::test]
+async fn a_point_shows_its_summary_and_provenance() {
+    let (bench, path) = finished().await;
+    let answer = bench.get(&format!("{path}/points/1")).await;
+    assert_eq!(answer.status, StatusCode::OK);
+    let point = answer.json();
+    assert_eq!(point["summary"], json!({"steps": 10_000, "density_seen": 1200.0, "residual": 1e-9}));
+    assert_eq!(point["provenance"], json!({"version": "bench"}));
+    assert_eq!(point["tables"], json!(["history", "profile", "statics"]));
+    assert_eq!(point["progress"], 1.0);
+    assert_eq!(point["links"]["self"], format!("{path}/points/1"));
+}

@@ -1,0 +1,171 @@
+//! Submitting sweeps and runs.
+
+use axum::http::{Method, StatusCode, header};
+use serde_json::{Value, json};
+
+use crate::bench::{Bench, json_request};
+
+fn grid() -> Value {
+    json!({"name": "grid", "preset": "paper-200m", "axes": {
+        "flow_rate": {"values": [0.01, 0.04, 0.06]},
+        "mud_density": {"from": 1200, "to": 2100, "count": 4}
+    }})
+}
+
+#[tokio::test]
+async fn a_sweep_is_stored_with_all_its_points() {
+    let bench = Bench::new().await;
+    let answer = bench.post("/v1/sweeps", grid()).await;
+    assert_eq!(answer.status, StatusCode::CREATED);
+    let sweep = answer.json();
+    assert_eq!(answer.headers[header::LOCATION], sweep["links"]["self"].as_str().unwrap());
+    assert_eq!(sweep["state"], "running");
+    assert_eq!(sweep["counts"]["total"], 12);
+    assert_eq!(sweep["counts"]["queued"], 12);
+    assert_eq!(sweep["progress"], 0.0);
+    assert_eq!(sweep["request"]["axes"]["flow_rate"], grid()["axes"]["flow_rate"]);
+
+    let points =
+        bench.get(&format!("{}/points?limit=5", sweep["links"]["self"].as_str().unwrap())).await.json();
+    let of_page = |page: &Value| -> Vec<(u64, f64, f64)> {
+        let points = page["points"].as_array().unwrap().iter();
+        let row = |point: &Value| {
+            let parameters = &point["parameters"];
+            let number = |name: &str| parameters[name].as_f64().unwrap();
+            (point["ordinal"].as_u64().unwrap(), number("flow_rate"), number("mud_density"))
+        };
+        points.map(row).collect()
+    };
+    assert_eq!(
+        of_page(&points),
+        [(1, 0.01, 1200.0), (2, 0.01, 1500.0), (3, 0.01, 1800.0), (4, 0.01, 2100.0), (5, 0.04, 1200.0)]
+    );
+    let rest = format!(
+        "{}?limit=500&cursor={}",
+        sweep["links"]["points"].as_str().unwrap(),
+        points["next"].as_str().unwrap()
+    );
+    let rest = bench.get(&rest).await.json();
+    assert_eq!(of_page(&rest).len(), 7);
+    assert_eq!(of_page(&rest)[6], (12, 0.06, 2100.0));
+    assert_eq!(rest["next"], Value::Null);
+
+    // What a worker gets is the scenario with everything applied.
+    let scenario: Value = serde_json::from_str(&bench.claim().await.scenario_json).unwrap();
+    assert_eq!(scenario["mud"]["flow_rate"], 0.01);
+    assert_eq!(scenario["mud"]["density"], 1200.0);
+}
+
+#[tokio::test]
+async fn a_run_is_a_sweep_of_one_point() {
+    let bench = Bench::new().await;
+    let answer =
+        bench.post("/v1/runs", json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.04}})).await;
+    assert_eq!(answer.status, StatusCode::CREATED);
+    let sweep = answer.json();
+    assert_eq!(sweep["counts"]["total"], 1);
+    let point = bench.get(&format!("{}/points/1", sweep["links"]["self"].as_str().unwrap())).await.json();
+    assert_eq!(point["scenario"]["mud"]["flow_rate"], 0.04);
+    assert_eq!(point["state"], "queued");
+    assert_eq!(point["key"].as_str().unwrap().len(), 64);
+    let with_axes = json!({"preset": "paper-200m", "axes": {}});
+    bench.post("/v1/runs", with_axes).await.problem(400, "malformed-body");
+}
+
+#[tokio::test]
+async fn a_dry_run_tells_the_points_and_stores_nothing() {
+    let bench = Bench::new().await;
+    bench.submit(json!({"preset": "paper-200m"})).await;
+    bench.succeed().await;
+    let answer = bench.post("/v1/sweeps?dry_run=true", grid()).await;
+    assert_eq!(answer.status, StatusCode::OK);
+    let plan = answer.json();
+    assert_eq!(plan["total"], 12);
+    assert_eq!(plan["known"], 1, "the base case is point 1 and has a result");
+    assert_eq!(plan["points"][11]["parameters"], json!({"flow_rate": 0.06, "mud_density": 2100.0}));
+    assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"].as_array().unwrap().len(), 1);
+    let wrong = json!({"preset": "paper-200m", "set": {"mud.flow_index": -1}});
+    bench.post("/v1/sweeps?dry_run=true", wrong).await.problem(422, "invalid-request");
+}
+
+#[tokio::test]
+async fn a_point_that_is_known_is_not_computed_again() {
+    let bench = Bench::new().await;
+    bench.submit(json!({"preset": "paper-200m"})).await;
+    bench.succeed().await;
+    let again = bench.submit(json!({"preset": "paper-200m", "owner": "somebody else"})).await;
+    let sweep = bench.get(&format!("/v1/sweeps/{again}")).await.json();
+    assert_eq!(sweep["state"], "completed");
+    assert_eq!(sweep["counts"]["succeeded"], 1);
+}
+
+#[tokio::test]
+async fn an_idempotency_key_makes_one_sweep_of_one_request() {
+    let bench = Bench::new().await;
+    let submit = async |body: &Value| {
+        let mut request = json_request(Method::POST, "/v1/sweeps", body.to_string());
+        request.headers_mut().insert("idempotency-key", "5c1b".parse().unwrap());
+        bench.send(request).await
+    };
+    let first = submit(&grid()).await;
+    let again = submit(&grid()).await;
+    assert_eq!(again.status, StatusCode::CREATED);
+    assert_eq!(first.json()["id"], again.json()["id"]);
+    assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"].as_array().unwrap().len(), 1);
+    submit(&json!({"preset": "paper-200m"})).await.problem(422, "idempotency-key-reused");
+}
+
+#[tokio::test]
+async fn every_problem_of_a_request_is_reported_at_once() {
+    let bench = Bench::new().await;
+    let body = json!({
+        "preset": "paper-200m",
+        "priority": 99,
+        "set": {"mud.flow_index": -1, "duration": "long"},
+        "axes": {"flow_rate": {"values": [0.01, -0.04]}}
+    });
+    let problem = bench.post("/v1/sweeps", body).await.problem(422, "invalid-request");
+    let pointers: Vec<_> =
+        problem["errors"].as_array().unwrap().iter().map(|error| &error["pointer"]).collect();
+    assert_eq!(
+        pointers,
+        ["/priority", "/set/duration"],
+        "a change that cannot be made comes before validation"
+    );
+
+    let body = json!({
+        "preset": "paper-200m",
+        "priority": 99,
+        "set": {"mud.flow_index": -1},
+        "axes": {"flow_rate": {"values": [0.01, -0.04]}}
+    });
+    let problem = bench.post("/v1/sweeps", body).await.problem(422, "invalid-request");
+    let errors = problem["errors"].as_array().unwrap();
+    let error_at = |pointer: &str| errors.iter().find(|error| error["pointer"] == pointer);
+    assert_eq!(error_at("/priority").unwrap()["got"], 99);
+    assert_eq!(error_at("/set/mud.flow_index").unwrap()["got"], -1);
+    assert_eq!(error_at("/axes/flow_rate/values/1").unwrap()["got"], -0.04);
+    assert_eq!(errors.len(), 3, "{problem}");
+    assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"], json!([]));
+}
+
+#[tokio::test]
+async fn a_body_of_another_form_is_refused_at_its_place() {
+    let bench = Bench::new().await;
+    for (body, pointer, words) in [
+        (r#"{"preset": "paper-200m", "axis": {}}"#, "/axis", "unknown field `axis`"),
+        (r#"{"preset": 200}"#, "/preset", "invalid type"),
+        (r#"{"axes": {"flow_rate": {"from": 1, "to": 2}}}"#, "/axes/flow_rate", "`count`"),
+        (r#"{"axes": {"flow_rat": {"values": [1]}}}"#, "/axes", "unknown variant `flow_rat`"),
+        (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "invalid type"),
+        (r#"{"preset": "#, "", "EOF"),
+        (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
+    ] {
+        let request = json_request(Method::POST, "/v1/sweeps", body.to_owned());
+        let problem = bench.send(request).await.problem(400, "malformed-body");
+        let error = &problem["errors"][0];
+        let found = error["pointer"].as_str().unwrap();
+        assert!(found.starts_with(pointer), "{body}: {problem}");
+        assert!(error["detail"].as_str().unwrap().contains(words), "{body}: {problem}");
+    }
+}

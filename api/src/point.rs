@@ -106,7 +106,7 @@ pub struct PointError {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<u32>,
     /// Anything else that the worker noted, such as the last finite state.
-    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    #[serde(flatten)]
     pub details: Map<String, Value>,
 }
 
@@ -122,6 +122,8 @@ pub enum FailureClass {
     Crash,
     /// It ran longer than allowed.
     Timeout,
+    /// It was cancelled while it ran.
+    Cancelled,
 }
 
 /// Where to read more about a point.

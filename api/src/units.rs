@@ -2,35 +2,46 @@
 
 /// The unit of a column (`1` for ratios); none for names, numbers of things and unknown columns.
 ///
-/// Columns of one node, such as `u_49`, have the unit of the name without the number.
+/// Columns of one node, such as `u_49`, and of one spectrum window, such as `line_amplitude_49_w1`, have the
+/// unit of the name without those numbers.
 pub fn unit(column: &str) -> Option<&'static str> {
-    let name = column.trim_end_matches(|character: char| character.is_ascii_digit());
-    let name = if name.len() < column.len() { name.strip_suffix('_').unwrap_or(column) } else { column };
-    Some(match name {
+    Some(match quantity(column) {
         "time" | "error_time" | "contact_time" | "duration" | "wall_time" | "cpu_time" => "s",
-        "frequency" => "Hz",
+        "frequency" | "line_frequency_hz" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
         "outer_diameter" | "inner_diameter" | "clearance" => "m",
         "u" | "v" | "w" | "radius" | "largest_radius" | "amplitude" | "peak_to_peak" => "m",
-        "u_rate" | "v_rate" | "w_rate" => "m/s",
+        "orbit_offset" | "orbit_mean_radius" | "orbit_largest_radius" | "orbit_radius_rms" => "m",
+        "line_amplitude" => "m",
+        "u_rate" | "v_rate" | "w_rate" | "annulus_speed" | "bore_speed" => "m/s",
         "theta_x" | "theta_y" | "theta_z" | "low_side_angle" => "rad",
         "theta_z_rate" => "rad/s",
-        "normal_force" | "largest_normal_force" | "effective_tension" => "N",
-        "torque" => "N m",
+        "normal_force" | "largest_normal_force" | "static_normal_force_total" => "N",
+        "effective_tension" | "tension_top" | "tension_bit" => "N",
+        "torque" | "torque_top" | "torque_bit" => "N m",
         "friction_gradient" | "bore_friction_gradient" => "Pa/m",
         "annulus_pressure" | "bore_pressure" => "Pa",
         "apparent_viscosity" => "m2/s",
-        "rotation_damping" | "friction_damping" => "N s/m2",
-        "annulus_speed" | "bore_speed" => "m/s",
-        "eccentricity" | "friction_coefficient" | "added_mass_coefficient" | "reynolds_number" => "1",
-        "progress" => "1",
-        "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "work_gravity" => "J",
+        "rotation_damping" | "friction_damping" | "rotation_damping_min" | "rotation_damping_max" => "N s/m2",
+        "friction_coefficient" | "friction_coefficient_min" | "friction_coefficient_max" => "1",
+        "eccentricity" | "added_mass_coefficient" | "reynolds_number" | "energy_residual_ratio" => "1",
+        "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "contact_work" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
-        "contact_work" | "residual" | "energy_residual" => "J",
+        "residual" | "energy_residual" => "J",
         _ => return None,
     })
+}
+
+/// The name of a column without the numbers of node and window.
+fn quantity(column: &str) -> &str {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let without = |name, separator| match str::rsplit_once(name, separator) {
+        Some((rest, number)) if is_number(number) => rest,
+        _ => name,
+    };
+    without(without(column, "_w"), "_")
 }
 
 #[cfg(test)]
@@ -38,9 +49,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_node_s_column_has_the_unit_of_its_quantity() {
+    fn numbers_of_node_and_window_do_not_count() {
         assert_eq!(unit("u_49"), Some("m"));
+        assert_eq!(unit("w_49"), Some("m"));
         assert_eq!(unit("theta_z_rate_282"), Some("rad/s"));
+        assert_eq!(unit("line_frequency_hz_49_w1"), Some("Hz"));
+        assert_eq!(unit("orbit_radius_rms_282"), Some("m"));
         assert_eq!(unit("node"), None);
         assert_eq!(unit("49"), None);
     }

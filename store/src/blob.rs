@@ -1,5 +1,6 @@
 //! Arrays, by the hash of their bytes.
 
+use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -49,6 +50,14 @@ impl BlobStore {
     /// When it is not there, or the object store fails.
     pub async fn get(&self, id: BlobId) -> Result<Bytes> {
         Ok(self.objects.get(&id.path()).await?.bytes().await?)
+    }
+
+    /// Reads a range of a blob's bytes, cut off at its end.
+    ///
+    /// # Errors
+    /// When it is not there, the range begins beyond its end or is empty, or the object store fails.
+    pub async fn get_range(&self, id: BlobId, bytes: Range<u64>) -> Result<Bytes> {
+        Ok(self.objects.get_range(&id.path(), bytes).await?)
     }
 }
 

@@ -81,7 +81,7 @@ impl Store {
             Role::Worker => 2,
         };
         let pool = SqlitePoolOptions::new().max_connections(connections).connect_with(options).await?;
-        sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
+        migrate(&pool).await?;
         let blobs = BlobStore::open(&config.blob_directory)?;
         Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, blobs })
     }
@@ -110,4 +110,12 @@ impl Store {
         let query = concat!("SELECT ", now!());
         Ok(sqlx::query_scalar(query).bind(self.clock_offset_ms).fetch_one(&self.pool).await?)
     }
+}
+
+/// Brings the schema up to date. The migrations run inside one immediate transaction because sqlx takes no lock of
+/// its own on SQLite: of several processes that open a new file at once, the others wait and find it done.
+async fn migrate(pool: &SqlitePool) -> Result<()> {
+    let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
+    sqlx::migrate!("../migrations/sqlite").run(&mut *tx).await?;
+    Ok(tx.commit().await?)
 }

@@ -7,7 +7,11 @@
 mod blob;
 mod connection;
 mod error;
+mod event;
+mod point;
 mod queue;
+mod state;
+mod submit;
 mod sweep;
 mod table;
 mod worker;
@@ -15,10 +19,11 @@ mod worker;
 pub use blob::{BlobId, BlobStore};
 pub use connection::{Role, Store, StoreConfig};
 pub use error::{Result, StoreError};
+pub use event::Event;
+pub use point::{Artifact, PointRecord, TableRecord};
 pub use queue::{Claim, FailureClass, Lease, NewArtifact, QueueDepths, Renewal};
-pub use sweep::{
-    Artifact, NewPoint, NewSweep, PointRecord, StateCounts, SubmitOutcome, SweepRecord, TableRecord, WorkKey,
-    WorkState,
-};
+pub use state::{StateCounts, WorkKey, WorkState};
+pub use submit::{NewPoint, NewSweep, SubmitOutcome};
+pub use sweep::SweepRecord;
 pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};
 pub use worker::WorkerRecord;

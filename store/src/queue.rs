@@ -3,7 +3,7 @@
 use crate::blob::BlobId;
 use crate::connection::{Store, now};
 use crate::error::Result;
-use crate::sweep::{WorkKey, WorkState, work_key};
+use crate::state::{WorkKey, WorkState, work_key};
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
 const CRASH_LIMIT: i64 = 3;
@@ -13,6 +13,14 @@ const INFRASTRUCTURE_TRIES: i64 = 5;
 
 /// Wait before the first of these retries \[ms\]; it doubles each time.
 const FIRST_RETRY_MS: i64 = 5_000;
+
+/// The condition of every write of a worker: its attempt is still the current one. Parameters 2 to 4 are those of
+/// [`Lease`]; the first is the clock's offset, as everywhere.
+macro_rules! holds_lease {
+    () => {
+        " WHERE key = ?2 AND attempt = ?3 AND lease_owner = ?4 AND state = 'leased'"
+    };
+}
 
 /// Work handed to a worker.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +60,7 @@ pub enum FailureClass {
     Physical,
     /// It ran longer than allowed.
     Timeout,
-    /// It was cancelled.
+    /// It was cancelled. Where it has been asked for again since, it goes back to the queue instead.
     Cancelled,
 }
 
@@ -89,12 +97,12 @@ impl Store {
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
         self.reap_expired().await?;
-        let mut tx = self.write().await?;
-        let row: Option<(Vec<u8>, i64, String)> = sqlx::query_as(concat!(
-            "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, lease_owner = ?2,
-                    lease_until = ",
+        // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
+        let rows: Vec<(Vec<u8>, i64, String)> = sqlx::query_as(concat!(
+            "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
+                    lease_owner = ?2, lease_until = ",
             now!(),
-            " + ?3, progress = 0, started = ",
+            " + ?3, changed = ",
             now!(),
             " WHERE key = (SELECT key FROM work WHERE state = 'queued' AND physics_version = ?4
                            ORDER BY priority DESC, vtime, key LIMIT 1)
@@ -104,13 +112,11 @@ impl Store {
         .bind(worker)
         .bind(lease_ms)
         .bind(physics_version)
-        .fetch_optional(&mut *tx)
+        .fetch_all(&self.pool)
         .await?;
-        let Some((key, attempt, scenario_json)) = row else { return Ok(None) };
-        let key = work_key(&key)?;
-        self.announce(&mut tx, &key, WorkState::Leased).await?;
-        tx.commit().await?;
-        Ok(Some(Claim { lease: Lease { key, attempt, worker: worker.to_owned() }, scenario_json }))
+        let Some((key, attempt, scenario_json)) = rows.into_iter().next() else { return Ok(None) };
+        let lease = Lease { key: work_key(&key)?, attempt, worker: worker.to_owned() };
+        Ok(Some(Claim { lease, scenario_json }))
     }
 
     /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.
@@ -118,22 +124,22 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
-        let cancel_requested: Option<i64> = sqlx::query_scalar(concat!(
-            "UPDATE work SET lease_until = ",
+        let cancel_requested: Vec<i64> = sqlx::query_scalar(concat!(
+            "UPDATE work SET progress = ?5, lease_until = ",
             now!(),
-            " + ?2, progress = ?3
-              WHERE key = ?4 AND attempt = ?5 AND lease_owner = ?6 AND state = 'leased'
-              RETURNING cancel_requested"
+            " + ?6",
+            holds_lease!(),
+            " RETURNING cancel_requested"
         ))
         .bind(self.clock_offset_ms)
-        .bind(lease_ms)
-        .bind(progress)
         .bind(lease.key.as_slice())
         .bind(lease.attempt)
         .bind(&lease.worker)
-        .fetch_optional(&self.pool)
+        .bind(progress)
+        .bind(lease_ms)
+        .fetch_all(&self.pool)
         .await?;
-        Ok(match cancel_requested {
+        Ok(match cancel_requested.first() {
             None => Renewal::Lost,
             Some(0) => Renewal::Held,
             Some(_) => Renewal::CancelRequested,
@@ -152,22 +158,27 @@ impl Store {
         artifacts: &[NewArtifact],
     ) -> Result<bool> {
         let mut tx = self.write().await?;
-        if !self.end_lease(&mut tx, lease, "done", None).await? {
-            return Ok(false);
-        }
         let key = lease.key.as_slice();
-        sqlx::query("DELETE FROM result WHERE work_key = ?1").bind(key).execute(&mut *tx).await?;
-        sqlx::query(concat!(
-            "INSERT INTO result (work_key, summary, provenance, created) VALUES (?2, ?3, ?4, ",
+        let finished: Vec<i64> = sqlx::query_scalar(concat!(
+            "UPDATE work SET state = 'done', progress = 1, error = NULL, lease_until = NULL, changed = ",
             now!(),
-            ")"
+            holds_lease!(),
+            " RETURNING changed"
         ))
         .bind(self.clock_offset_ms)
         .bind(key)
-        .bind(summary_json)
-        .bind(provenance_json)
-        .execute(&mut *tx)
+        .bind(lease.attempt)
+        .bind(&lease.worker)
+        .fetch_all(&mut *tx)
         .await?;
+        let Some(now) = finished.first() else { return Ok(false) };
+        sqlx::query("INSERT INTO result (work_key, summary, provenance, created) VALUES (?1, ?2, ?3, ?4)")
+            .bind(key)
+            .bind(summary_json)
+            .bind(provenance_json)
+            .bind(now)
+            .execute(&mut *tx)
+            .await?;
         for artifact in artifacts {
             sqlx::query(
                 "INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
@@ -181,7 +192,6 @@ impl Store {
             .execute(&mut *tx)
             .await?;
         }
-        self.announce(&mut tx, &lease.key, WorkState::Done).await?;
         tx.commit().await?;
         Ok(true)
     }
@@ -191,35 +201,39 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn finish_failed(&self, lease: &Lease, class: FailureClass, error_json: &str) -> Result<bool> {
-        let state = match class {
-            FailureClass::Physical | FailureClass::Timeout => WorkState::Failed,
-            FailureClass::Cancelled => WorkState::Cancelled,
+        let query = match class {
+            FailureClass::Physical | FailureClass::Timeout => concat!(
+                "UPDATE work SET state = 'failed', error = ?5, lease_until = NULL, changed = ",
+                now!(),
+                holds_lease!()
+            ),
+            // Another sweep may have asked for the same work between the worker's last renewal and now.
+            FailureClass::Cancelled => concat!(
+                "UPDATE work SET
+                     state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END,
+                     error = CASE cancel_requested WHEN 0 THEN NULL ELSE ?5 END,
+                     progress = 0, lease_until = NULL, changed = ",
+                now!(),
+                holds_lease!()
+            ),
         };
-        let mut tx = self.write().await?;
-        if !self.end_lease(&mut tx, lease, state.as_str(), Some(error_json)).await? {
-            return Ok(false);
-        }
-        self.announce(&mut tx, &lease.key, state).await?;
-        tx.commit().await?;
-        Ok(true)
+        self.leave(query, lease, Some(error_json)).await
     }
 
-    /// Gives work back untried, as when a worker is told to stop. False if the lease was lost.
+    /// Gives work back untried, as when a worker is told to stop. Work that nobody wants any more ends cancelled.
+    /// False if the lease was lost.
     ///
     /// # Errors
     /// When the database fails.
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
-        let mut tx = self.write().await?;
-        if !self.end_lease(&mut tx, lease, "queued", None).await? {
-            return Ok(false);
-        }
-        sqlx::query("UPDATE work SET starts = starts - 1, progress = 0 WHERE key = ?1")
-            .bind(lease.key.as_slice())
-            .execute(&mut *tx)
-            .await?;
-        self.announce(&mut tx, &lease.key, WorkState::Queued).await?;
-        tx.commit().await?;
-        Ok(true)
+        let query = concat!(
+            "UPDATE work SET
+                 state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END,
+                 error = ?5, starts = starts - 1, progress = 0, lease_until = NULL, changed = ",
+            now!(),
+            holds_lease!()
+        );
+        self.leave(query, lease, None).await
     }
 
     /// Gives work back after the infrastructure failed: tried again later and later, given up after five times.
@@ -228,24 +242,29 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
-        let mut tx = self.write().await?;
-        if !self.end_lease(&mut tx, lease, "waiting", Some(error_json)).await? {
-            return Ok(false);
-        }
-        let failures: i64 = sqlx::query_scalar(concat!(
-            "UPDATE work SET failure_count = failure_count + 1, progress = 0, ready_at = ",
+        let changed = sqlx::query(concat!(
+            "UPDATE work SET
+                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
+                              WHEN failure_count + 1 >= ?6 THEN 'failed'
+                              ELSE 'waiting' END,
+                 ready_at = ",
             now!(),
-            " + (?2 << failure_count) WHERE key = ?3 RETURNING failure_count"
+            " + (?7 << failure_count), failure_count = failure_count + 1,
+                 error = ?5, progress = 0, lease_until = NULL, changed = ",
+            now!(),
+            holds_lease!()
         ))
         .bind(self.clock_offset_ms)
-        .bind(FIRST_RETRY_MS)
         .bind(lease.key.as_slice())
-        .fetch_one(&mut *tx)
-        .await?;
-        let state = if failures >= INFRASTRUCTURE_TRIES { WorkState::Failed } else { WorkState::Waiting };
-        self.set_state(&mut tx, &lease.key, state).await?;
-        tx.commit().await?;
-        Ok(true)
+        .bind(lease.attempt)
+        .bind(&lease.worker)
+        .bind(error_json)
+        .bind(INFRASTRUCTURE_TRIES)
+        .bind(FIRST_RETRY_MS)
+        .execute(&self.pool)
+        .await?
+        .rows_affected();
+        Ok(changed == 1)
     }
 
     /// Takes work back from workers that are silent beyond their lease, and wakes retries that are due. Tells how
@@ -255,64 +274,51 @@ impl Store {
     /// When the database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
         // Most of the time there is nothing: look before taking the write lock.
-        let idle: i64 = sqlx::query_scalar(concat!(
-            "SELECT NOT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < ",
+        let is_due: i64 = sqlx::query_scalar(concat!(
+            "SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < ",
             now!(),
-            ") AND NOT EXISTS (SELECT 1 FROM work WHERE state = 'waiting' AND ready_at <= ",
+            ") OR EXISTS (SELECT 1 FROM work WHERE state = 'waiting' AND ready_at <= ",
             now!(),
             ")"
         ))
         .bind(self.clock_offset_ms)
         .fetch_one(&self.pool)
         .await?;
-        if idle != 0 {
+        if is_due == 0 {
             return Ok(0);
         }
-        let mut tx = self.write().await?;
-        let expired: Vec<(Vec<u8>, i64, i64, Option<String>)> = sqlx::query_as(concat!(
-            "UPDATE work SET crash_count = crash_count + 1, progress = 0, lease_until = NULL
+        let expired: Vec<(String, i64, Option<String>)> = sqlx::query_as(concat!(
+            "UPDATE work SET
+                 crash_count = crash_count + 1, progress = 0, lease_until = NULL, changed = ",
+            now!(),
+            ",
+                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
+                              WHEN crash_count + 1 >= ?2 THEN 'dead'
+                              ELSE 'queued' END,
+                 error = CASE WHEN cancel_requested = 0 AND crash_count + 1 >= ?2
+                              THEN json_object('class', 'crash', 'reason',
+                                   printf('%d workers went silent while they simulated it', crash_count + 1))
+                              ELSE error END
              WHERE state = 'leased' AND lease_until < ",
             now!(),
-            " RETURNING key, crash_count, cancel_requested, lease_owner"
+            " RETURNING state, crash_count, lease_owner"
         ))
         .bind(self.clock_offset_ms)
-        .fetch_all(&mut *tx)
+        .bind(CRASH_LIMIT)
+        .fetch_all(&self.pool)
         .await?;
-        for (key, crashes, cancel_requested, owner) in &expired {
-            let key = work_key(key)?;
-            let state = if *cancel_requested != 0 {
-                WorkState::Cancelled
-            } else if *crashes >= CRASH_LIMIT {
-                sqlx::query("UPDATE work SET error = ?2 WHERE key = ?1")
-                    .bind(key.as_slice())
-                    .bind(format!(
-                        "{{\"class\":\"crash\",\"reason\":\"{crashes} workers went silent while they simulated it\"}}"
-                    ))
-                    .execute(&mut *tx)
-                    .await?;
-                WorkState::Dead
-            } else {
-                WorkState::Queued
-            };
-            tracing::warn!(
-                worker = owner.as_deref().unwrap_or("?"),
-                crashes,
-                state = state.as_str(),
-                "lease ran out"
-            );
-            self.set_state(&mut tx, &key, state).await?;
+        for (state, crashes, owner) in &expired {
+            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, "lease ran out");
         }
-        let due: Vec<Vec<u8>> = sqlx::query_scalar(concat!(
-            "SELECT key FROM work WHERE state = 'waiting' AND ready_at <= ",
+        sqlx::query(concat!(
+            "UPDATE work SET state = 'queued', changed = ",
+            now!(),
+            " WHERE state = 'waiting' AND ready_at <= ",
             now!()
         ))
         .bind(self.clock_offset_ms)
-        .fetch_all(&mut *tx)
+        .execute(&self.pool)
         .await?;
-        for key in due {
-            self.set_state(&mut tx, &work_key(&key)?, WorkState::Queued).await?;
-        }
-        tx.commit().await?;
         Ok(expired.len() as u64)
     }
 
@@ -328,38 +334,27 @@ impl Store {
         .await?;
         let mut depths = QueueDepths::default();
         for (state, number) in rows {
-            match state.as_str() {
-                "waiting" => depths.waiting = number,
-                "queued" => depths.queued = number,
-                _ => depths.leased = number,
+            match WorkState::parse(&state)? {
+                WorkState::Waiting => depths.waiting = number,
+                WorkState::Queued => depths.queued = number,
+                WorkState::Leased => depths.leased = number,
+                WorkState::Done | WorkState::Failed | WorkState::Dead | WorkState::Cancelled => {}
             }
         }
         Ok(depths)
     }
 
-    /// Leaves the lease for another state, if it is still held.
-    async fn end_lease(
-        &self,
-        tx: &mut sqlx::Transaction<'static, sqlx::Sqlite>,
-        lease: &Lease,
-        state: &str,
-        error_json: Option<&str>,
-    ) -> Result<bool> {
-        let changed = sqlx::query(concat!(
-            "UPDATE work SET state = ?2, error = ?3, lease_until = NULL, finished = ",
-            now!(),
-            ", progress = CASE ?2 WHEN 'done' THEN 1.0 ELSE progress END
-              WHERE key = ?4 AND attempt = ?5 AND lease_owner = ?6 AND state = 'leased'"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(state)
-        .bind(error_json)
-        .bind(lease.key.as_slice())
-        .bind(lease.attempt)
-        .bind(&lease.worker)
-        .execute(&mut **tx)
-        .await?
-        .rows_affected();
+    /// Runs a statement that ends a lease. Its fifth parameter is the error.
+    async fn leave(&self, query: &'static str, lease: &Lease, error_json: Option<&str>) -> Result<bool> {
+        let changed = sqlx::query(query)
+            .bind(self.clock_offset_ms)
+            .bind(lease.key.as_slice())
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .bind(error_json)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
         Ok(changed == 1)
     }
 }

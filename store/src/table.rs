@@ -223,6 +223,7 @@ pub fn decode_parquet(
     columns: Option<&[&str]>,
     rows: Option<Range<usize>>,
 ) -> Result<Table, TableError> {
+    let wanted = rows.unwrap_or(0..usize::MAX);
     let reader = SerializedFileReader::new(bytes)?;
     let metadata = reader.metadata().file_metadata();
     let units = metadata.key_value_metadata();
@@ -233,7 +234,7 @@ pub fn decode_parquet(
     let mut table = Table::default();
     for (index, descriptor) in metadata.schema_descr().columns().iter().enumerate() {
         let name = descriptor.name();
-        if columns.is_some_and(|wanted| !wanted.contains(&name)) {
+        if columns.is_some_and(|columns| !columns.contains(&name)) {
             continue;
         }
         let mut data = match descriptor.physical_type() {
@@ -247,7 +248,6 @@ pub fn decode_parquet(
         for group in 0..reader.num_row_groups() {
             let group = reader.get_row_group(group)?;
             let group_rows = group.metadata().num_rows().unsigned_abs() as usize;
-            let wanted = rows.clone().unwrap_or(0..usize::MAX);
             let from = wanted.start.clamp(start, start + group_rows) - start;
             let to = wanted.end.clamp(start, start + group_rows) - start;
             if from < to {

@@ -1,0 +1,110 @@
+//! What the queue costs per point, on a file in the temporary directory, next to a sweep of ten thousand points.
+
+use std::cell::Cell;
+
+use divan::Bencher;
+use drillsweep_store::{NewArtifact, NewPoint, NewSweep, Role, Store, StoreConfig};
+use tempfile::TempDir;
+use tokio::runtime::Runtime;
+
+const POINTS: i64 = 10_000;
+
+fn main() {
+    divan::main();
+}
+
+struct Queue {
+    runtime: Runtime,
+    store: Store,
+    _directory: TempDir,
+}
+
+fn queue(role: Role) -> Queue {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let config = StoreConfig {
+        database_path: directory.path().join("drillsweep.sqlite"),
+        blob_directory: directory.path().join("blobs"),
+        role,
+        clock_offset_ms: 0,
+    };
+    let store = runtime.block_on(Store::open(&config)).expect("a store");
+    Queue { runtime, store, _directory: directory }
+}
+
+/// A sweep whose scenarios are as long as real ones.
+fn sweep(number: i64) -> NewSweep {
+    let point = |ordinal: i64| NewPoint {
+        ordinal,
+        parameters_json: format!(r#"{{"flow_rate":0.03,"mud_density":{ordinal}}}"#),
+        work_key: *blake3::hash(format!("{number} {ordinal}").as_bytes()).as_bytes(),
+        scenario_json: format!("{ordinal:>3000}"),
+        physics_version: 1,
+    };
+    NewSweep {
+        id: number.to_string(),
+        name: None,
+        owner: "anne".to_owned(),
+        request_json: "{}".to_owned(),
+        priority: 0,
+        idempotency_key: None,
+        points: (1..=POINTS).map(point).collect(),
+    }
+}
+
+/// Claim, one renewal, finish with five artifacts: all that the database does for a point.
+#[divan::bench(args = [Role::Worker, Role::Server], sample_count = 2_000, sample_size = 1)]
+fn claim_renew_finish(bencher: Bencher, role: Role) {
+    let queue = queue(role);
+    queue.runtime.block_on(queue.store.submit_sweep(&sweep(1))).expect("submitted");
+    let blob = queue.runtime.block_on(queue.store.blobs().put(b"history".to_vec())).expect("written");
+    let artifacts = ["profile", "statics", "history", "contacts", "energy"].map(|name| NewArtifact {
+        name: name.to_owned(),
+        media_type: "application/vnd.apache.parquet".to_owned(),
+        blob,
+        bytes: 7,
+        row_count: 1,
+    });
+    let summary = format!(r#"{{"rows":"{:>2000}"}}"#, "");
+    bencher.bench_local(|| {
+        queue.runtime.block_on(async {
+            let claim = queue.store.claim("w", 1, 60_000).await.expect("claimed").expect("work is ready");
+            queue.store.renew(&claim.lease, 60_000, 0.5).await.expect("renewed");
+            queue.store.finish_done(&claim.lease, &summary, "{}", &artifacts).await.expect("finished")
+        })
+    });
+}
+
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn submit_ten_thousand_points(bencher: Bencher) {
+    let queue = queue(Role::Server);
+    let number = Cell::new(0);
+    bencher
+        .with_inputs(|| {
+            number.set(number.get() + 1);
+            sweep(number.get())
+        })
+        .bench_local_values(|sweep| {
+            queue.runtime.block_on(queue.store.submit_sweep(&sweep)).expect("submitted")
+        });
+}
+
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn cancel_ten_thousand_points(bencher: Bencher) {
+    let queue = queue(Role::Server);
+    let number = Cell::new(0);
+    bencher
+        .with_inputs(|| {
+            number.set(number.get() + 1);
+            queue.runtime.block_on(queue.store.submit_sweep(&sweep(number.get()))).expect("submitted");
+            number.get().to_string()
+        })
+        .bench_local_values(|id| queue.runtime.block_on(queue.store.cancel_sweep(&id)).expect("cancelled"));
+}
+
+#[divan::bench(sample_count = 1_000, sample_size = 1)]
+fn look_at_a_sweep(bencher: Bencher) {
+    let queue = queue(Role::Server);
+    queue.runtime.block_on(queue.store.submit_sweep(&sweep(1))).expect("submitted");
+    bencher.bench_local(|| queue.runtime.block_on(queue.store.sweep("1")).expect("read"));
+}

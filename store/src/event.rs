@@ -1,0 +1,40 @@
+//! What happened to the points of a sweep, in order.
+
+use crate::connection::Store;
+use crate::error::Result;
+use crate::state::{WorkKey, WorkState, work_key};
+
+/// A change of a work item that a sweep has among its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Event {
+    /// The sweep's version after the change: it rises, with gaps where the sweep itself changed.
+    pub seq: i64,
+    /// The new state.
+    pub state: WorkState,
+    /// The work item.
+    pub work_key: WorkKey,
+    /// When it happened \[ms since the epoch\].
+    pub at: i64,
+}
+
+impl Store {
+    /// Events of a sweep after the number `after`, oldest first.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
+        let rows: Vec<(i64, String, Vec<u8>, i64)> = sqlx::query_as(
+            "SELECT seq, kind, work_key, at FROM event WHERE sweep_id = ?1 AND seq > ?2 ORDER BY seq LIMIT ?3",
+        )
+        .bind(sweep_id)
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.into_iter()
+            .map(|(seq, kind, key, at)| {
+                Ok(Event { seq, state: WorkState::parse(&kind)?, work_key: work_key(&key)?, at })
+            })
+            .collect()
+    }
+}

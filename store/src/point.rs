@@ -1,0 +1,183 @@
+//! Points of a sweep and what came of them.
+
+use sqlx::FromRow;
+
+use crate::connection::Store;
+use crate::error::Result;
+use crate::state::{WorkKey, WorkState, work_key};
+
+/// A stored point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointRecord {
+    /// Number in the sweep, from 1.
+    pub ordinal: i64,
+    /// The swept parameters as a JSON object.
+    pub parameters_json: String,
+    /// Content hash.
+    pub work_key: WorkKey,
+    /// The scenario as JSON text.
+    pub scenario_json: String,
+    /// Where its work stands.
+    pub state: WorkState,
+    /// Simulated time over duration, 0 to 1.
+    pub progress: f64,
+    /// How often a worker has started it.
+    pub attempts: i64,
+    /// Why it failed, as JSON.
+    pub error_json: Option<String>,
+    /// Scalar results as a JSON object.
+    pub summary_json: Option<String>,
+    /// Where and how it was computed, as a JSON object.
+    pub provenance_json: Option<String>,
+}
+
+/// A point's row of the sweep's table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableRecord {
+    /// Number in the sweep, from 1.
+    pub ordinal: i64,
+    /// The swept parameters as a JSON object.
+    pub parameters_json: String,
+    /// Where its work stands.
+    pub state: WorkState,
+    /// Scalar results as a JSON object.
+    pub summary_json: Option<String>,
+    /// Why it failed, as JSON.
+    pub error_json: Option<String>,
+}
+
+/// A stored array or table of a result.
+#[derive(Debug, Clone, PartialEq, Eq, FromRow)]
+pub struct Artifact {
+    /// Name within the result.
+    pub name: String,
+    /// Media type of the blob.
+    pub media_type: String,
+    /// Name of the blob.
+    pub blob: String,
+    /// Size of the blob.
+    pub bytes: i64,
+    /// Rows of the table.
+    pub row_count: i64,
+}
+
+#[derive(FromRow)]
+struct PointRow {
+    ordinal: i64,
+    parameters: String,
+    key: Vec<u8>,
+    scenario: String,
+    state: String,
+    progress: f64,
+    starts: i64,
+    error: Option<String>,
+    summary: Option<String>,
+    provenance: Option<String>,
+}
+
+impl Store {
+    /// Points of a sweep after the ordinal `after`, in some states or in any, without their results.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn points(
+        &self,
+        sweep_id: &str,
+        states: &[WorkState],
+        after: i64,
+        limit: i64,
+    ) -> Result<Vec<PointRecord>> {
+        let names: Vec<&str> = states.iter().map(|state| state.as_str()).collect();
+        // A list of fixed names, checked against the state with a comma on both sides.
+        let wanted = if names.is_empty() { None } else { Some(format!(",{},", names.join(","))) };
+        let rows: Vec<PointRow> = sqlx::query_as(
+            "SELECT p.ordinal, p.parameters, w.key, w.scenario, w.state, w.progress, w.starts, w.error,
+                    NULL AS summary, NULL AS provenance
+             FROM point p JOIN work w ON w.key = p.work_key
+             WHERE p.sweep_id = ?1 AND p.ordinal > ?2 AND (?3 IS NULL OR instr(?3, ',' || w.state || ',') > 0)
+             ORDER BY p.ordinal LIMIT ?4",
+        )
+        .bind(sweep_id)
+        .bind(after)
+        .bind(wanted)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.into_iter().map(PointRow::record).collect()
+    }
+
+    /// One point with its result, if it has one; none if there is no such point.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
+        let row: Option<PointRow> = sqlx::query_as(
+            "SELECT p.ordinal, p.parameters, w.key, w.scenario, w.state, w.progress, w.starts, w.error,
+                    r.summary, r.provenance
+             FROM point p JOIN work w ON w.key = p.work_key LEFT JOIN result r ON r.work_key = w.key
+             WHERE p.sweep_id = ?1 AND p.ordinal = ?2",
+        )
+        .bind(sweep_id)
+        .bind(ordinal)
+        .fetch_optional(&self.pool)
+        .await?;
+        row.map(PointRow::record).transpose()
+    }
+
+    /// One row a point, for the sweep's table, in order.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn table_rows(&self, sweep_id: &str) -> Result<Vec<TableRecord>> {
+        type Row = (i64, String, String, Option<String>, Option<String>);
+        let rows: Vec<Row> = sqlx::query_as(
+            "SELECT p.ordinal, p.parameters, w.state, r.summary, w.error
+             FROM point p JOIN work w ON w.key = p.work_key LEFT JOIN result r ON r.work_key = w.key
+             WHERE p.sweep_id = ?1 ORDER BY p.ordinal",
+        )
+        .bind(sweep_id)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.into_iter()
+            .map(|(ordinal, parameters_json, state, summary_json, error_json)| {
+                Ok(TableRecord {
+                    ordinal,
+                    parameters_json,
+                    state: WorkState::parse(&state)?,
+                    summary_json,
+                    error_json,
+                })
+            })
+            .collect()
+    }
+
+    /// Artifacts of a result, by name; none before it is there.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
+        Ok(sqlx::query_as(
+            "SELECT name, media_type, blob, bytes, row_count FROM artifact WHERE work_key = ?1 ORDER BY name",
+        )
+        .bind(key.as_slice())
+        .fetch_all(&self.pool)
+        .await?)
+    }
+}
+
+impl PointRow {
+    fn record(self) -> Result<PointRecord> {
+        Ok(PointRecord {
+            ordinal: self.ordinal,
+            parameters_json: self.parameters,
+            work_key: work_key(&self.key)?,
+            scenario_json: self.scenario,
+            state: WorkState::parse(&self.state)?,
+            progress: self.progress,
+            attempts: self.starts,
+            error_json: self.error,
+            summary_json: self.summary,
+            provenance_json: self.provenance,
+        })
+    }
+}

@@ -1,0 +1,103 @@
+//! A store in a temporary directory.
+
+use drillsweep_store::{
+    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, Store, StoreConfig, SubmitOutcome,
+    SweepRecord, WorkKey, WorkState,
+};
+use tempfile::TempDir;
+
+pub(crate) const PHYSICS: i64 = 1;
+pub(crate) const LEASE_MS: i64 = 60_000;
+
+pub(crate) struct Bench {
+    directory: TempDir,
+}
+
+impl Bench {
+    pub(crate) fn new() -> Self {
+        Bench { directory: TempDir::new().unwrap() }
+    }
+
+    pub(crate) fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig {
+        StoreConfig {
+            database_path: self.directory.path().join("data").join("drillsweep.sqlite"),
+            blob_directory: self.directory.path().join("data").join("blobs"),
+            role,
+            clock_offset_ms,
+        }
+    }
+
+    /// The store, as it is now.
+    pub(crate) async fn open(&self) -> Store {
+        self.after(0).await
+    }
+
+    /// The same store some milliseconds later, over connections of its own.
+    pub(crate) async fn after(&self, milliseconds: i64) -> Store {
+        Store::open(&self.config(Role::Server, milliseconds)).await.unwrap()
+    }
+}
+
+/// A work key that sorts against the order of its number, so that an order by key cannot pass for one by time.
+pub(crate) fn key(number: u32) -> WorkKey {
+    let mut key = [0x5a; 32];
+    key[..4].copy_from_slice(&(u32::MAX - number).to_be_bytes());
+    key
+}
+
+/// A sweep over the given work items.
+pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSweep {
+    let point = |(index, number)| NewPoint {
+        ordinal: index as i64 + 1,
+        parameters_json: format!(r#"{{"flow_rate":{number}}}"#),
+        work_key: key(number),
+        scenario_json: format!(r#"{{"scenario":{number}}}"#),
+        physics_version: PHYSICS,
+    };
+    NewSweep {
+        id: id.to_owned(),
+        name: Some(format!("sweep {id}")),
+        owner: "anne".to_owned(),
+        request_json: format!(r#"{{"request":"{id}"}}"#),
+        priority: 0,
+        idempotency_key: None,
+        points: numbers.into_iter().enumerate().map(point).collect(),
+    }
+}
+
+pub(crate) async fn submit(store: &Store, sweep: &NewSweep) {
+    assert_eq!(store.submit_sweep(sweep).await.unwrap(), SubmitOutcome::Created);
+}
+
+/// The next work item, claimed by `worker`.
+pub(crate) async fn claim(store: &Store, worker: &str) -> Claim {
+    claim_or_none(store, worker).await.expect("work is ready")
+}
+
+pub(crate) async fn claim_or_none(store: &Store, worker: &str) -> Option<Claim> {
+    store.claim(worker, PHYSICS, LEASE_MS).await.unwrap()
+}
+
+pub(crate) async fn finish(store: &Store, claim: &Claim) -> bool {
+    let artifact = NewArtifact {
+        name: "history".to_owned(),
+        media_type: "application/vnd.apache.parquet".to_owned(),
+        blob: store.blobs().put(claim.lease.key.to_vec()).await.unwrap(),
+        bytes: 32,
+        row_count: 7,
+    };
+    let summary = format!(r#"{{"by":"{}"}}"#, claim.lease.worker);
+    store.finish_done(&claim.lease, &summary, r#"{"version":"test"}"#, &[artifact]).await.unwrap()
+}
+
+pub(crate) async fn sweep_record(store: &Store, id: &str) -> SweepRecord {
+    store.sweep(id).await.unwrap().expect("the sweep is there")
+}
+
+pub(crate) async fn point_record(store: &Store, id: &str, ordinal: i64) -> PointRecord {
+    store.point(id, ordinal).await.unwrap().expect("the point is there")
+}
+
+pub(crate) async fn states(store: &Store, id: &str) -> Vec<WorkState> {
+    store.points(id, &[], 0, 1_000).await.unwrap().into_iter().map(|point| point.state).collect()
+}

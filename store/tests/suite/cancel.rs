@@ -1,0 +1,129 @@
+//! Cancelling: what nobody wants stops, what somebody wants goes on.
+
+use drillsweep_store::{FailureClass, Renewal, StateCounts, WorkState};
+
+use crate::bench::{
+    Bench, LEASE_MS, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
+};
+
+const CANCELLED: &str = r#"{"class":"cancelled"}"#;
+
+#[tokio::test]
+async fn queued_points_end_at_once_and_running_ones_at_their_next_renewal() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2, 3])).await;
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    let running = claim(&store, "w").await;
+    assert!(store.cancel_sweep("s").await.unwrap());
+    assert_eq!(states(&store, "s").await, [WorkState::Done, WorkState::Leased, WorkState::Cancelled]);
+    let record = sweep_record(&store, "s").await;
+    assert!(record.is_cancelled);
+    assert_eq!(record.finished, None);
+
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
+    assert!(store.finish_failed(&running.lease, FailureClass::Cancelled, CANCELLED).await.unwrap());
+    let record = sweep_record(&store, "s").await;
+    assert_eq!(record.counts, StateCounts { total: 3, done: 1, cancelled: 2, ..StateCounts::default() });
+    assert!(record.finished.is_some());
+    assert_eq!(point_record(&store, "s", 2).await.error_json.as_deref(), Some(CANCELLED));
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    assert!(!store.cancel_sweep("t").await.unwrap());
+}
+
+#[tokio::test]
+async fn work_that_another_live_sweep_wants_goes_on() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1, 2, 3])).await;
+    submit(&store, &sweep("b", [1, 3])).await;
+    let running = claim(&store, "w").await;
+    assert_eq!(running.lease.key, key(1));
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+    assert_eq!(states(&store, "a").await, [WorkState::Leased, WorkState::Cancelled, WorkState::Queued]);
+    // The last one that wanted it is gone.
+    assert!(store.cancel_sweep("b").await.unwrap());
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
+    assert_eq!(states(&store, "b").await, [WorkState::Leased, WorkState::Cancelled]);
+}
+
+#[tokio::test]
+async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1])).await;
+    let running = claim(&store, "w").await;
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
+    submit(&store, &sweep("b", [1])).await;
+    // The worker acts on what it heard before.
+    assert!(store.finish_failed(&running.lease, FailureClass::Cancelled, CANCELLED).await.unwrap());
+    let point = point_record(&store, "b", 1).await;
+    assert_eq!((point.state, point.error_json, point.progress), (WorkState::Queued, None, 0.0));
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    assert_eq!(sweep_record(&store, "b").await.counts.done, 1);
+}
+
+#[tokio::test]
+async fn cancelled_work_is_queued_again_when_it_is_asked_for_again() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1, 2])).await;
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert!(sweep_record(&store, "a").await.finished.is_some());
+
+    submit(&store, &sweep("b", [2])).await;
+    assert_eq!(states(&store, "b").await, [WorkState::Queued]);
+    assert_eq!(claim(&store, "w").await.lease.key, key(2));
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    // The cancelled sweep has the point too, and tells the truth about it.
+    let record = sweep_record(&store, "a").await;
+    assert_eq!((record.counts.running, record.counts.cancelled, record.finished), (1, 1, None));
+
+    assert_eq!(store.retry_sweep("a").await.unwrap(), Some(1));
+    let record = sweep_record(&store, "a").await;
+    assert!(!record.is_cancelled);
+    assert_eq!(record.counts, StateCounts { total: 2, running: 1, queued: 1, ..StateCounts::default() });
+}
+
+#[tokio::test]
+async fn a_retry_takes_back_the_cancellation_of_running_work() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1])).await;
+    let running = claim(&store, "w").await;
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert_eq!(store.retry_sweep("a").await.unwrap(), Some(0));
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+    assert!(finish(&store, &running).await);
+}
+
+#[tokio::test]
+async fn unwanted_work_that_comes_back_is_not_queued() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2, 3])).await;
+    let released = claim(&store, "w").await;
+    let broken = claim(&store, "w").await;
+    let silent = claim(&store, "silent").await;
+    assert!(store.cancel_sweep("s").await.unwrap());
+    assert!(store.release(&released.lease).await.unwrap());
+    assert!(store.retry_later(&broken.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
+    assert_eq!(silent.lease.key, key(3));
+    assert_eq!(bench.after(LEASE_MS + 1).await.reap_expired().await.unwrap(), 1);
+    assert_eq!(states(&store, "s").await, [WorkState::Cancelled; 3]);
+    assert!(sweep_record(&store, "s").await.finished.is_some());
+}
+
+#[tokio::test]
+async fn a_result_that_comes_in_spite_of_a_cancellation_is_kept() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let running = claim(&store, "w").await;
+    assert!(store.cancel_sweep("s").await.unwrap());
+    assert!(finish(&store, &running).await);
+    assert_eq!(states(&store, "s").await, [WorkState::Done]);
+    assert_eq!(store.known_results(&[key(1)]).await.unwrap(), 1);
+}

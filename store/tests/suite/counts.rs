@@ -1,0 +1,127 @@
+//! A sweep's counts, end and events follow its points through whatever happens to them.
+
+use drillsweep_store::{Claim, FailureClass, StateCounts, Store, WorkState};
+
+use crate::bench::{Bench, LEASE_MS, claim, claim_or_none, finish, key, states, submit, sweep, sweep_record};
+
+/// A small generator (xorshift): the same numbers in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, sides: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % sides as u64) as usize
+    }
+}
+
+/// The counts, made from the points themselves.
+fn recount(states: &[WorkState]) -> StateCounts {
+    let number = |wanted: &[WorkState]| states.iter().filter(|state| wanted.contains(state)).count() as i64;
+    StateCounts {
+        total: states.len() as i64,
+        queued: number(&[WorkState::Waiting, WorkState::Queued]),
+        running: number(&[WorkState::Leased]),
+        done: number(&[WorkState::Done]),
+        failed: number(&[WorkState::Failed, WorkState::Dead]),
+        cancelled: number(&[WorkState::Cancelled]),
+    }
+}
+
+async fn check(store: &Store, sweeps: &[String], step: usize) {
+    for id in sweeps {
+        let states = states(store, id).await;
+        let record = sweep_record(store, id).await;
+        let expected = recount(&states);
+        assert_eq!(record.counts, expected, "sweep {id} after step {step}");
+        let is_open = expected.queued + expected.running > 0;
+        assert_eq!(record.finished.is_none(), is_open, "sweep {id} after step {step}: {record:?}");
+    }
+}
+
+#[tokio::test]
+async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_history() {
+    for seed in [0x9e37_79b9, 0x1234_5678_9abc, 0xdead_beef_cafe] {
+        let bench = Bench::new();
+        let mut dice = Dice(seed);
+        let mut clock = 0;
+        let mut store = bench.open().await;
+        let mut sweeps: Vec<String> = Vec::new();
+        let mut claims: Vec<Claim> = Vec::new();
+        for step in 0..250 {
+            match dice.roll(12) {
+                0 if sweeps.len() < 12 => {
+                    let id = format!("s{step}");
+                    // Few work items, so that sweeps share them and have some of them twice.
+                    let numbers: Vec<u32> = (0..1 + dice.roll(8)).map(|_| dice.roll(20) as u32).collect();
+                    submit(&store, &sweep(&id, numbers)).await;
+                    sweeps.push(id);
+                }
+                0..=3 => claims.extend(claim_or_none(&store, "w").await),
+                4 if !sweeps.is_empty() => {
+                    assert!(store.cancel_sweep(&sweeps[dice.roll(sweeps.len())]).await.unwrap());
+                }
+                5 if !sweeps.is_empty() => {
+                    store.retry_sweep(&sweeps[dice.roll(sweeps.len())]).await.unwrap().unwrap();
+                }
+                6 => {
+                    clock += 20_000;
+                    store = bench.after(clock).await;
+                    store.reap_expired().await.unwrap();
+                }
+                kind if !claims.is_empty() => {
+                    // Some of these have lost their lease: then nothing may change.
+                    let claim = claims.swap_remove(dice.roll(claims.len()));
+                    let lease = &claim.lease;
+                    match kind {
+                        7 => drop(finish(&store, &claim).await),
+                        8 => drop(store.finish_failed(lease, FailureClass::Physical, "{}").await.unwrap()),
+                        9 => drop(store.finish_failed(lease, FailureClass::Cancelled, "{}").await.unwrap()),
+                        10 => drop(store.release(lease).await.unwrap()),
+                        _ => drop(store.retry_later(lease, "{}").await.unwrap()),
+                    }
+                }
+                _ => {}
+            }
+            check(&store, &sweeps, step).await;
+        }
+        assert!(sweeps.len() > 5, "the history is too poor to mean anything");
+    }
+}
+
+#[tokio::test]
+async fn events_tell_the_history_in_the_order_of_versions() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    submit(&store, &sweep("other", [2])).await;
+    let silent = claim(&store, "w").await;
+    let later = bench.after(LEASE_MS + 1).await;
+    let again = claim(&later, "w").await;
+    assert_eq!(again.lease.key, silent.lease.key);
+    assert!(finish(&later, &again).await);
+    let failed = claim(&later, "w").await;
+    assert!(later.finish_failed(&failed.lease, FailureClass::Timeout, "{}").await.unwrap());
+
+    let events = store.events("s", 0, 100).await.unwrap();
+    let told: Vec<_> = events.iter().map(|event| (event.work_key, event.state)).collect();
+    assert_eq!(
+        told,
+        [
+            (key(1), WorkState::Leased),
+            (key(1), WorkState::Queued),
+            (key(1), WorkState::Leased),
+            (key(1), WorkState::Done),
+            (key(2), WorkState::Leased),
+            (key(2), WorkState::Failed),
+        ]
+    );
+    assert!(events.is_sorted_by(|a, b| a.seq < b.seq && a.at <= b.at), "{events:?}");
+    assert_eq!(store.sweep_version("s").await.unwrap(), Some(events[5].seq));
+    assert_eq!(store.events("s", events[2].seq, 2).await.unwrap(), events[3..5]);
+    let others: Vec<_> =
+        store.events("other", 0, 100).await.unwrap().into_iter().map(|event| event.state).collect();
+    assert_eq!(others, [WorkState::Leased, WorkState::Failed]);
+    assert_eq!(sweep_record(&store, "s").await.finished, Some(events[5].at));
+}

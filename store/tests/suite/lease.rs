@@ -1,0 +1,217 @@
+//! Leases: who holds a point, until when, and what becomes of it when its worker falls silent.
+
+use drillsweep_store::{FailureClass, NewSweep, Renewal, StateCounts, WorkState};
+
+use crate::bench::{
+    Bench, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
+    sweep_record,
+};
+
+#[tokio::test]
+async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let first = claim(&store, "first").await;
+    assert_eq!(first.lease.attempt, 1);
+
+    let shortly_before = bench.after(LEASE_MS - 5_000).await;
+    assert_eq!(claim_or_none(&shortly_before, "second").await, None);
+    let later = bench.after(LEASE_MS + 1).await;
+    let second = claim(&later, "second").await;
+    assert_eq!((second.lease.key, second.lease.attempt), (key(1), 2));
+    assert_eq!(point_record(&later, "s", 1).await.attempts, 2);
+}
+
+#[tokio::test]
+async fn a_late_writer_changes_nothing() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let late = claim(&store, "late").await;
+    let later = bench.after(LEASE_MS + 1).await;
+
+    let refuses_the_late_one = async || {
+        let version = store.sweep_version("s").await.unwrap();
+        assert_eq!(store.renew(&late.lease, LEASE_MS, 0.9).await.unwrap(), Renewal::Lost);
+        assert!(!finish(&store, &late).await);
+        for class in [FailureClass::Physical, FailureClass::Timeout, FailureClass::Cancelled] {
+            assert!(!store.finish_failed(&late.lease, class, "{}").await.unwrap());
+        }
+        assert!(!store.release(&late.lease).await.unwrap());
+        assert!(!store.retry_later(&late.lease, "{}").await.unwrap());
+        assert_eq!(store.sweep_version("s").await.unwrap(), version);
+    };
+
+    // Back in the queue, under way elsewhere, finished elsewhere.
+    assert_eq!(later.reap_expired().await.unwrap(), 1);
+    refuses_the_late_one().await;
+    let prompt = claim(&later, "prompt").await;
+    refuses_the_late_one().await;
+    assert!(finish(&later, &prompt).await);
+    refuses_the_late_one().await;
+
+    let point = point_record(&store, "s", 1).await;
+    assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"prompt"}"#));
+    // The result is stored once, even by the one that holds the lease.
+    assert!(!finish(&later, &prompt).await);
+}
+
+#[tokio::test]
+async fn the_same_worker_cannot_write_with_its_earlier_attempt() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let earlier = claim(&store, "w").await;
+    let later = bench.after(LEASE_MS + 1).await;
+    let now = claim(&later, "w").await;
+    assert!(!finish(&later, &earlier).await);
+    assert!(finish(&later, &now).await);
+}
+
+#[tokio::test]
+async fn a_renewal_extends_the_lease_and_carries_the_progress() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let running = claim(&store, "w").await;
+    let version = store.sweep_version("s").await.unwrap();
+
+    let at_50_s = bench.after(50_000).await;
+    assert_eq!(at_50_s.renew(&running.lease, LEASE_MS, 0.25).await.unwrap(), Renewal::Held);
+    assert_eq!(point_record(&store, "s", 1).await.progress, 0.25);
+    assert_eq!(sweep_record(&store, "s").await.progress, 0.25);
+    // Progress is not a change of state.
+    assert_eq!(store.sweep_version("s").await.unwrap(), version);
+
+    assert_eq!(bench.after(100_000).await.reap_expired().await.unwrap(), 0);
+    assert_eq!(bench.after(50_000 + LEASE_MS + 5_000).await.reap_expired().await.unwrap(), 1);
+    let point = point_record(&store, "s", 1).await;
+    assert_eq!((point.state, point.progress), (WorkState::Queued, 0.0));
+}
+
+#[tokio::test]
+async fn a_point_whose_workers_die_three_times_is_dead() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    for death in 1..=3 {
+        let store = bench.after((death - 1) * 2 * LEASE_MS).await;
+        assert_eq!(claim(&store, "doomed").await.lease.attempt, death);
+    }
+    let end = bench.after(6 * LEASE_MS).await;
+    assert_eq!(claim_or_none(&end, "w").await, None);
+    assert_eq!(states(&store, "s").await, [WorkState::Dead]);
+    let record = sweep_record(&store, "s").await;
+    assert_eq!(record.counts, StateCounts { total: 1, failed: 1, ..StateCounts::default() });
+    assert!(record.finished.is_some());
+    assert_eq!(
+        point_record(&store, "s", 1).await.error_json.as_deref(),
+        Some(r#"{"class":"crash","reason":"3 workers went silent while they simulated it"}"#)
+    );
+
+    // A retry begins to count anew.
+    assert_eq!(end.retry_sweep("s").await.unwrap(), Some(1));
+    claim(&end, "doomed").await;
+    let after_one_more = bench.after(8 * LEASE_MS).await;
+    assert!(finish(&after_one_more, &claim(&after_one_more, "w").await).await);
+}
+
+#[tokio::test]
+async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let released = claim(&store, "w").await;
+    assert!(store.release(&released.lease).await.unwrap());
+    let point = point_record(&store, "s", 1).await;
+    assert_eq!((point.state, point.attempts), (WorkState::Queued, 0));
+    let again = claim(&store, "w").await;
+    assert_eq!(again.lease.attempt, 2);
+    assert_eq!(point_record(&store, "s", 1).await.attempts, 1);
+    assert!(!finish(&store, &released).await);
+    assert!(finish(&store, &again).await);
+}
+
+#[tokio::test]
+async fn an_infrastructure_failure_waits_5_10_20_40_seconds_and_is_given_up_at_the_fifth() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let mut clock = 0;
+    for wait in [5_000, 10_000, 20_000, 40_000] {
+        let store = bench.after(clock).await;
+        let failing = claim(&store, "w").await;
+        assert!(store.retry_later(&failing.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
+        assert_eq!(states(&store, "s").await, [WorkState::Waiting]);
+        assert_eq!(store.queue_depths().await.unwrap().waiting, 1);
+        let too_early = bench.after(clock + wait - 2_000).await;
+        assert_eq!(claim_or_none(&too_early, "w").await, None);
+        // The margin is for the time that the test itself takes.
+        clock += wait + 2_000;
+    }
+    let last = bench.after(clock).await;
+    let failing = claim(&last, "w").await;
+    assert!(last.retry_later(&failing.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
+    let point = point_record(&last, "s", 1).await;
+    assert_eq!(point.state, WorkState::Failed);
+    assert_eq!(point.error_json.as_deref(), Some(r#"{"class":"infrastructure"}"#));
+    assert!(sweep_record(&last, "s").await.finished.is_some());
+}
+
+#[tokio::test]
+async fn a_worker_gets_only_work_of_its_own_numbers() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    let mut old = sweep("old", [1]);
+    old.points[0].physics_version = PHYSICS - 1;
+    submit(&store, &old).await;
+    submit(&store, &sweep("new", [2])).await;
+    assert_eq!(claim(&store, "w").await.lease.key, key(2));
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    let claimed = store.claim("old worker", PHYSICS - 1, LEASE_MS).await.unwrap().unwrap();
+    assert_eq!(claimed.lease.key, key(1));
+}
+
+#[tokio::test]
+async fn the_urgent_goes_first_then_the_order_asked() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("plain", [1, 2, 3])).await;
+    // Point 2 becomes as urgent as the sweep that also wants it.
+    submit(&store, &NewSweep { priority: 5, ..sweep("urgent", [4, 2]) }).await;
+    let mut order = Vec::new();
+    while let Some(claim) = claim_or_none(&store, "w").await {
+        order.push(claim.lease.key);
+    }
+    assert_eq!(order, [key(2), key(4), key(1), key(3)]);
+}
+
+#[tokio::test]
+async fn workers_are_listed_while_they_are_heard_of() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    let worker = |id: &str| drillsweep_store::WorkerRecord {
+        id: id.to_owned(),
+        host: "rig".to_owned(),
+        process: 42,
+        version: "0.1.0".to_owned(),
+        physics_version: PHYSICS,
+        started: 0,
+        last_seen: 0,
+    };
+    store.register_worker(&worker("a")).await.unwrap();
+    let later = bench.after(90_000).await;
+    later.register_worker(&worker("b")).await.unwrap();
+    let ids = async |within| -> Vec<String> {
+        later.workers(within).await.unwrap().into_iter().map(|worker| worker.id).collect()
+    };
+    assert_eq!(ids(60_000).await, ["b"]);
+    assert_eq!(ids(120_000).await, ["a", "b"]);
+    later.register_worker(&worker("a")).await.unwrap();
+    assert_eq!(ids(60_000).await, ["a", "b"]);
+    let listed = later.workers(60_000).await.unwrap();
+    assert!(listed[0].last_seen - listed[0].started >= 90_000, "{:?}", listed[0]);
+    later.remove_worker("a").await.unwrap();
+    assert_eq!(ids(120_000).await, ["b"]);
+}

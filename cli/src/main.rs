@@ -47,16 +47,16 @@ fn main() -> anyhow::Result<()> {
     let filter = EnvFilter::try_from_env("DRILLSWEEP_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
     tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
     match arguments.command {
-        Command::Up(arguments) => service::up(arguments),
-        Command::Serve(arguments) => service::serve(arguments),
-        Command::Worker(arguments) => service::worker(arguments),
+        Command::Up(arguments) => service::up(&arguments),
+        Command::Serve(arguments) => service::serve(&arguments),
+        Command::Worker(arguments) => service::worker(&arguments),
         Command::Submit(arguments) => submit::submit(&arguments),
         Command::Watch(arguments) => submit::watch(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Scenario { name } => simulate::print_scenario(name.as_deref()),
         Command::Openapi => {
-            print(&drillsweep_server::openapi_json());
+            print(drillsweep_server::openapi_json());
             Ok(())
         }
     }

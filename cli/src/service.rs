@@ -80,7 +80,7 @@ impl DataArguments {
 }
 
 /// Server and workers on one machine.
-pub(crate) fn up(arguments: UpArguments) -> anyhow::Result<()> {
+pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
     let workers = match arguments.workers {
         Some(number) => number,
         None => std::thread::available_parallelism()?.get(),
@@ -88,19 +88,19 @@ pub(crate) fn up(arguments: UpArguments) -> anyhow::Result<()> {
     runtime()?.block_on(async {
         let stop = stop_on_signal()?;
         let served = serve_until(&arguments.data, arguments.listen, stop.clone());
-        let kept = keep_workers(&arguments, workers, stop);
+        let kept = keep_workers(arguments, workers, stop);
         let (served, kept) = tokio::join!(served, kept);
         served.and(kept)
     })
 }
 
 /// The server alone.
-pub(crate) fn serve(arguments: ServeArguments) -> anyhow::Result<()> {
+pub(crate) fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     runtime()?.block_on(async { serve_until(&arguments.data, arguments.listen, stop_on_signal()?).await })
 }
 
 /// A worker.
-pub(crate) fn worker(arguments: WorkerArguments) -> anyhow::Result<()> {
+pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
     if arguments.with_parent {
         set_parent_process_death_signal(Some(Signal::TERM))
             .context("the worker cannot follow the process that started it")?;

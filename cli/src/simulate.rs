@@ -120,9 +120,9 @@ fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
 
 fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
-    for (name, _, bytes) in computed.encode()? {
-        let path = directory.join(format!("{name}.parquet"));
-        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+    for table in computed.encode()? {
+        let path = directory.join(format!("{}.parquet", table.name));
+        std::fs::write(&path, table.parquet).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
 }

@@ -241,7 +241,9 @@ fn mud_lowers_frequencies_by_the_root_of_the_mass_ratio() {
     let momentum = FlowMomentum::new(&mud, &s, 0.2159);
     assert!((momentum.added_mass_coefficient - 2.0582).abs() < 5e-5);
     let added = 1200.0 * PI / 4.0 * (0.108_f64.powi(2) + 2.0582 * 0.127_f64.powi(2));
-    assert!((momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass - added).abs() < 1e-3);
+    assert!(
+        (momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass - added).abs() < 1e-3
+    );
     let beam = StraightBeam::new(s, 20.0, 8);
     let dofs = beam.pinned_pinned();
     let k = select(&beam.assemble(&beam.element.stiffness()), &dofs);

@@ -1,5 +1,7 @@
 //! The arrows between the crates, and what each of them must not know.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
 use std::path::Path;
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
@@ -53,7 +55,11 @@ fn only_the_store_knows_sql_and_only_the_server_serves_http() {
     for package in &metadata().packages {
         for dependency in dependencies(package) {
             if let Some((_, allowed)) = CONFINED.iter().find(|(name, _)| *name == dependency) {
-                assert!(allowed.contains(&package.name.as_str()), "{} must not use {dependency}", package.name);
+                assert!(
+                    allowed.contains(&package.name.as_str()),
+                    "{} must not use {dependency}",
+                    package.name
+                );
             }
         }
     }
@@ -64,7 +70,10 @@ fn simulation_knows_no_clock_files_threads_network_or_async() {
     let metadata = metadata();
     let sim = metadata.packages.iter().find(|package| package.name.as_str() == "drillsweep-sim").unwrap();
     for dependency in dependencies(sim) {
-        assert!(!["tokio", "rayon", "tracing", "ureq", "rustix"].contains(&dependency), "sim uses {dependency}");
+        assert!(
+            !["tokio", "rayon", "tracing", "ureq", "rustix"].contains(&dependency),
+            "sim uses {dependency}"
+        );
     }
     let mut sources = Vec::new();
     rust_files(&sim.manifest_path.parent().unwrap().as_std_path().join("src"), &mut sources);

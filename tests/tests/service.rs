@@ -1,5 +1,7 @@
 //! The whole system as real processes: sweeps end to end, workers and servers killed for real.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -97,7 +99,8 @@ fn submit(server: &str, seconds: f64, changes: &Value) -> String {
         "accuracy": "draft",
     });
     set.as_object_mut().unwrap().extend(changes.as_object().unwrap().clone());
-    let request = json!({ "preset": "paper-200m", "set": set, "axes": { "flow_rate": { "values": [0.01, 0.02] } } });
+    let request =
+        json!({ "preset": "paper-200m", "set": set, "axes": { "flow_rate": { "values": [0.01, 0.02] } } });
     post(&format!("{server}/v1/sweeps"), &request)["id"].as_str().unwrap().to_owned()
 }
 

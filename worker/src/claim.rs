@@ -12,7 +12,7 @@ use drillsweep_store::{
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
-use crate::compute::{ComputeError, Computed, compute};
+use crate::compute::{ComputeError, Computed, EncodedTable, compute};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 
 /// How a worker works.
@@ -221,14 +221,14 @@ async fn write_end(
 /// Writes the tables as blobs, before any row names them.
 async fn upload(store: &Store, computed: &Computed) -> drillsweep_store::Result<Vec<NewArtifact>> {
     let mut artifacts = Vec::new();
-    for (name, rows, bytes) in computed.encode()? {
-        let size = bytes.len() as i64;
+    for EncodedTable { name, row_count, parquet } in computed.encode()? {
+        let size = parquet.len() as i64;
         artifacts.push(NewArtifact {
             name: name.to_owned(),
             media_type: "application/vnd.apache.parquet".to_owned(),
-            blob: store.blobs().put(bytes).await?,
+            blob: store.blobs().put(parquet).await?,
             bytes: size,
-            row_count: rows as i64,
+            row_count: row_count as i64,
         });
     }
     Ok(artifacts)

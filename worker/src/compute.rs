@@ -27,6 +27,17 @@ pub struct Computed {
     pub provenance: Map<String, Value>,
 }
 
+/// A table as it is stored.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncodedTable {
+    /// Its name within the result.
+    pub name: &'static str,
+    /// Number of rows.
+    pub row_count: usize,
+    /// The table as Parquet.
+    pub parquet: Vec<u8>,
+}
+
 /// Why a point has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {
@@ -70,12 +81,17 @@ impl Computed {
         summary_row(&self.statics, self.transient.as_ref())
     }
 
-    /// The tables as Parquet: name, rows, bytes.
+    /// The tables as Parquet.
     ///
     /// # Errors
     /// When a table cannot be encoded.
-    pub fn encode(&self) -> Result<Vec<(&'static str, usize, Vec<u8>)>, TableError> {
-        self.tables.iter().map(|(name, table)| Ok((*name, table.rows(), encode_parquet(table)?))).collect()
+    pub fn encode(&self) -> Result<Vec<EncodedTable>, TableError> {
+        let tables = self.tables.iter();
+        tables
+            .map(|(name, table)| {
+                Ok(EncodedTable { name, row_count: table.rows(), parquet: encode_parquet(table)? })
+            })
+            .collect()
     }
 }
 

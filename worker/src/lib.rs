@@ -11,5 +11,5 @@ mod lease;
 mod tables;
 
 pub use claim::{WorkerConfig, WorkerError, run};
-pub use compute::{ComputeError, Computed, compute};
+pub use compute::{ComputeError, Computed, EncodedTable, compute};
 pub use tables::{point_tables, summary_row};

@@ -208,17 +208,17 @@ impl Ledger {
 
 /// v^T S v of the symmetric part of a matrix, from its diagonal and upper blocks; nothing where that is zero.
 #[derive(Debug, Clone)]
-struct QuadraticForm(Option<(Vec<Block<f64>>, Vec<Block<f64>>)>);
+struct QuadraticForm(Option<BlockTridiagonal<f64>>);
 
 impl QuadraticForm {
     fn of(m: &BlockTridiagonal<f64>) -> Self {
         let symmetric = half_sum(m, 0.5);
         let present = largest(&symmetric) > 0.0;
-        Self(present.then(|| (symmetric.diagonal, symmetric.upper)))
+        Self(present.then_some(symmetric))
     }
 
     fn value(&self, v: &[[f64; 6]]) -> f64 {
-        let Some((diagonal, upper)) = &self.0 else { return 0.0 };
+        let Some(BlockTridiagonal { diagonal, upper, .. }) = &self.0 else { return 0.0 };
         let mut sum = 0.0;
         for i in 0..v.len() {
             let mut product = times(&diagonal[i], &v[i], [0.0; 6]);

@@ -166,8 +166,8 @@ mod tests {
     fn tableau_satisfies_the_order_conditions_up_to_four() {
         let (a, c) = (tableau(), NODES);
         let row = |i: usize, f: &dyn Fn(usize) -> f64| (0..STAGES).map(|j| a[i][j] * f(j)).sum::<f64>();
-        for i in 0..STAGES {
-            assert!((row(i, &|_| 1.0) - c[i]).abs() < 1e-14, "row {i}");
+        for (i, node) in c.iter().enumerate() {
+            assert!((row(i, &|_| 1.0) - node).abs() < 1e-14, "row {i}");
         }
         // The eight rooted trees of order four or less (Butcher).
         let conditions = [

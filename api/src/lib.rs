@@ -1,6 +1,6 @@
 //! The contract of the service: what is asked for, what is answered, and how it is derived from results.
 //!
-//! A [`SweepRequest`] is [expanded](expand) into the points to compute; what comes of them is shown as a
+//! A [`SweepRequest`] is [expanded](expand()) into the points to compute; what comes of them is shown as a
 //! [`Sweep`], as [points](point) and as [tables](table::Table); what goes wrong as [problems](problem). The
 //! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
 //!

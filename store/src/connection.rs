@@ -1,6 +1,8 @@
 //! Opening the store.
 
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sqlx::sqlite::{
@@ -80,8 +82,10 @@ impl Store {
             Role::Server => 4,
             Role::Worker => 2,
         };
+        let opening = lock_opening(&config.database_path).await?;
         let pool = SqlitePoolOptions::new().max_connections(connections).connect_with(options).await?;
-        migrate(&pool).await?;
+        sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
+        drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;
         Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, blobs })
     }
@@ -112,10 +116,14 @@ impl Store {
     }
 }
 
-/// Brings the schema up to date. The migrations run inside one immediate transaction because sqlx takes no lock of
-/// its own on SQLite: of several processes that open a new file at once, the others wait and find it done.
-async fn migrate(pool: &SqlitePool) -> Result<()> {
-    let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
-    sqlx::migrate!("../migrations/sqlite").run(&mut *tx).await?;
-    Ok(tx.commit().await?)
+/// Waits for whoever else is opening the same database. Turning a new file to write-ahead logging fails at once with
+/// "database is locked" while another process does the same, whatever the busy timeout is, and sqlx's migrations take
+/// no lock on SQLite. The lock ends with the file's handle, and with the process.
+async fn lock_opening(database: &Path) -> Result<File> {
+    let mut path = OsString::from(database);
+    path.push(".lock");
+    let failed = |source| StoreError::Directory { path: path.display().to_string(), source };
+    let file = File::create(&path).map_err(failed)?;
+    let locking = tokio::task::spawn_blocking(move || file.lock().map(|()| file));
+    locking.await.map_err(std::io::Error::other).flatten().map_err(failed)
 }

@@ -17,10 +17,10 @@ pub enum StoreError {
     /// The object store failed.
     #[error("object store: {0}")]
     Blob(#[from] object_store::Error),
-    /// A directory could not be made or read.
+    /// A directory could not be made, or the database's lock file not taken.
     #[error("{path}: {source}")]
     Directory {
-        /// The directory.
+        /// The directory or file.
         path: String,
         /// What the system said.
         source: std::io::Error,

@@ -1,8 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::*;
-use crate::linalg::Lane;
-use crate::linalg::four::Four;
+use crate::linalg::{Four, Lane};
 use crate::scenario::{Adhesion, ContactLaw, Effects, Switch};
 
 /// The law of the 200 m base case (physics.md section 9).
@@ -391,11 +390,11 @@ fn a_lane_has_the_bits_of_a_node_alone() {
     let four = ContactParameters::<Four>::new(&BASE, &Effects::default());
     let node = ContactNode { clearance: Four::splat(NODE.clearance), contact_radius: Four::splat(0.0635) };
     let motion = LateralMotion {
-        u: Four(radii.map(|r| 0.6 * r)),
-        v: Four(radii.map(|r| -0.8 * r)),
-        u_rate: Four([0.2, -1.0, 0.1, -0.7]),
-        v_rate: Four([0.0, 0.3, 0.2, -0.4]),
-        theta_z_rate: Four([1.0, -2.0, 0.0, -15.0]),
+        u: Four::new(radii.map(|r| 0.6 * r)),
+        v: Four::new(radii.map(|r| -0.8 * r)),
+        u_rate: Four::new([0.2, -1.0, 0.1, -0.7]),
+        v_rate: Four::new([0.0, 0.3, 0.2, -0.4]),
+        theta_z_rate: Four::new([1.0, -2.0, 0.0, -15.0]),
     };
     let together = dynamic_contact(&four, &node, &motion, Four::splat(12.6));
     for lane in 0..4 {

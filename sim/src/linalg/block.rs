@@ -65,13 +65,7 @@ impl<L: Lane> Block<L> {
     /// `sum + self x`.
     #[inline(always)]
     pub(super) fn multiply_add(&self, x: &[L; DOFS], sum: [L; DOFS]) -> [L; DOFS] {
-        let mut sum = sum;
-        for (column, x) in self.columns.iter().zip(x) {
-            for (sum, entry) in sum.iter_mut().zip(column) {
-                *sum = entry.mul_add(*x, *sum);
-            }
-        }
-        sum
+        L::columns_mul_add(&self.columns, x, sum)
     }
 
     /// `sum = sum + self other`.

@@ -1,58 +1,77 @@
-//! Four lanes in a plain array: not fast, but it shows that the kernels treat each lane as one `f64`.
+//! Four lanes in one vector register.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use wide::f64x4;
+
 use super::{Lane, Mask};
 
+/// Four values side by side; each lane has the bits of one `f64` alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Four(pub(crate) [f64; 4]);
+#[repr(transparent)]
+pub struct Four(f64x4);
 
+/// Truth values of the lanes of [`Four`]: all bits of a lane, or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FourMask(pub(crate) [bool; 4]);
+#[repr(transparent)]
+pub struct FourMask(f64x4);
 
 impl Four {
-    fn with(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
-        Four(std::array::from_fn(|i| operation(self.0[i], other.0[i])))
+    /// The values of lanes 0 to 3.
+    #[inline(always)]
+    pub fn new(values: [f64; 4]) -> Self {
+        Four(f64x4::new(values))
+    }
+
+    /// The values of lanes 0 to 3.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; 4] {
+        self.0.to_array()
     }
 }
 
 impl Add for Four {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.with(other, |a, b| a + b)
+        Four(self.0 + other.0)
     }
 }
 
 impl Sub for Four {
     type Output = Self;
 
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.with(other, |a, b| a - b)
+        Four(self.0 - other.0)
     }
 }
 
 impl Mul for Four {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.with(other, |a, b| a * b)
+        Four(self.0 * other.0)
     }
 }
 
 impl Div for Four {
     type Output = Self;
 
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
-        self.with(other, |a, b| a / b)
+        Four(self.0 / other.0)
     }
 }
 
 impl Neg for Four {
     type Output = Self;
 
+    #[inline(always)]
     fn neg(self) -> Self {
-        Four(self.0.map(|a| -a))
+        Four(self.0 ^ f64x4::splat(-0.0))
     }
 }
 
@@ -60,77 +79,98 @@ impl Lane for Four {
     const LANES: usize = 4;
     type Mask = FourMask;
 
+    #[inline(always)]
     fn splat(value: f64) -> Self {
-        Four([value; 4])
+        Four(f64x4::splat(value))
     }
 
+    #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
-        self.0[lane]
+        self.0.as_array()[lane]
     }
 
+    #[inline(always)]
     fn set_lane(&mut self, lane: usize, value: f64) {
-        self.0[lane] = value;
+        self.0.as_mut_array()[lane] = value;
     }
 
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Four(std::array::from_fn(|i| self.0[i].mul_add(factor.0[i], addend.0[i])))
+        // Without a fused instruction the vector would round twice, and a lane alone once.
+        if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
+            Four(self.0.mul_add(factor.0, addend.0))
+        } else {
+            let (a, b, c) = (self.to_array(), factor.to_array(), addend.to_array());
+            Four::new(std::array::from_fn(|i| a[i].mul_add(b[i], c[i])))
+        }
     }
 
+    #[inline(always)]
     fn sqrt(self) -> Self {
-        Four(self.0.map(f64::sqrt))
+        Four(self.0.sqrt())
     }
 
+    #[inline(always)]
     fn abs(self) -> Self {
-        Four(self.0.map(f64::abs))
+        Four(self.0.abs())
     }
 
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
-        self.with(sign, f64::copysign)
+        Four(f64x4::splat(-0.0).bitselect(sign.0, self.0))
     }
 
+    #[inline(always)]
     fn less_than(self, other: Self) -> FourMask {
-        FourMask(std::array::from_fn(|i| self.0[i] < other.0[i]))
+        FourMask(self.0.simd_lt(other.0))
     }
 
+    #[inline(always)]
     fn select(mask: FourMask, if_true: Self, if_false: Self) -> Self {
-        Four(std::array::from_fn(|i| if mask.0[i] { if_true.0[i] } else { if_false.0[i] }))
+        Four(mask.0.select(if_true.0, if_false.0))
     }
 }
 
 impl BitAnd for FourMask {
     type Output = Self;
 
+    #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        FourMask(std::array::from_fn(|i| self.0[i] && other.0[i]))
+        FourMask(self.0 & other.0)
     }
 }
 
 impl BitOr for FourMask {
     type Output = Self;
 
+    #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        FourMask(std::array::from_fn(|i| self.0[i] || other.0[i]))
+        FourMask(self.0 | other.0)
     }
 }
 
 impl Not for FourMask {
     type Output = Self;
 
+    #[inline(always)]
     fn not(self) -> Self {
-        FourMask(self.0.map(|a| !a))
+        FourMask(!self.0)
     }
 }
 
 impl Mask for FourMask {
+    #[inline(always)]
     fn splat(value: bool) -> Self {
-        FourMask([value; 4])
+        FourMask(f64x4::splat(f64::from_bits(if value { u64::MAX } else { 0 })))
     }
 
+    #[inline(always)]
     fn any(self) -> bool {
-        self.0.contains(&true)
+        self.0.to_bitmask() != 0
     }
 
+    #[inline(always)]
     fn lane(self, lane: usize) -> bool {
-        self.0[lane]
+        self.0.to_bitmask() & (1 << lane) != 0
     }
 }

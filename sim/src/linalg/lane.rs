@@ -3,6 +3,10 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use wide::{f64x2, f64x4};
+
+use super::block::DOFS;
+
 /// One value for each of [`Lane::LANES`] sweep points.
 ///
 /// Every operation acts on each lane alone and rounds as the same operation of one `f64` does, so a lane's
@@ -69,6 +73,17 @@ pub trait Lane:
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(other.less_than(self), self, other)
+    }
+
+    /// `sum + sum_j columns_j x_j`: columns 0, 2, 4 on top of `sum`, columns 1, 3, 5 beside them (a chain of three
+    /// additions is waited for, not one of six), then both added.
+    #[inline(always)]
+    fn columns_mul_add(columns: &[[Self; DOFS]; DOFS], x: &[Self; DOFS], sum: [Self; DOFS]) -> [Self; DOFS] {
+        std::array::from_fn(|row| {
+            let even = columns[2][row].mul_add(x[2], columns[0][row].mul_add(x[0], sum[row]));
+            let odd = columns[3][row].mul_add(x[3], columns[1][row] * x[1]);
+            columns[4][row].mul_add(x[4], even) + columns[5][row].mul_add(x[5], odd)
+        })
     }
 
     /// Arctangent \[rad\] without branches: the rational approximation of Moshier's Cephes library
@@ -185,6 +200,32 @@ impl Lane for f64 {
     #[inline(always)]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
+    }
+
+    /// In vectors of four rows and two: left to itself, the compiler goes row by row from the fifth on.
+    #[inline(always)]
+    fn columns_mul_add(columns: &[[Self; DOFS]; DOFS], x: &[Self; DOFS], sum: [Self; DOFS]) -> [Self; DOFS] {
+        let split = |&[a, b, c, d, e, f]: &[f64; DOFS]| (f64x4::new([a, b, c, d]), f64x2::new([e, f]));
+        let column = |j: usize| {
+            let (head, tail) = split(&columns[j]);
+            (head, f64x4::splat(x[j]), tail, f64x2::splat(x[j]))
+        };
+        let (mut head, mut tail) = split(&sum);
+        for j in [0, 2, 4] {
+            let (column_head, x_head, column_tail, x_tail) = column(j);
+            head = column_head.mul_add(x_head, head);
+            tail = column_tail.mul_add(x_tail, tail);
+        }
+        let (column_head, x_head, column_tail, x_tail) = column(1);
+        let (mut odd_head, mut odd_tail) = (column_head * x_head, column_tail * x_tail);
+        for j in [3, 5] {
+            let (column_head, x_head, column_tail, x_tail) = column(j);
+            odd_head = column_head.mul_add(x_head, odd_head);
+            odd_tail = column_tail.mul_add(x_tail, odd_tail);
+        }
+        (head, tail) = (head + odd_head, tail + odd_tail);
+        let ([a, b, c, d], [e, f]) = (head.to_array(), tail.to_array());
+        [a, b, c, d, e, f]
     }
 }
 

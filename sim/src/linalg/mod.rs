@@ -6,16 +6,16 @@
 
 mod block;
 mod factor;
+mod four;
 mod lane;
 mod tridiagonal;
 
-#[cfg(test)]
-pub(crate) mod four;
 #[cfg(test)]
 mod tests;
 
 pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
+pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
 pub use tridiagonal::BlockTridiagonal;
 

@@ -1,6 +1,5 @@
 use nalgebra::{DMatrix, DVector};
 
-use super::four::Four;
 use super::*;
 
 /// Values in [-1, 1) that look random, the same on every machine.
@@ -196,7 +195,8 @@ fn a_lane_has_the_bits_of_a_run_alone() {
     let matrix = |choose: &dyn Fn(usize) -> BlockTridiagonal<f64>| {
         let lanes: [_; 4] = std::array::from_fn(choose);
         let blocks = |side: &dyn Fn(&BlockTridiagonal<f64>) -> &Vec<Block<f64>>| {
-            let entry = |row: usize, i, j| Four(std::array::from_fn(|lane| side(&lanes[lane])[row][(i, j)]));
+            let entry =
+                |row: usize, i, j| Four::new(std::array::from_fn(|lane| side(&lanes[lane])[row][(i, j)]));
             (0..rows).map(|row| Block::from_fn(|i, j| entry(row, i, j))).collect()
         };
         BlockTridiagonal {
@@ -207,7 +207,7 @@ fn a_lane_has_the_bits_of_a_run_alone() {
     };
     let vector = |choose: &dyn Fn(usize) -> BlockVector<f64>| -> BlockVector<Four> {
         let lanes: [_; 4] = std::array::from_fn(choose);
-        let value = |row: usize, dof: usize| Four(std::array::from_fn(|lane| lanes[lane][row][dof]));
+        let value = |row: usize, dof: usize| Four::new(std::array::from_fn(|lane| lanes[lane][row][dof]));
         (0..rows).map(|row| std::array::from_fn(|dof| value(row, dof))).collect()
     };
     let (a, b) = (matrix(&|lane| alone[lane].0.clone()), matrix(&|lane| alone[lane].1.clone()));
@@ -244,7 +244,7 @@ fn a_singular_lane_is_named() {
 #[test]
 fn arctangent_of_a_lane_has_the_bits_of_one_alone() {
     let values = [0.3, -0.9, 57.0, f64::NEG_INFINITY];
-    let together = Four(values).atan();
+    let together = Four::new(values).atan();
     for (lane, value) in values.into_iter().enumerate() {
         assert_eq!(together.lane(lane), Lane::atan(value));
     }

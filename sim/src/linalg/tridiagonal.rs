@@ -77,7 +77,9 @@ impl<L: Lane> BlockTridiagonal<L> {
         let rows = out.len();
         assert!(a.rows() == rows && b.rows() == rows && x.len() == rows && y.len() == rows);
         for (row, out) in out.iter_mut().enumerate() {
-            *out = a.row_product(row, x, b.row_product(row, y, [L::splat(0.0); DOFS]));
+            // Two sums that do not wait for each other.
+            let (of_a, of_b) = (a.row_product(row, x), b.row_product(row, y));
+            *out = std::array::from_fn(|dof| of_a[dof] + of_b[dof]);
         }
     }
 
@@ -91,13 +93,13 @@ impl<L: Lane> BlockTridiagonal<L> {
         let rows = y.len();
         assert!(self.rows() == rows && x.len() == rows);
         for (row, y) in y.iter_mut().enumerate() {
-            *y = finish(*y, self.row_product(row, x, [L::splat(0.0); DOFS]));
+            *y = finish(*y, self.row_product(row, x));
         }
     }
 
     #[inline(always)]
-    fn row_product(&self, row: usize, x: &[[L; DOFS]], sum: [L; DOFS]) -> [L; DOFS] {
-        let mut sum = self.diagonal[row].multiply_add(&x[row], sum);
+    fn row_product(&self, row: usize, x: &[[L; DOFS]]) -> [L; DOFS] {
+        let mut sum = self.diagonal[row].multiply_add(&x[row], [L::splat(0.0); DOFS]);
         if row > 0 {
             sum = self.lower[row].multiply_add(&x[row - 1], sum);
         }

@@ -8,8 +8,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::forces::NodeContact;
+use super::forms::{Forms, Integrals, half_sum};
 use crate::contact::ContactParameters;
-use crate::linalg::{Block, BlockTridiagonal};
+use crate::linalg::BlockTridiagonal;
 use crate::model::{DynamicSystem, Model, NodalVector};
 
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
@@ -73,10 +74,8 @@ pub(super) struct Ledger {
     mass: BlockTridiagonal<f64>,
     stiffness: BlockTridiagonal<f64>,
     load: NodalVector,
-    structure: QuadraticForm,
-    mud: QuadraticForm,
-    flow: SparseForm,
-    follower: SparseForm,
+    /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
+    forms: Forms<3>,
     contact: ContactParameters<f64>,
     clearance: Vec<f64>,
     with_contact: bool,
@@ -93,10 +92,10 @@ impl Ledger {
             mass: system.mass.clone(),
             stiffness: half_sum(&system.stiffness, 0.5),
             load: system.load.clone(),
-            structure: QuadraticForm::of(&system.structural_damping),
-            mud: QuadraticForm::of(&system.mud_damping),
-            flow: SparseForm::of(&system.coriolis, 0.5),
-            follower: SparseForm::of(&system.stiffness, -0.5),
+            forms: Forms::new(
+                [&system.structural_damping, &system.mud_damping, &system.coriolis],
+                &system.stiffness,
+            ),
             contact: ContactParameters::new(&model.scenario.contact, &model.scenario.effects),
             clearance: model.mesh.nodes.iter().map(|node| node.clearance).collect(),
             with_contact: model.scenario.effects.contact.is_on(),
@@ -111,8 +110,40 @@ impl Ledger {
         ledger
     }
 
-    /// Powers of one stage (or mean powers of a step whose mean velocity is `velocity`), with the contact forces
-    /// that it was solved with.
+    /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
+    /// forces that it was solved with. Returns the powers of contact and unbalance.
+    pub(super) fn book(
+        &mut self,
+        weight: f64,
+        velocity: &[[f64; 6]],
+        displacement: &[[f64; 6]],
+        contact: &[NodeContact],
+        unbalance: impl Iterator<Item = (usize, [f64; 2])>,
+    ) -> Work {
+        if self.forms.is_full() {
+            self.settle();
+        }
+        self.forms.gather(weight, velocity, displacement);
+        let power = self.power(velocity, displacement, contact, unbalance);
+        self.work.add(weight, &power);
+        power
+    }
+
+    /// Books `weight` seconds more of the last stage, whose powers of contact and unbalance are `power`.
+    pub(super) fn book_again(
+        &mut self,
+        weight: f64,
+        velocity: &[[f64; 6]],
+        displacement: &[[f64; 6]],
+        power: &Work,
+    ) {
+        if !self.forms.weigh_last(weight) {
+            self.forms.gather(weight, velocity, displacement);
+        }
+        self.work.add(weight, power);
+    }
+
+    /// Powers \[W\] of contact and unbalance.
     pub(super) fn power(
         &self,
         velocity: &[[f64; 6]],
@@ -121,10 +152,6 @@ impl Ledger {
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) -> Work {
         let mut power = Work {
-            structure: self.structure.value(velocity),
-            mud: self.mud.value(velocity),
-            flow: -self.flow.value(velocity, velocity),
-            follower_torque: -self.follower.value(velocity, displacement),
             unbalance: unbalance
                 .map(|(node, force)| velocity[node][0] * force[0] + velocity[node][1] * force[1])
                 .sum(),
@@ -145,13 +172,29 @@ impl Ledger {
         power
     }
 
-    /// Adds `duration` seconds of powers.
-    pub(super) fn add(&mut self, duration: f64, power: &Work) {
-        self.work.add(duration, power);
+    /// Adds the work of the stages gathered so far.
+    fn settle(&mut self) {
+        let Integrals { symmetric: [structure, mud, coriolis], skew: follower } = self.forms.take();
+        self.work.structure += structure;
+        self.work.mud += mud;
+        self.work.flow -= coriolis;
+        self.work.follower_torque -= follower;
+    }
+
+    /// The books as they stand, to come back to if the steps that follow are rejected.
+    pub(super) fn mark(&mut self) -> Work {
+        self.work()
+    }
+
+    /// Forgets all stages since the mark.
+    pub(super) fn roll_back(&mut self, mark: Work) {
+        self.forms.forget();
+        self.work = mark;
     }
 
     /// The balance at `time` \[s\].
     pub(super) fn row(&mut self, time: f64, displacement: &[[f64; 6]], velocity: &[[f64; 6]]) -> EnergyRow {
+        self.settle();
         self.mass.multiply_into(velocity, &mut self.scratch);
         let kinetic = 0.5 * dot(velocity, &self.scratch);
         let structure = self.stored(displacement) - self.initial_stored;
@@ -182,7 +225,9 @@ impl Ledger {
         }
     }
 
-    pub(super) fn work(&self) -> Work {
+    /// All work so far \[J\].
+    pub(super) fn work(&mut self) -> Work {
+        self.settle();
         self.work
     }
 
@@ -206,121 +251,10 @@ impl Ledger {
     }
 }
 
-/// v^T S v of the symmetric part of a matrix, from its diagonal and upper blocks; nothing where that is zero.
-#[derive(Debug, Clone)]
-struct QuadraticForm(Option<BlockTridiagonal<f64>>);
-
-impl QuadraticForm {
-    fn of(m: &BlockTridiagonal<f64>) -> Self {
-        let symmetric = half_sum(m, 0.5);
-        let present = largest(&symmetric) > 0.0;
-        Self(present.then_some(symmetric))
-    }
-
-    fn value(&self, v: &[[f64; 6]]) -> f64 {
-        let Some(BlockTridiagonal { diagonal, upper, .. }) = &self.0 else { return 0.0 };
-        let mut sum = 0.0;
-        for i in 0..v.len() {
-            let mut product = times(&diagonal[i], &v[i], [0.0; 6]);
-            if i + 1 < v.len() {
-                let next = &v[i + 1];
-                product = times(&upper[i], &next.map(|value| 2.0 * value), product);
-            }
-            sum += dot_node(&v[i], &product);
-        }
-        sum
-    }
-}
-
-/// a^T B b of a matrix that is nearly empty, entry by entry. The symmetric part of the Coriolis matrix lives where
-/// the section changes, the skew part of the stiffness where the torque does and at the free end: between equal
-/// neighbours the element's boundary terms cancel.
-#[derive(Debug, Clone)]
-struct SparseForm(Vec<(u32, u32, f64)>);
-
-/// Entries below this share of the matrix' largest entry are rounding of terms that cancel.
-const CANCELLED: f64 = 1e-13;
-
-impl SparseForm {
-    /// The symmetric part of `m` for `with_transpose` = 1/2, the skew part for -1/2.
-    fn of(m: &BlockTridiagonal<f64>, with_transpose: f64) -> Self {
-        let part = half_sum(m, with_transpose);
-        let threshold = CANCELLED * largest(m);
-        let n = m.rows();
-        let mut entries = Vec::new();
-        for row in 0..n {
-            let blocks = [
-                (row.checked_sub(1), &part.lower[row]),
-                (Some(row), &part.diagonal[row]),
-                (Some(row + 1).filter(|&next| next < n), &part.upper[row]),
-            ];
-            for (column, block) in blocks {
-                let Some(column) = column else { continue };
-                for j in 0..6 {
-                    for i in 0..6 {
-                        let value = block[(i, j)];
-                        if value.abs() > threshold {
-                            entries.push(((6 * row + i) as u32, (6 * column + j) as u32, value));
-                        }
-                    }
-                }
-            }
-        }
-        Self(entries)
-    }
-
-    fn value(&self, a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
-        let (a, b) = (a.as_flattened(), b.as_flattened());
-        let term = |&(i, j, value): &(u32, u32, f64)| a[i as usize] * value * b[j as usize];
-        // Four sums side by side: one alone would wait for its own additions.
-        let (chunks, rest) = self.0.as_chunks::<4>();
-        let mut sums = [0.0; 4];
-        for chunk in chunks {
-            for (sum, entry) in sums.iter_mut().zip(chunk) {
-                *sum += term(entry);
-            }
-        }
-        (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest.iter().map(term).sum::<f64>()
-    }
-}
-
-/// `m / 2 + with_transpose m^T`.
-fn half_sum(m: &BlockTridiagonal<f64>, with_transpose: f64) -> BlockTridiagonal<f64> {
-    BlockTridiagonal::combine(0.5, m, with_transpose, &transpose(m), 0.0, m)
-}
-
-fn largest(m: &BlockTridiagonal<f64>) -> f64 {
-    let blocks = m.lower.iter().chain(&m.diagonal).chain(&m.upper);
-    blocks.flat_map(|block| block.columns.iter().flatten()).fold(0.0_f64, |most, v| most.max(v.abs()))
-}
-
-fn times(block: &Block<f64>, x: &[f64; 6], mut sum: [f64; 6]) -> [f64; 6] {
-    for (column, x) in block.columns.iter().zip(x) {
-        for (sum, entry) in sum.iter_mut().zip(column) {
-            *sum = entry.mul_add(*x, *sum);
-        }
-    }
-    sum
-}
-
 fn dot_node(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
 }
 
 fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot_node(a, b)).sum()
-}
-
-fn transpose(m: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
-    let n = m.rows();
-    let mut t = BlockTridiagonal::zeros(n);
-    let flip = |block: &Block<f64>| Block::from_fn(|row, column| block[(column, row)]);
-    for i in 0..n {
-        t.diagonal[i] = flip(&m.diagonal[i]);
-        if i + 1 < n {
-            t.upper[i] = flip(&m.lower[i + 1]);
-            t.lower[i + 1] = flip(&m.upper[i]);
-        }
-    }
-    t
 }

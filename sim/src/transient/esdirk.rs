@@ -67,7 +67,7 @@ impl Esdirk {
         })
     }
 
-    /// Advances `state` by one step from `time`. `state.first_stage` holds the forces of the step's first stage.
+    /// Advances `state` by one step from `time`. `state.stage_power` holds the powers of the step's first stage.
     pub(super) fn advance(
         &mut self,
         system: &DynamicSystem,
@@ -80,7 +80,7 @@ impl Esdirk {
         let c = 1.0 / (DIAGONAL * h);
         self.velocities[0].copy_from_slice(&state.velocity);
         self.accelerations[0].copy_from_slice(&state.acceleration);
-        ledger.add(WEIGHTS[0] * h, &state.stage_power);
+        ledger.book_again(WEIGHTS[0] * h, &state.velocity, &state.displacement, &state.stage_power);
         for stage in 1..STAGES {
             combine(&mut self.displacement_base, &state.displacement, h, stage, &self.velocities);
             combine(&mut self.velocity_base, &state.velocity, h, stage, &self.accelerations);
@@ -105,14 +105,13 @@ impl Esdirk {
             }
             self.velocities[stage].copy_from_slice(&self.solver.velocity);
             if WEIGHTS[stage] != 0.0 {
-                let power = ledger.power(
+                state.stage_power = ledger.book(
+                    WEIGHTS[stage] * h,
                     &self.solver.velocity,
                     &self.solver.displacement,
                     &self.solver.contact,
                     forces.unbalance_at(stage_time),
                 );
-                ledger.add(WEIGHTS[stage] * h, &power);
-                state.stage_power = power;
             }
         }
         state.displacement.copy_from_slice(&self.solver.displacement);

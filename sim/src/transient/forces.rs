@@ -1,7 +1,9 @@
 //! The right-hand side of the equations of motion: constant loads, unbalance, contact.
 
 use crate::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
+use crate::linalg::{Four, Lane};
 use crate::model::{DynamicSystem, Model, NodalVector};
+use crate::string::MeshNode;
 
 /// Contact forces of one evaluation, one entry a node.
 pub(super) type ContactForces = Vec<NodeContact>;
@@ -27,8 +29,9 @@ pub(super) struct Forces {
     pub(super) load: NodalVector,
     unbalance: Vec<crate::model::UnbalanceForce>,
     rotation_speed: f64,
-    parameters: ContactParameters<f64>,
-    sites: Vec<ContactNode<f64>>,
+    parameters: ContactParameters<Four>,
+    /// Four nodes side by side, from the second one on; places beyond the bit can never touch.
+    sites: Vec<ContactNode<Four>>,
     contact: bool,
 }
 
@@ -36,11 +39,16 @@ impl Forces {
     pub(super) fn new(model: &Model, system: &DynamicSystem) -> Self {
         let effects = &model.scenario.effects;
         let parameters = ContactParameters::new(&model.scenario.contact, effects);
-        let sites = model
-            .mesh
-            .nodes
-            .iter()
-            .map(|node| ContactNode { clearance: node.clearance, contact_radius: node.contact_radius });
+        // The clamped top node never touches.
+        let sites = model.mesh.nodes[1..].chunks(LANES).map(|nodes| {
+            let lanes = |value: fn(&MeshNode) -> f64, beyond: f64| {
+                Four::new(std::array::from_fn(|lane| nodes.get(lane).map_or(beyond, value)))
+            };
+            ContactNode {
+                clearance: lanes(|node| node.clearance, f64::INFINITY),
+                contact_radius: lanes(|node| node.contact_radius, 0.0),
+            }
+        });
         Self {
             load: system.load.clone(),
             unbalance: system.unbalance.clone(),
@@ -70,23 +78,51 @@ impl Forces {
         })
     }
 
-    /// Contact forces for given displacements and velocities; the clamped top node never touches.
+    /// Contact forces for given displacements and velocities, four nodes at a time; the clamped top node never touches.
     pub(super) fn contact_into(&self, x: &[[f64; 6]], v: &[[f64; 6]], out: &mut ContactForces) {
         if !self.contact {
             return;
         }
-        for (((site, x), v), out) in self.sites.iter().zip(x).zip(v).zip(out.iter_mut()).skip(1) {
-            let motion = LateralMotion { u: x[0], v: x[1], u_rate: v[0], v_rate: v[1], theta_z_rate: v[5] };
-            let contact = dynamic_contact(&self.parameters, site, &motion, self.rotation_speed);
-            *out = NodeContact {
-                force: [contact.force_u, contact.force_v],
-                torque: contact.torque_z,
-                normal_force: contact.normal,
-                radius: site.clearance + contact.penetration,
-                touching: contact.penetration > 0.0,
+        let rotation_speed = Four::splat(self.rotation_speed);
+        let ((x, x_rest), (v, v_rest)) = (x[1..].as_chunks::<LANES>(), v[1..].as_chunks::<LANES>());
+        let (x_rest, v_rest) = (padded(x_rest), padded(v_rest));
+        for (group, (site, out)) in self.sites.iter().zip(out[1..].chunks_mut(LANES)).enumerate() {
+            let (x, v) = (x.get(group).unwrap_or(&x_rest), v.get(group).unwrap_or(&v_rest));
+            let motion = LateralMotion {
+                u: side_by_side(x, 0),
+                v: side_by_side(x, 1),
+                u_rate: side_by_side(v, 0),
+                v_rate: side_by_side(v, 1),
+                theta_z_rate: side_by_side(v, 5),
             };
+            let contact = dynamic_contact(&self.parameters, site, &motion, rotation_speed);
+            let (force_u, force_v) = (contact.force_u.to_array(), contact.force_v.to_array());
+            let (torque, normal) = (contact.torque_z.to_array(), contact.normal.to_array());
+            let radius = (site.clearance + contact.penetration).to_array();
+            let penetration = contact.penetration.to_array();
+            for (lane, out) in out.iter_mut().enumerate() {
+                *out = NodeContact {
+                    force: [force_u[lane], force_v[lane]],
+                    torque: torque[lane],
+                    normal_force: normal[lane],
+                    radius: radius[lane],
+                    touching: penetration[lane] > 0.0,
+                };
+            }
         }
     }
+}
+
+const LANES: usize = Four::LANES;
+
+#[inline(always)]
+fn side_by_side(nodes: &[[f64; 6]; LANES], dof: usize) -> Four {
+    Four::new([nodes[0][dof], nodes[1][dof], nodes[2][dof], nodes[3][dof]])
+}
+
+/// Places beyond the bit filled with zeros.
+fn padded(nodes: &[[f64; 6]]) -> [[f64; 6]; LANES] {
+    std::array::from_fn(|lane| nodes.get(lane).copied().unwrap_or_default())
 }
 
 /// Adds contact forces to nodal forces.

@@ -97,13 +97,13 @@ impl GeneralizedAlpha {
             x0[i] += d;
             mean_velocity[i] = d / h;
         }
-        let power = ledger.power(
+        ledger.book(
+            h,
             &self.mean_velocity,
             &solver.displacement,
             &solver.contact,
             forces.unbalance_at(level),
         );
-        ledger.add(h, &power);
     }
 }
 

@@ -8,6 +8,7 @@ mod checkpoint;
 mod energy;
 mod esdirk;
 mod forces;
+mod forms;
 mod generalized_alpha;
 mod implicit;
 mod records;
@@ -266,7 +267,8 @@ impl<'m> Transient<'m> {
             if control.is_cancelled() {
                 return Ok(Outcome::Cancelled);
             }
-            if control.is_suspended() {
+            // The ledger adds up between its rows: a run is suspended at one of them.
+            if control.is_suspended() && self.progress.sample.is_multiple_of(self.ledger_every) {
                 self.progress.work = self.ledger.work();
                 return Ok(Outcome::Suspended(Box::new(Checkpoint::new(
                     &self.model.scenario,
@@ -392,8 +394,9 @@ impl<'m> Transient<'m> {
             if !x.iter().chain(v).all(|value| value.is_finite()) {
                 return Err(self.diverged(node, DivergenceReason::NotFinite));
             }
-            let radius = x[0].hypot(x[1]);
-            if radius > bound {
+            let radius_squared = x[0] * x[0] + x[1] * x[1];
+            if radius_squared > bound * bound {
+                let radius = radius_squared.sqrt();
                 return Err(self.diverged(node, DivergenceReason::OutsideHole { radius, hole_radius }));
             }
         }

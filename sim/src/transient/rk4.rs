@@ -3,7 +3,7 @@
 //! Stable up to h = 2.785 / omega_max, about 6e-5 s for half-metre collars, whatever the accuracy asked for.
 
 use super::State;
-use super::energy::{Ledger, Work};
+use super::energy::Ledger;
 use super::forces::{ContactForces, Forces, NodeContact, add_contact};
 use super::implicit::{flat, flat_mut, held_list};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
@@ -73,8 +73,7 @@ impl Rk4 {
             let count = (interval / self.largest_step * (1.0 - 1e-12)).ceil().max(1.0);
             let h = interval / count;
             for i in 0..count as u64 {
-                let work = self.step(system, forces, time + i as f64 * h, h, state, ledger);
-                ledger.add(1.0, &work);
+                self.step(system, forces, time + i as f64 * h, h, state, Some(ledger));
             }
             return Ok(());
         };
@@ -85,12 +84,11 @@ impl Rk4 {
             let h = remaining / (2.0 * (remaining / (2.0 * wanted)).ceil().max(1.0));
             let start = time + elapsed;
             let mut coarse = state.clone();
-            self.step(system, forces, start, 2.0 * h, &mut coarse, ledger);
+            self.step(system, forces, start, 2.0 * h, &mut coarse, None);
             let mut fine = state.clone();
-            let mut work = Work::default();
+            let mark = ledger.mark();
             for half in 0..2 {
-                let part = self.step(system, forces, start + f64::from(half) * h, h, &mut fine, ledger);
-                work.add(1.0, &part);
+                self.step(system, forces, start + f64::from(half) * h, h, &mut fine, Some(ledger));
             }
             // Two steps of h err by 1/15 of their distance from one step of 2h.
             let error = fine
@@ -101,11 +99,11 @@ impl Rk4 {
                 / (15.0 * self.hole_radius);
             if error <= tolerance {
                 *state = fine;
-                ledger.add(1.0, &work);
                 elapsed += 2.0 * h;
                 let factor = 0.9 * (tolerance / error.max(1e-300)).powf(0.2);
                 state.adaptive_step = (h * factor.clamp(0.3, 2.0)).min(self.largest_step);
             } else {
+                ledger.roll_back(mark);
                 self.rejected += 1;
                 let factor = 0.9 * (tolerance / error).powf(0.2);
                 state.adaptive_step = h * if factor.is_finite() { factor.clamp(0.1, 0.8) } else { 0.1 };
@@ -117,7 +115,7 @@ impl Rk4 {
         Ok(())
     }
 
-    /// One step of `h`; returns the work of its forces.
+    /// One step of `h`, its work in the ledger if it is to be kept.
     fn step(
         &mut self,
         system: &DynamicSystem,
@@ -125,11 +123,10 @@ impl Rk4 {
         time: f64,
         h: f64,
         state: &mut State,
-        ledger: &Ledger,
-    ) -> Work {
+        mut ledger: Option<&mut Ledger>,
+    ) {
         const FRACTIONS: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
         const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
-        let mut work = Work::default();
         for stage in 0..4 {
             let c = FRACTIONS[stage] * h;
             let (x, v) = (&mut self.stage.0, &mut self.stage.1);
@@ -153,8 +150,9 @@ impl Rk4 {
                 self.right[node][dof] = 0.0;
             }
             self.mass.solve_in_place(&mut self.right);
-            let power = ledger.power(v, x, &self.contact, forces.unbalance_at(stage_time));
-            work.add(WEIGHTS[stage] * h, &power);
+            if let Some(ledger) = &mut ledger {
+                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
+            }
             self.rates[stage].0.copy_from_slice(v);
             self.rates[stage].1.copy_from_slice(&self.right);
         }
@@ -164,7 +162,6 @@ impl Rk4 {
             axpy(&mut state.velocity, weight * h, rate_v);
         }
         self.steps += 1;
-        work
     }
 }
 

@@ -13,7 +13,11 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
         "outer_diameter" | "inner_diameter" | "clearance" => "m",
         "u" | "v" | "w" | "radius" | "largest_radius" | "amplitude" | "peak_to_peak" => "m",
-        "orbit_offset" | "orbit_mean_radius" | "orbit_largest_radius" | "orbit_radius_rms" => "m",
+        "orbit_offset"
+        | "orbit_mean_radius"
+        | "orbit_largest_radius"
+        | "orbit_radius_rms"
+        | "orbit_radius_deviation" => "m",
         "line_amplitude" => "m",
         "u_rate" | "v_rate" | "w_rate" | "annulus_speed" | "bore_speed" => "m/s",
         "theta_x" | "theta_y" | "theta_z" | "low_side_angle" => "rad",

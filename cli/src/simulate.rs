@@ -161,13 +161,14 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         for orbit in &transient.orbits {
             writeln!(
                 text,
-                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, mean radius {:.2} mm, largest {:.2} mm",
+                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm",
                 orbit.node,
                 orbit.measured_depth,
                 orbit.window.from,
                 orbit.window.to,
                 orbit.orbit_radius_rms * 1e3,
                 orbit.mean_radius * 1e3,
+                orbit.radius_deviation * 1e3,
                 orbit.largest_radius * 1e3
             )?;
         }

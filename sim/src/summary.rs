@@ -69,6 +69,8 @@ pub struct OrbitSummary {
     pub largest_radius: f64,
     /// Orbit size: root mean square distance from the mean position \[m\].
     pub orbit_radius_rms: f64,
+    /// Standard deviation of the distance from the hole's axis \[m\]: the motion towards and off the wall alone.
+    pub radius_deviation: f64,
 }
 
 /// Dominant lines of one node in one window.
@@ -138,6 +140,7 @@ impl TransientSummary {
                     mean_radius: orbit.mean_radius,
                     largest_radius: orbit.largest_radius,
                     orbit_radius_rms: orbit.orbit_radius_rms,
+                    radius_deviation: orbit.radius_deviation,
                 });
             }
             for &window in &scenario.recording.spectrum_windows {

@@ -5,6 +5,7 @@ use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{
     Accuracy, Effect, Integrator, NodeChoice, Scenario, Switch, TimeStepping, preset,
 };
+use drillsweep_sim::signal::{PeakSearch, Window, full_spectrum};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Checkpoint, CheckpointError, Outcome, Records, Transient, TransientError};
 
@@ -261,4 +262,65 @@ fn divergence_names_time_node_and_reason() {
         }
         other => panic!("must diverge: {other:?}"),
     }
+}
+
+/// Amplitude of a history at `frequency_hz` over [from, from + 4) s, under a Hann window with the drift taken out.
+fn amplitude_at(values: &[f64], rate_hz: f64, from: f64, frequency_hz: f64) -> f64 {
+    let samples = &values[(from * rate_hz) as usize..((from + 4.0) * rate_hz) as usize];
+    let n = samples.len() as f64;
+    let (middle, mean) = (0.5 * (n - 1.0), samples.iter().sum::<f64>() / n);
+    let drift: f64 = samples.iter().enumerate().map(|(k, x)| (k as f64 - middle) * x).sum();
+    let slope = drift / samples.iter().enumerate().map(|(k, _)| (k as f64 - middle).powi(2)).sum::<f64>();
+    let (mut real, mut imaginary, mut weights) = (0.0, 0.0, 0.0);
+    for (k, x) in samples.iter().enumerate() {
+        let weight = 1.0 - (std::f64::consts::TAU * k as f64 / n).cos();
+        let angle = std::f64::consts::TAU * frequency_hz * k as f64 / rate_hz;
+        let value = weight * (x - mean - slope * (k as f64 - middle));
+        real += value * angle.cos();
+        imaginary += value * angle.sin();
+        weights += weight;
+    }
+    2.0 * real.hypot(imaginary) / weights
+}
+
+#[test]
+fn falling_friction_curve_makes_torsion_swing_up_to_stick_slip() {
+    let mut scenario = base(24.0, Integrator::GeneralizedAlpha, 5e-4);
+    scenario.recording.nodes = vec![NodeChoice::Node(282)];
+    let records = run(&scenario);
+    let (twist, rate) = (&records.histories[0].theta_z, &records.histories[0].theta_z_rate);
+    // physics.md section 6: one mode, 2.16 Hz, growing with 0.09 1/s; stick-slip from about 14 s on.
+    let amplitude = |from: f64| amplitude_at(twist, records.rate_hz, from, 2.16);
+    let growth = (amplitude(12.0) / amplitude(4.0)).ln() / 8.0;
+    assert!((growth - 0.09).abs() < 0.02, "growth {growth} 1/s");
+    let neighbours =
+        [amplitude_at(twist, records.rate_hz, 12.0, 1.4), amplitude_at(twist, records.rate_hz, 12.0, 2.9)];
+    assert!(neighbours.iter().all(|&other| other < 0.1 * amplitude(12.0)), "{neighbours:?}");
+    // Sticking: the twist's rate cancels the rotation, and never reverses the sliding by more than a small overshoot.
+    let rotation_speed = 2.0 * std::f64::consts::TAU;
+    let slowest =
+        |from: usize, to: usize| rate[from * 1000..to * 1000].iter().fold(f64::INFINITY, |m, r| m.min(*r));
+    assert!(slowest(4, 8) > -0.5 * rotation_speed, "slides all the time at first: {}", slowest(4, 8));
+    assert!((slowest(20, 24) / rotation_speed + 1.0).abs() < 0.1, "sticks: {}", slowest(20, 24));
+}
+
+#[test]
+fn without_friction_nothing_but_the_unbalance_moves_the_string() {
+    // Friction is what feeds self-excited motion: without it the string answers at the speed of rotation, 2 Hz, and,
+    // through the wall, at its multiples.
+    let mut scenario = base(30.0, Integrator::GeneralizedAlpha, 5e-4);
+    scenario.effects.set(Effect::Friction, Switch::Off);
+    scenario.effects.set(Effect::FrictionTorque, Switch::Off);
+    scenario.recording.nodes = vec![NodeChoice::Node(49)];
+    let records = run(&scenario);
+    let history = &records.histories[0];
+    let (u, v) = (&history.u[20_000..], &history.v[20_000..]);
+    let spectrum = full_spectrum(u, v, records.rate_hz, Window::Hann).restricted_to(&(-30.0..=30.0));
+    let search = PeakSearch { count: 4, min_separation_hz: 0.5, exclude_mean: true };
+    let peaks = spectrum.peaks(&search);
+    for peak in &peaks {
+        // Bins are 0.1 Hz wide.
+        assert!((peak.frequency_hz / 2.0 - (peak.frequency_hz / 2.0).round()).abs() < 0.05, "{peaks:?}");
+    }
+    assert!((peaks[0].frequency_hz.abs() - 2.0).abs() < 0.1 && peaks[0].amplitude > 1e-4, "{peaks:?}");
 }

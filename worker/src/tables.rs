@@ -51,6 +51,7 @@ pub fn summary_row(statics: &StaticsSummary, transient: Option<&TransientSummary
         put(format!("orbit_mean_radius_{node}"), json!(orbit.mean_radius));
         put(format!("orbit_largest_radius_{node}"), json!(orbit.largest_radius));
         put(format!("orbit_radius_rms_{node}"), json!(orbit.orbit_radius_rms));
+        put(format!("orbit_radius_deviation_{node}"), json!(orbit.radius_deviation));
     }
     let mut window_number = 0;
     let mut node_before = 0;

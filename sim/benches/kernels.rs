@@ -68,9 +68,10 @@ fn contact(bencher: Bencher) {
         static_friction: 0.3,
         dynamic_friction: 0.2,
         friction_reference_speed: 0.033,
+        reference_length: None,
     };
     let law = ContactParameters::<f64>::new(&law, &Effects::default());
-    let node = ContactNode { clearance: 0.04, contact_radius: 0.0635 };
+    let node = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
     let (mut x, v, mut force) = (vector(0.2), vector(0.3), vector(0.4));
     for (row, x) in x.iter_mut().enumerate() {
         let radius = if row % 2 == 0 { 0.04005 } else { 0.035 };

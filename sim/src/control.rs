@@ -1,10 +1,21 @@
 //! The handle by which a caller watches and stops a run.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Shared between a run and whoever watches it. A run looks at it once every recording interval.
+///
+/// Several runs that are watched as one each take a [`Control::part`]: what is asked of one is asked of all, and their
+/// simulated times add up.
 #[derive(Debug, Default)]
 pub struct Control {
+    shared: Arc<Shared>,
+    /// Simulated time of this part's own run, as bits.
+    own_time: AtomicU64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
     cancel: AtomicBool,
     suspend: AtomicBool,
     simulated_time: AtomicU64,
@@ -16,32 +27,60 @@ impl Control {
         Self::default()
     }
 
+    /// A handle for one more run that is watched and stopped with this one.
+    pub fn part(&self) -> Self {
+        Self { shared: self.shared.clone(), own_time: AtomicU64::default() }
+    }
+
     /// Asks the run to end without a result.
     pub fn cancel(&self) {
-        self.cancel.store(true, Ordering::Relaxed);
+        self.shared.cancel.store(true, Ordering::Relaxed);
     }
 
     /// Asks the run to end with a checkpoint from which it can go on.
     pub fn suspend(&self) {
-        self.suspend.store(true, Ordering::Relaxed);
+        self.shared.suspend.store(true, Ordering::Relaxed);
     }
 
     /// Whether a cancel was asked for.
     pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        self.shared.cancel.load(Ordering::Relaxed)
     }
 
     /// Whether a checkpoint was asked for.
     pub fn is_suspended(&self) -> bool {
-        self.suspend.load(Ordering::Relaxed)
+        self.shared.suspend.load(Ordering::Relaxed)
     }
 
-    /// Simulated time reached \[s\].
+    /// Simulated time reached \[s\], of all runs together.
     pub fn simulated_time(&self) -> f64 {
-        f64::from_bits(self.simulated_time.load(Ordering::Relaxed))
+        f64::from_bits(self.shared.simulated_time.load(Ordering::Relaxed))
     }
 
+    /// Takes in the simulated time of this handle's run \[s\].
     pub(crate) fn report(&self, simulated_time: f64) {
-        self.simulated_time.store(simulated_time.to_bits(), Ordering::Relaxed);
+        let before = f64::from_bits(self.own_time.swap(simulated_time.to_bits(), Ordering::Relaxed));
+        let add = |total: u64| Some((f64::from_bits(total) + (simulated_time - before)).to_bits());
+        // The update never declines, so it never fails.
+        let _ = self.shared.simulated_time.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_stopped_together_and_their_times_add_up() {
+        let whole = Control::new();
+        let (a, b) = (whole.part(), whole.part());
+        a.report(1.0);
+        b.report(0.5);
+        a.report(1.5);
+        assert_eq!(whole.simulated_time(), 2.0);
+        assert!(!a.is_cancelled() && !b.is_suspended());
+        whole.cancel();
+        b.suspend();
+        assert!(a.is_cancelled() && a.is_suspended() && whole.is_suspended());
     }
 }

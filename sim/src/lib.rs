@@ -10,6 +10,7 @@
 pub mod beam;
 pub mod contact;
 pub mod control;
+pub mod ensemble;
 pub mod linalg;
 pub mod model;
 pub mod mud;
@@ -17,6 +18,7 @@ pub mod scenario;
 pub mod signal;
 pub mod statics;
 pub mod string;
+pub mod study;
 pub mod summary;
 pub mod transient;
 pub mod well;

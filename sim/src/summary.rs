@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::model::Model;
 use crate::scenario::TimeWindow;
-use crate::signal::{PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
+use crate::signal::{FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
-use crate::transient::Records;
+use crate::transient::{ErrorEstimate, Records};
 
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
@@ -46,6 +46,8 @@ pub struct TransientSummary {
     pub contact_count: u64,
     /// Largest normal force of any node \[N\].
     pub largest_normal_force: f64,
+    /// Estimated error of the lateral displacements.
+    pub error_estimate: ErrorEstimate,
     /// Energy left over at the end \[J\]: the integration's own error.
     pub energy_residual: f64,
     /// The same relative to the net work of the contacts; absent where there was none.
@@ -82,6 +84,8 @@ pub struct SpectrumSummary {
     pub measured_depth: f64,
     /// Window \[s\].
     pub window: TimeWindow,
+    /// Root mean square motion about the mean at frequencies up to 20 Hz, both senses of whirl together \[m\].
+    pub band_rms: f64,
     /// The lines, strongest first; the mean is left out.
     pub lines: Vec<LineSummary>,
 }
@@ -145,20 +149,23 @@ impl TransientSummary {
             }
             for &window in &scenario.recording.spectrum_windows {
                 let samples = cut(window);
-                let spectrum = full_spectrum(
-                    &history.u[samples.clone()],
-                    &history.v[samples],
-                    records.rate_hz,
-                    Window::Hann,
-                )
-                .restricted_to(&(-BAND_HZ..=BAND_HZ));
+                let (u, v) = (&history.u[samples.clone()], &history.v[samples]);
+                let band =
+                    |shape| full_spectrum(u, v, records.rate_hz, shape).restricted_to(&(-BAND_HZ..=BAND_HZ));
+                let spectrum = band(Window::Hann);
                 let search = PeakSearch { count: LINES, min_separation_hz: 0.5, exclude_mean: true };
                 let lines = spectrum.peaks(&search).into_iter().map(|peak| LineSummary {
                     frequency_hz: peak.frequency_hz,
                     amplitude: peak.amplitude,
                     whirl: peak.whirl,
                 });
-                spectra.push(SpectrumSummary { node, measured_depth, window, lines: lines.collect() });
+                spectra.push(SpectrumSummary {
+                    node,
+                    measured_depth,
+                    window,
+                    band_rms: band_rms(&band(Window::Rectangular)),
+                    lines: lines.collect(),
+                });
             }
         }
         let last = records.energy.last().copied().unwrap_or_default();
@@ -170,11 +177,19 @@ impl TransientSummary {
                 .contacts
                 .iter()
                 .fold(0.0, |most, contact| most.max(contact.largest_normal_force)),
+            error_estimate: records.error,
             energy_residual: last.residual,
             energy_residual_ratio: (last.contact_work != 0.0)
                 .then(|| last.residual.abs() / last.contact_work.abs()),
         }
     }
+}
+
+/// Root of the summed squares of all amplitudes but the mean's (Parseval).
+fn band_rms(spectrum: &FullSpectrum) -> f64 {
+    let bins =
+        spectrum.frequency_hz.iter().zip(&spectrum.amplitude).filter(|(frequency, _)| **frequency != 0.0);
+    bins.map(|(_, amplitude)| amplitude * amplitude).sum::<f64>().sqrt()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {

@@ -14,8 +14,7 @@ fn base(duration: f64, integrator: Integrator, step: f64) -> Scenario {
     scenario.duration = duration;
     scenario.recording.spectrum_windows.clear();
     scenario.recording.orbit_window = None;
-    scenario.accuracy =
-        Accuracy::Explicit(TimeStepping { integrator, step, contact_sweeps: 2, tolerance: None });
+    scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(integrator, step));
     scenario
 }
 
@@ -78,6 +77,7 @@ fn rk4_with_step_doubling_meets_the_fixed_step() {
         step: 1e-4,
         contact_sweeps: 2,
         tolerance: Some(1e-8),
+        ..TimeStepping::fixed(Integrator::Rk4, 5e-5)
     });
     let adaptive = run(&scenario);
     // 1e-8 of the hole's radius a pair of steps, against a motion of some 1e-4 m.
@@ -323,4 +323,68 @@ fn without_friction_nothing_but_the_unbalance_moves_the_string() {
         assert!((peak.frequency_hz / 2.0 - (peak.frequency_hz / 2.0).round()).abs() < 0.05, "{peaks:?}");
     }
     assert!((peaks[0].frequency_hz.abs() - 2.0).abs() < 0.1 && peaks[0].amplitude > 1e-4, "{peaks:?}");
+}
+
+#[test]
+fn members_of_an_ensemble_differ_by_next_to_nothing_before_they_part() {
+    let scenario = base(0.2, Integrator::Esdirk4, 1e-3);
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("rests");
+    let member =
+        |number| match Transient::member(&model, &equilibrium, number).expect("sets up").run(&Control::new())
+        {
+            Ok(Outcome::Finished(records)) => *records,
+            other => panic!("did not finish: {other:?}"),
+        };
+    let (first, second) = (member(0), member(1));
+    assert_eq!(first, run(&scenario), "the first member is the run itself");
+    assert_ne!(first.histories, second.histories);
+    let largest = first
+        .histories
+        .iter()
+        .zip(&second.histories)
+        .flat_map(|(a, b)| a.u.iter().zip(&b.u).map(|(a, b)| (a - b).abs()));
+    // 1e-6 m at the start; the wall's springs give back as much, not more, in a fraction of a second.
+    assert!(largest.fold(0.0, f64::max) < 5e-6);
+}
+
+#[test]
+fn stiffness_by_length_makes_the_wall_the_same_for_every_mesh() {
+    let statics = |factor: f64, reference_length: Option<f64>| {
+        let mut scenario = preset("paper-200m").expect("shipped preset");
+        scenario.contact.reference_length = reference_length;
+        scenario.mesh.drillpipe *= factor;
+        scenario.mesh.collar *= factor;
+        let model = Model::new(&scenario).expect("valid");
+        let equilibrium = Equilibrium::find(&model).expect("rests");
+        // Mean penetration of the collars, which lie on the wall along most of their length.
+        let nodes = model.mesh.nodes.iter().zip(&equilibrium.displacement);
+        let penetrations: Vec<f64> = nodes
+            .filter(|(node, _)| (95.0..120.0).contains(&node.measured_depth))
+            .map(|(node, x)| x[0].hypot(x[1]) - node.clearance)
+            .filter(|&penetration| penetration > 0.0)
+            .collect();
+        penetrations.iter().sum::<f64>() / penetrations.len() as f64
+    };
+    let change = |reference_length| statics(0.5, reference_length) / statics(1.0, reference_length);
+    // A node's stiffness: half the load on each of twice as many nodes. By length: the same penetration.
+    assert!((change(None) - 0.5).abs() < 0.05, "{}", change(None));
+    assert!((change(Some(0.5)) - 1.0).abs() < 0.05, "{}", change(Some(0.5)));
+}
+
+#[test]
+fn falling_friction_drives_torsion_at_some_kilohertz_unless_something_damps_it() {
+    // Slow rotation lies on the steep part of the friction curve. At 0.0625 ms ESDIRK4 damps nothing at 3.7 kHz, the torsion of
+    // single elements by the first collar, and the ledger shows it; a stiffness-proportional damping of 1e-6 s (0.3 % of critical at 1
+    // kHz, 1e-5 of it at 2 Hz), or no friction torque, leaves it closed.
+    let residual = |change: &dyn Fn(&mut Scenario)| {
+        let mut scenario = base(0.5, Integrator::Esdirk4, 6.25e-5);
+        scenario.operation.rotation_speed_rpm = 40.0;
+        change(&mut scenario);
+        run(&scenario).energy.last().expect("rows").residual.abs()
+    };
+    let driven = residual(&|_| {});
+    let damped = residual(&|scenario| scenario.damping.stiffness_proportional = 1e-6);
+    let without_torque = residual(&|scenario| scenario.effects.set(Effect::FrictionTorque, Switch::Off));
+    assert!(driven > 1e3 * damped && driven > 1e3 * without_torque, "{driven} {damped} {without_torque}");
 }

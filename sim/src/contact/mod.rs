@@ -22,4 +22,6 @@ pub struct ContactNode<L> {
     pub clearance: L,
     /// Radius R_e at which the string touches the wall \[m\].
     pub contact_radius: L,
+    /// Share of the law's stiffness and damping that the node has: 1, or by the length of string that it stands for.
+    pub share: L,
 }

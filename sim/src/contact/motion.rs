@@ -64,8 +64,9 @@ pub fn dynamic_contact<L: Lane>(
     let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));
     let sliding_speed = (rotation_speed + theta_z_rate).mul_add(node.contact_radius, whirl_speed);
 
-    let elastic = law.stiffness(penetration) * penetration;
-    let normal = law.normal_force(penetration, penetration_rate, elastic);
+    let whole = law.stiffness(penetration) * penetration;
+    let elastic = whole * node.share;
+    let normal = law.normal_force(penetration, penetration_rate, whole) * node.share;
     let friction = law.friction_coefficient(sliding_speed) * normal.abs();
     let tangential = friction * law.tangential_share;
     let torque = friction * law.torque_share * node.contact_radius;

@@ -14,6 +14,7 @@ const BASE: ContactLaw = ContactLaw {
     static_friction: 0.3,
     dynamic_friction: 0.2,
     friction_reference_speed: 0.033,
+    reference_length: None,
 };
 
 /// A law soft enough that differences and quadratures resolve its arctangents.
@@ -21,7 +22,7 @@ const SOFT: ContactLaw = ContactLaw { stiffness_sharpness: 1e4, damping_sharpnes
 
 const FRICTIONLESS: ContactLaw = ContactLaw { static_friction: 0.0, dynamic_friction: 0.0, ..BASE };
 
-const NODE: ContactNode<f64> = ContactNode { clearance: 0.04, contact_radius: 0.0635 };
+const NODE: ContactNode<f64> = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
 
 fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
     ContactParameters::new(law, &Effects::default())
@@ -388,7 +389,11 @@ fn a_lane_has_the_bits_of_a_node_alone() {
     let radii = [0.0402, 0.03, 0.0, 0.041];
     let law = ContactParameters::<f64>::new(&BASE, &Effects::default());
     let four = ContactParameters::<Four>::new(&BASE, &Effects::default());
-    let node = ContactNode { clearance: Four::splat(NODE.clearance), contact_radius: Four::splat(0.0635) };
+    let node = ContactNode {
+        clearance: Four::splat(NODE.clearance),
+        contact_radius: Four::splat(0.0635),
+        share: Four::splat(1.0),
+    };
     let motion = LateralMotion {
         u: Four::new(radii.map(|r| 0.6 * r)),
         v: Four::new(radii.map(|r| -0.8 * r)),

@@ -32,7 +32,7 @@ impl Accuracy {
             Accuracy::Preset(AccuracyPreset::Standard) => (Integrator::Esdirk4, 1e-3, 2),
             Accuracy::Preset(AccuracyPreset::Reference) => (Integrator::Esdirk4, 2.5e-4, 20),
         };
-        TimeStepping { integrator, step, contact_sweeps, tolerance: None }
+        TimeStepping { contact_sweeps, ..TimeStepping::fixed(integrator, step) }
     }
 }
 
@@ -89,6 +89,17 @@ pub struct TimeStepping {
     /// Relative error tolerance of the adaptive step (`rk4`); absent means a fixed step.
     #[serde(default)]
     pub tolerance: Option<f64>,
+    /// Spectral radius at infinite frequency (`generalized_alpha`), 0 to 0.95; absent means 0.8. One, the trapezium rule,
+    /// damps nothing, and with a fixed number of contact sweeps it fails silently.
+    #[serde(default)]
+    pub spectral_radius: Option<f64>,
+}
+
+impl TimeStepping {
+    /// A method with a fixed step \[s\] and two contact sweeps.
+    pub fn fixed(integrator: Integrator, step: f64) -> Self {
+        Self { integrator, step, contact_sweeps: two(), tolerance: None, spectral_radius: None }
+    }
 }
 
 fn two() -> u32 {
@@ -106,4 +117,15 @@ pub enum Integrator {
     Esdirk4,
     /// Classical Runge-Kutta of order 4 (the paper's), with step doubling when a tolerance is given.
     Rk4,
+}
+
+impl Integrator {
+    /// The name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            Integrator::GeneralizedAlpha => "generalized_alpha",
+            Integrator::Esdirk4 => "esdirk4",
+            Integrator::Rk4 => "rk4",
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{
-    ContactLaw, DrillString, Effects, Mesh, Mud, Operation, RayleighDamping, Recording, Scenario,
+    ContactLaw, CostStudy, DrillString, Effects, Mesh, Mud, Operation, RayleighDamping, Recording, Scenario,
     TimeStepping, Well,
 };
 
@@ -21,6 +21,8 @@ struct Canonical {
     recording: Recording,
     accuracy: TimeStepping,
     effects: Effects,
+    ensemble: u32,
+    cost_study: Option<CostStudy>,
 }
 
 impl Scenario {
@@ -44,6 +46,8 @@ impl Scenario {
             recording,
             accuracy,
             effects,
+            ensemble,
+            cost_study,
         } = self.without_negative_zeros();
         let canonical = Canonical {
             well,
@@ -57,6 +61,8 @@ impl Scenario {
             recording,
             accuracy: accuracy.time_stepping(),
             effects,
+            ensemble,
+            cost_study,
         };
         postcard::to_stdvec(&canonical)
             .expect("postcard encodes structs, sequences and numbers of known length")

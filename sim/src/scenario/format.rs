@@ -79,6 +79,7 @@ mod tests {
             step: 1e-5,
             contact_sweeps: 2,
             tolerance: Some(1e-4),
+            spectral_radius: None,
         });
         assert_eq!(Scenario::from_toml(&scenario.to_toml()).unwrap(), scenario);
         assert_eq!(Scenario::from_json(&scenario.to_json()).unwrap(), scenario);

@@ -11,6 +11,7 @@ mod preset;
 mod problem;
 mod request;
 mod set;
+mod study;
 mod validate;
 
 pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
@@ -18,6 +19,7 @@ pub use effects::{Effect, Effects, Switch};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
+pub use study::{CostStudy, MethodSteps};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +56,13 @@ pub struct Scenario {
     /// Which terms of the model are assembled.
     #[serde(default)]
     pub effects: Effects,
+    /// Runs of the point: the first as it is, the others disturbed by 1e-6 m at the start. More than one gives every
+    /// statistic its spread, and the time up to which the history itself can be trusted.
+    #[serde(default = "one")]
+    pub ensemble: u32,
+    /// A work-precision study in place of the run.
+    #[serde(default)]
+    pub cost_study: Option<CostStudy>,
 }
 
 /// The well: a survey interpolated by minimum curvature (physics.md section 1) and one open hole.
@@ -285,6 +294,11 @@ pub struct ContactLaw {
     pub dynamic_friction: f64,
     /// Reference speed v_ref of the regularised friction \[m/s\]; its slope at rest is 1 / v_ref.
     pub friction_reference_speed: f64,
+    /// Length of string \[m\] that stiffness and damping belong to: a node has its share by the length that it stands for,
+    /// so that a finer mesh meets the same wall. Absent means that every node has the whole of them, as in the
+    /// paper, and a finer mesh meets a stiffer wall.
+    #[serde(default)]
+    pub reference_length: Option<f64>,
 }
 
 /// What happens when the contact's damper would pull.

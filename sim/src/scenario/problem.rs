@@ -16,7 +16,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(super) fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(crate) fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
         Self { path: path.into(), got: got.into(), message: message.into() }
     }
 

@@ -17,7 +17,7 @@ use crate::scenario::Mud;
 const HYDRAULIC_PASSES: usize = 30;
 
 /// Change of an eccentricity at which string and mud stand still.
-const ECCENTRICITY_STANDSTILL: f64 = 1e-12;
+const ECCENTRICITY_STANDSTILL: f64 = 1e-10;
 
 /// The string at rest: displacements, internal forces, contacts, flow.
 #[derive(Debug, Clone)]
@@ -171,7 +171,11 @@ fn contact_at(
         return None;
     }
     let data = &model.mesh.nodes[node];
-    let site = ContactNode { clearance: data.clearance, contact_radius: data.contact_radius };
+    let site = ContactNode {
+        clearance: data.clearance,
+        contact_radius: data.contact_radius,
+        share: data.contact_share,
+    };
     let contact = static_contact(law, &site, displacement[0], displacement[1], model.rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
 }

@@ -98,6 +98,9 @@ pub struct MeshNode {
     pub clearance: f64,
     /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
+    /// Share of the contact law's stiffness and damping: 1 where these are a node's or the node is a gauge, which is a
+    /// place and not a length; else the length that the node stands for over the law's reference length.
+    pub contact_share: f64,
     /// Whether the clearance is a gauge's.
     pub is_gauge: bool,
     /// The masses put here.
@@ -143,6 +146,13 @@ impl StringMesh {
                 if node.is_gauge { node.clearance.min(gauge.clearance) } else { gauge.clearance };
             node.contact_radius = 0.5 * scenario.well.hole_diameter - node.clearance;
             node.is_gauge = true;
+        }
+        if let Some(reference_length) = scenario.contact.reference_length {
+            for (index, node) in mesh.nodes.iter_mut().enumerate().filter(|(_, node)| !node.is_gauge) {
+                let above = index.checked_sub(1).map_or(0.0, |above| mesh.elements[above].length);
+                let below = mesh.elements.get(index).map_or(0.0, |below| below.length);
+                node.contact_share = 0.5 * (above + below) / reference_length;
+            }
         }
         for mass in &string.unbalance {
             let index = mesh.nearest_node(mass.measured_depth);
@@ -241,6 +251,7 @@ fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<
                 measured_depth: elements.get(i).map_or(length, |below| below.top),
                 clearance: 0.5 * (hole_diameter - outer_diameter),
                 contact_radius: 0.5 * outer_diameter,
+                contact_share: 1.0,
                 is_gauge: false,
                 unbalance: Vec::new(),
             }

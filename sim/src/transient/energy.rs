@@ -77,7 +77,8 @@ pub(super) struct Ledger {
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
     forms: Forms<3>,
     contact: ContactParameters<f64>,
-    clearance: Vec<f64>,
+    /// Clearance \[m\] and share of the contact law of every node.
+    walls: Vec<(f64, f64)>,
     with_contact: bool,
     rotation_speed: f64,
     work: Work,
@@ -97,7 +98,7 @@ impl Ledger {
                 &system.stiffness,
             ),
             contact: ContactParameters::new(&model.scenario.contact, &model.scenario.effects),
-            clearance: model.mesh.nodes.iter().map(|node| node.clearance).collect(),
+            walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.contact_share)).collect(),
             with_contact: model.scenario.effects.contact.is_on(),
             rotation_speed: system.rotation_speed,
             work: Work::default(),
@@ -246,8 +247,11 @@ impl Ledger {
         if !self.with_contact {
             return 0.0;
         }
-        let nodes = x.iter().zip(&self.clearance).skip(1);
-        nodes.map(|(x, &clearance)| self.contact.potential_energy(x[0].hypot(x[1]) - clearance)).sum()
+        let nodes = x.iter().zip(&self.walls).skip(1);
+        let stored = |(x, &(clearance, share)): (&[f64; 6], &(f64, f64))| {
+            share * self.contact.potential_energy(x[0].hypot(x[1]) - clearance)
+        };
+        nodes.map(stored).sum()
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::State;
 use super::energy::Ledger;
+use super::error::ErrorSum;
 use super::forces::Forces;
 use super::implicit::{StageSolver, flat, flat_mut};
 use crate::linalg::SingularBlock;
@@ -32,6 +33,16 @@ const STRICTLY_LOWER: [[f64; STAGES - 1]; STAGES] = [
 /// Weights; the last stage is the step's end.
 const WEIGHTS: [f64; STAGES] =
     [82889.0 / 524892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102672.0, -2260.0 / 8211.0, DIAGONAL];
+
+/// Weights less those of the embedded method of order 3: what they make of the stages is an error of the step.
+const ERROR_WEIGHTS: [f64; STAGES] = [
+    WEIGHTS[0] - 4586570599.0 / 29645900160.0,
+    0.0,
+    WEIGHTS[2] - 178811875.0 / 945068544.0,
+    WEIGHTS[3] - 814220225.0 / 1159782912.0,
+    WEIGHTS[4] + 3700637.0 / 11593932.0,
+    WEIGHTS[5] - 61727.0 / 225920.0,
+];
 
 /// Stage values of one step; the last stage of a step is the first of the next.
 #[derive(Debug, Clone)]
@@ -75,6 +86,7 @@ impl Esdirk {
         time: f64,
         state: &mut State,
         ledger: &mut Ledger,
+        errors: &mut ErrorSum,
     ) {
         let h = self.step;
         let c = 1.0 / (DIAGONAL * h);
@@ -114,6 +126,11 @@ impl Esdirk {
                 );
             }
         }
+        let [v0, _, v2, v3, v4, v5] = &self.velocities;
+        let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| h * weight);
+        errors.add(v0.len(), |n, d| {
+            w0 * v0[n][d] + w2 * v2[n][d] + w3 * v3[n][d] + w4 * v4[n][d] + w5 * v5[n][d]
+        });
         state.displacement.copy_from_slice(&self.solver.displacement);
         state.velocity.copy_from_slice(&self.solver.velocity);
         state.acceleration.copy_from_slice(&self.accelerations[STAGES - 1]);
@@ -182,6 +199,25 @@ mod tests {
         for (tree, (got, wanted)) in conditions.into_iter().enumerate() {
             assert!((got - wanted).abs() < 1e-14, "tree {tree}: {got} against {wanted}");
         }
+    }
+
+    #[test]
+    fn embedded_weights_are_of_order_three() {
+        let (a, c) = (tableau(), NODES);
+        let embedded = |f: &dyn Fn(usize) -> f64| {
+            (0..STAGES).map(|i| (WEIGHTS[i] - ERROR_WEIGHTS[i]) * f(i)).sum::<f64>()
+        };
+        let slopes = |i: usize| (0..STAGES).map(|j| a[i][j] * c[j]).sum::<f64>();
+        let conditions = [
+            (embedded(&|_| 1.0), 1.0),
+            (embedded(&|i| c[i]), 1.0 / 2.0),
+            (embedded(&|i| c[i] * c[i]), 1.0 / 3.0),
+            (embedded(&slopes), 1.0 / 6.0),
+        ];
+        for (tree, (got, wanted)) in conditions.into_iter().enumerate() {
+            assert!((got - wanted).abs() < 1e-14, "tree {tree}: {got} against {wanted}");
+        }
+        assert!((embedded(&|i| c[i].powi(3)) - 0.25).abs() > 1e-4, "and not of order four");
     }
 
     #[test]

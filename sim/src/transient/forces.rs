@@ -47,6 +47,7 @@ impl Forces {
             ContactNode {
                 clearance: lanes(|node| node.clearance, f64::INFINITY),
                 contact_radius: lanes(|node| node.contact_radius, 0.0),
+                share: lanes(|node| node.contact_share, 0.0),
             }
         });
         Self {

@@ -6,6 +6,7 @@
 
 mod checkpoint;
 mod energy;
+mod error;
 mod esdirk;
 mod forces;
 mod forms;
@@ -17,17 +18,20 @@ mod stability;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use energy::EnergyRow;
+pub use error::ErrorEstimate;
 pub use implicit::SweepMonitor;
 pub use records::{ContactStatistics, NodeHistory};
 
 use serde::{Deserialize, Serialize};
 
 use crate::control::Control;
+use crate::ensemble::disturbance;
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, Model, NodalVector};
-use crate::scenario::{Integrator, TimeStepping};
+use crate::scenario::{Integrator, Problem, Scenario, TimeStepping};
 use crate::statics::Equilibrium;
 use energy::{Ledger, Work};
+use error::ErrorSum;
 use esdirk::Esdirk;
 use forces::{ContactForces, Forces, NodeContact, add_contact};
 use generalized_alpha::GeneralizedAlpha;
@@ -41,6 +45,8 @@ pub struct Transient<'m> {
     model: &'m Model,
     system: DynamicSystem,
     forces: Forces,
+    /// Displacements at the start.
+    initial: NodalVector,
     stepper: Stepper,
     ledger: Ledger,
     /// Samples of a whole run.
@@ -59,6 +65,7 @@ struct Progress {
     state: State,
     work: Work,
     monitor: SweepMonitor,
+    errors: ErrorSum,
     rejected: u64,
     steps: u64,
     histories: Vec<NodeHistory>,
@@ -96,6 +103,8 @@ pub struct Records {
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
     pub energy: Vec<EnergyRow>,
+    /// Estimated error of the lateral displacements.
+    pub error: ErrorEstimate,
     /// What the run took.
     pub effort: TransientEffort,
 }
@@ -179,10 +188,22 @@ impl<'m> Transient<'m> {
     /// # Errors
     /// When a matrix is singular or an explicit step is beyond its stability limit.
     pub fn new(model: &'m Model, equilibrium: &Equilibrium) -> Result<Self, TransientError> {
+        Self::member(model, equilibrium, 0)
+    }
+
+    /// A run of `model` as a member of its [ensemble](crate::ensemble): from the equilibrium (0), or slightly beside it.
+    ///
+    /// # Errors
+    /// As [`Transient::new`].
+    pub fn member(model: &'m Model, equilibrium: &Equilibrium, member: u32) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
         let system = model.dynamic_system(equilibrium);
         let forces = Forces::new(model, &system);
-        let initial = &equilibrium.displacement;
+        let mut initial = disturbance(model, member);
+        for (value, rest) in initial.iter_mut().flatten().zip(equilibrium.displacement.iter().flatten()) {
+            *value += rest;
+        }
+        let initial = &initial;
         let ledger = Ledger::new(model, &system, initial);
         let stepping = scenario.accuracy.time_stepping();
         let interval = 1.0 / scenario.recording.rate_hz;
@@ -198,6 +219,7 @@ impl<'m> Transient<'m> {
                 initial,
                 step,
                 stepping.contact_sweeps,
+                stepping.spectral_radius.unwrap_or(generalized_alpha::SPECTRAL_RADIUS),
             )?)),
             Integrator::Esdirk4 => {
                 Stepper::Esdirk(Box::new(Esdirk::new(&system, initial, step, stepping.contact_sweeps)?))
@@ -218,6 +240,7 @@ impl<'m> Transient<'m> {
                 state: State::at_rest(initial, stepping.step),
                 work: Work::default(),
                 monitor: SweepMonitor::default(),
+                errors: ErrorSum::default(),
                 rejected: 0,
                 steps: 0,
                 histories: recorded_nodes(model)
@@ -230,6 +253,7 @@ impl<'m> Transient<'m> {
             model,
             system,
             forces,
+            initial: initial.clone(),
             stepper,
             ledger,
             samples,
@@ -288,6 +312,7 @@ impl<'m> Transient<'m> {
             histories: self.progress.histories,
             contacts: self.progress.contacts,
             energy: self.progress.energy,
+            error: self.progress.errors.estimate(stepping.integrator, self.model.node_count()),
             effort: TransientEffort {
                 stepping,
                 subdivisions: self.subdivisions,
@@ -343,6 +368,7 @@ impl<'m> Transient<'m> {
 
     fn book(&mut self, time: f64) {
         let state = &self.progress.state;
+        self.progress.errors.observe_motion(&state.displacement, &self.initial);
         self.progress.energy.push(self.ledger.row(time, &state.displacement, &state.velocity));
     }
 
@@ -351,11 +377,11 @@ impl<'m> Transient<'m> {
         let start = self.time();
         let step = self.interval / self.steps_per_sample as f64;
         let Self { system, forces, stepper, ledger, progress, .. } = self;
-        let state = &mut progress.state;
+        let (state, errors) = (&mut progress.state, &mut progress.errors);
         match stepper {
             Stepper::GeneralizedAlpha(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, ledger);
+                    method.advance(system, forces, start + i as f64 * step, state, ledger, errors);
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
@@ -363,14 +389,14 @@ impl<'m> Transient<'m> {
             }
             Stepper::Esdirk(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, ledger);
+                    method.advance(system, forces, start + i as f64 * step, state, ledger, errors);
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
                 progress.steps += self.steps_per_sample;
             }
             Stepper::Rk4(method) => {
-                let outcome = method.advance(system, forces, start, self.interval, state, ledger);
+                let outcome = method.advance(system, forces, start, self.interval, state, ledger, errors);
                 observe(&mut progress.contacts, state, &method.contact, self.interval);
                 progress.steps += std::mem::take(&mut method.steps);
                 progress.rejected += std::mem::take(&mut method.rejected);
@@ -424,6 +450,35 @@ impl State {
             adaptive_step,
         }
     }
+}
+
+/// The largest stable step of RK4 \[s\] for a model about its equilibrium.
+///
+/// # Errors
+/// When the mass matrix is singular.
+pub fn rk4_stability_limit(model: &Model, equilibrium: &Equilibrium) -> Result<f64, TransientError> {
+    Ok(stability::rk4_limit(model, &model.dynamic_system(equilibrium))?)
+}
+
+/// What is wrong with the step of a valid scenario: a fixed step of the explicit method beyond its stability limit. Looked
+/// for before a run is queued; it takes an equilibrium and some hundred products, and nothing for the other methods.
+pub fn step_problem(scenario: &Scenario) -> Option<Problem> {
+    let stepping = scenario.accuracy.time_stepping();
+    if stepping.integrator != Integrator::Rk4
+        || stepping.tolerance.is_some()
+        || !scenario.effects.transient.is_on()
+    {
+        return None;
+    }
+    let model = Model::new(scenario).ok()?;
+    let limit = rk4_stability_limit(&model, &Equilibrium::find(&model).ok()?).ok()?;
+    (stepping.step > limit).then(|| {
+        let valid = format!(
+            "must be at most {limit:.3e} s, the stability limit of rk4 for this mesh; or give a tolerance, or take esdirk4, which has \
+             none"
+        );
+        Problem::new("accuracy.step", stepping.step.to_string(), valid)
+    })
 }
 
 /// The nodes whose histories a scenario wants, from 0.

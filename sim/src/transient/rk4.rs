@@ -4,6 +4,7 @@
 
 use super::State;
 use super::energy::Ledger;
+use super::error::ErrorSum;
 use super::forces::{ContactForces, Forces, NodeContact, add_contact};
 use super::implicit::{flat, flat_mut, held_list};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
@@ -68,12 +69,14 @@ impl Rk4 {
         interval: f64,
         state: &mut State,
         ledger: &mut Ledger,
+        errors: &mut ErrorSum,
     ) -> Result<(), StepCollapsed> {
         let Some(tolerance) = self.tolerance else {
             let count = (interval / self.largest_step * (1.0 - 1e-12)).ceil().max(1.0);
             let h = interval / count;
             for i in 0..count as u64 {
                 self.step(system, forces, time + i as f64 * h, h, state, Some(ledger));
+                self.add_error(h, state, errors);
             }
             return Ok(());
         };
@@ -98,6 +101,9 @@ impl Rk4 {
                 .fold(0.0_f64, |m, (a, b)| m.max((a[0] - b[0]).abs()).max((a[1] - b[1]).abs()))
                 / (15.0 * self.hole_radius);
             if error <= tolerance {
+                errors.add(fine.displacement.len(), |n, d| {
+                    (fine.displacement[n][d] - coarse.displacement[n][d]) / 15.0
+                });
                 *state = fine;
                 elapsed += 2.0 * h;
                 let factor = 0.9 * (tolerance / error.max(1e-300)).powf(0.2);
@@ -113,6 +119,13 @@ impl Rk4 {
             }
         }
         Ok(())
+    }
+
+    /// The difference to the embedded method of order 3 whose last stage is the step's end: h/6 times the change of the
+    /// velocity between the two.
+    fn add_error(&self, h: f64, state: &State, errors: &mut ErrorSum) {
+        let (last, _) = &self.rates[3];
+        errors.add(last.len(), |n, d| h / 6.0 * (last[n][d] - state.velocity[n][d]));
     }
 
     /// One step of `h`, its work in the ledger if it is to be kept.

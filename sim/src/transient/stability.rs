@@ -14,15 +14,14 @@ const RK4_IMAGINARY_LIMIT: f64 = 2.785;
 /// converges with its square.
 const POWER_ITERATIONS: usize = 300;
 
-/// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass: two contact sweeps stay stable below one
+/// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass for its share of the law: two contact sweeps stay stable below one
 /// (performance.md section 3). `step` is that of one implicit solve.
 pub(super) fn sweep_number(model: &Model, system: &DynamicSystem, step: f64) -> f64 {
     if !model.scenario.effects.contact.is_on() {
         return 0.0;
     }
     let contact = &model.scenario.contact;
-    let mass = smallest_lateral_mass(system);
-    (step * contact.damping + step * step * contact.stiffness) / mass
+    (step * contact.damping + step * step * contact.stiffness) * largest_share_by_mass(model, system)
 }
 
 /// The smallest number of equal parts into which `step` must be cut for two contact sweeps to be stable.
@@ -55,9 +54,10 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
         }
         system.stiffness.multiply_into(&x, &mut product);
         if model.scenario.effects.contact.is_on() {
-            for (product, x) in product.iter_mut().zip(&x).skip(1) {
-                product[0] += model.scenario.contact.stiffness * x[0];
-                product[1] += model.scenario.contact.stiffness * x[1];
+            for ((product, x), node) in product.iter_mut().zip(&x).zip(&model.mesh.nodes).skip(1) {
+                let stiffness = model.scenario.contact.stiffness * node.contact_share;
+                product[0] += stiffness * x[0];
+                product[1] += stiffness * x[1];
             }
         }
         let potential = dot(&x, &product);
@@ -71,13 +71,15 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
     Ok(RK4_IMAGINARY_LIMIT / square.sqrt())
 }
 
-/// The smallest mass that a node sets against a lateral push \[kg\]: the sum over its row for a rigid shift.
-fn smallest_lateral_mass(system: &DynamicSystem) -> f64 {
+/// The largest share of the contact law that a node has for each kilogram \[1/kg\] that it sets against a lateral push:
+/// the sum over its row for a rigid shift.
+fn largest_share_by_mass(model: &Model, system: &DynamicSystem) -> f64 {
     let n = system.held.len();
     let shift = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; n];
     let mut mass = vec![[0.0; 6]; n];
     system.mass.multiply_into(&shift, &mut mass);
-    mass.iter().skip(1).map(|row| row[0]).fold(f64::INFINITY, f64::min)
+    let nodes = mass.iter().zip(&model.mesh.nodes).skip(1);
+    nodes.map(|(row, node)| node.contact_share / row[0]).fold(0.0, f64::max)
 }
 
 fn mass_norm(mass: &BlockTridiagonal<f64>, x: &[[f64; 6]]) -> f64 {

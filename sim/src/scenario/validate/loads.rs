@@ -15,6 +15,9 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     }
     check_operation(report, &scenario.operation);
     check_contact(report, &scenario.contact);
+    if let Some(length) = scenario.contact.reference_length {
+        report.positive(length, "contact.reference_length");
+    }
     report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
     report.not_negative(scenario.damping.stiffness_proportional, "damping.stiffness_proportional");
 }

@@ -1,7 +1,7 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
-use crate::scenario::{Accuracy, Integrator, NodeChoice, Scenario, TimeWindow};
+use crate::scenario::{Accuracy, CostStudy, Effect, Integrator, NodeChoice, Scenario, TimeWindow};
 use crate::string::StringMesh;
 
 /// Two times that differ by less than this part of them are the same.
@@ -13,6 +13,19 @@ const FEWEST_SAMPLES: f64 = 8.0;
 /// Samples of one run that are kept at most.
 const MOST_SAMPLES: f64 = 1e7;
 
+/// Generalized-alpha's largest spectral radius at infinity that two contact sweeps are known to be safe with
+/// (performance.md section 3).
+const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
+
+/// Runs of one point at most.
+const LARGEST_ENSEMBLE: u32 = 64;
+
+/// Runs of one cost study at most.
+const MOST_STUDY_RUNS: usize = 64;
+
+/// Smallest step \[s\] at which the implicit methods damp what friction drives in torsional modes of single elements.
+const FINEST_UNDAMPED_STEP: f64 = 1e-4;
+
 /// Contact sweeps beyond which a solve has long converged or never will.
 const MOST_SWEEPS: u32 = 1000;
 
@@ -21,6 +34,15 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
     report.positive(scenario.duration, "duration");
     report.positive(recording.rate_hz, "recording.rate_hz");
     check_accuracy(report, scenario);
+    report.require(
+        (1..=LARGEST_ENSEMBLE).contains(&scenario.ensemble),
+        "ensemble",
+        scenario.ensemble,
+        format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
+    );
+    if let Some(study) = &scenario.cost_study {
+        check_study(report, scenario, study);
+    }
     check_samples(report, scenario);
     for (i, window) in recording.spectrum_windows.iter().enumerate() {
         check_window(report, scenario, window, &format!("recording.spectrum_windows[{i}]"));
@@ -63,6 +85,20 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
         );
     }
 
+    let friction_drives_torsion = scenario.contact.static_friction > scenario.contact.dynamic_friction
+        && [Effect::Contact, Effect::FrictionTorque, Effect::Torsion]
+            .into_iter()
+            .all(|effect| scenario.effects.is_on(effect));
+    report.warn(
+        stepping.integrator != Integrator::Rk4
+            && stepping.step < FINEST_UNDAMPED_STEP
+            && friction_drives_torsion
+            && scenario.damping.stiffness_proportional == 0.0,
+        "accuracy.step",
+        "at so small a step the integrator no longer damps the torsional modes of single elements, some kHz, which the falling \
+         friction curve drives; give damping.stiffness_proportional a value such as 1e-6 s",
+    );
+
     let explicit = stepping.integrator == Integrator::Rk4;
     report.require(
         explicit || (2..=MOST_SWEEPS).contains(&stepping.contact_sweeps),
@@ -70,6 +106,22 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
         stepping.contact_sweeps,
         format!("must be 2 to {MOST_SWEEPS} for an implicit method"),
     );
+    if let Some(radius) = stepping.spectral_radius {
+        let of_alpha = stepping.integrator == Integrator::GeneralizedAlpha;
+        report.number(
+            radius,
+            "accuracy.spectral_radius",
+            |radius| of_alpha && (0.0..=LARGEST_SPECTRAL_RADIUS).contains(&radius),
+            if of_alpha {
+                format!(
+                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps what the contact sweeps leave, and the \
+                     run goes wrong without a sign"
+                )
+            } else {
+                "is for generalized_alpha only".to_owned()
+            },
+        );
+    }
     if let Some(tolerance) = stepping.tolerance {
         if explicit {
             report.number(
@@ -86,6 +138,59 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
                 "is for rk4 only: the implicit methods keep a fixed step",
             );
         }
+    }
+}
+
+fn check_study(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
+    let rate = scenario.recording.rate_hz;
+    report.positive(study.duration, "cost_study.duration");
+    report.require(
+        is_whole(study.duration * rate) && study.duration * rate >= 10.0 * FEWEST_SAMPLES,
+        "cost_study.duration",
+        study.duration,
+        format!(
+            "must be a whole multiple of the recording interval, {} s, and at least {} of them",
+            1.0 / rate,
+            10.0 * FEWEST_SAMPLES
+        ),
+    );
+    report.require(
+        scenario.effects.transient.is_on(),
+        "cost_study",
+        "effects.transient off",
+        "needs the run in time",
+    );
+    let mut runs = study.mesh_factors.len();
+    for (i, method) in study.methods.iter().flatten().enumerate() {
+        runs += method.steps.len();
+        for (j, &step) in method.steps.iter().enumerate() {
+            report.number(
+                step,
+                format!("cost_study.methods[{i}].steps[{j}]"),
+                |step| step > 0.0 && is_whole(1.0 / (rate * step)),
+                format!("must be a part of the recording interval, {} s", 1.0 / rate),
+            );
+        }
+    }
+    report.require(
+        study.methods.as_ref().is_none_or(|methods| methods.iter().any(|method| !method.steps.is_empty())),
+        "cost_study.methods",
+        "no step",
+        "must name at least one method with one step",
+    );
+    report.require(
+        runs <= MOST_STUDY_RUNS,
+        "cost_study",
+        format!("{runs} runs"),
+        format!("must have at most {MOST_STUDY_RUNS} runs"),
+    );
+    for (i, &factor) in study.mesh_factors.iter().enumerate() {
+        report.number(
+            factor,
+            format!("cost_study.mesh_factors[{i}]"),
+            |factor| (0.1..=10.0).contains(&factor),
+            "must be 0.1 to 10",
+        );
     }
 }
 
@@ -183,7 +288,7 @@ mod tests {
     use crate::scenario::{AccuracyPreset, TimeStepping};
 
     fn explicit(integrator: Integrator, step: f64) -> TimeStepping {
-        TimeStepping { integrator, step, contact_sweeps: 2, tolerance: None }
+        TimeStepping::fixed(integrator, step)
     }
 
     fn accuracy_problem(path: &str, stepping: TimeStepping) -> String {

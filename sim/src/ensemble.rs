@@ -1,0 +1,124 @@
+//! How far a history can be trusted: runs of the same scenario from starts that differ by next to nothing.
+//!
+//! Impacts and sliding make neighbouring histories part. From then on neither their course nor the error of an
+//! integrator along it means anything; sizes, lines and counts do, with the spread that the members show.
+
+use crate::model::{Model, NodalVector};
+use crate::transient::NodeHistory;
+
+/// Largest lateral displacement by which a member is disturbed at its start \[m\].
+pub const DISTURBANCE: f64 = 1e-6;
+
+/// Distance at which two histories count as parted, relative to the size of the motion.
+const PARTED: f64 = 0.1;
+
+/// Half waves along the string that a disturbance is made of: smooth, so that it starts no vibration of its own.
+const HALF_WAVES: usize = 6;
+
+/// What is added to the displacements at the start of a member: nothing for member 0, and for each other one its own
+/// sum of sines along the string with a largest value of [`DISTURBANCE`]. It vanishes at both ends.
+pub fn disturbance(model: &Model, member: u32) -> NodalVector {
+    let nodes = &model.mesh.nodes;
+    let mut shape = vec![[0.0; 6]; nodes.len()];
+    if member == 0 {
+        return shape;
+    }
+    let length = nodes.last().map_or(1.0, |node| node.measured_depth);
+    let mut random = Random(u64::from(member));
+    for half_wave in 1..=HALF_WAVES {
+        let (along_u, along_v) = (random.next(), random.next());
+        for (value, node) in shape.iter_mut().zip(nodes) {
+            let sine = (std::f64::consts::PI * half_wave as f64 * node.measured_depth / length).sin();
+            value[0] += along_u * sine;
+            value[1] += along_v * sine;
+        }
+    }
+    let largest = shape.iter().fold(0.0_f64, |most, value| most.max(value[0].abs()).max(value[1].abs()));
+    for value in shape.iter_mut().flatten() {
+        *value *= DISTURBANCE / largest;
+    }
+    shape
+}
+
+/// The time \[s\] at which two members' recorded histories have parted: their root mean square distance over the nodes
+/// exceeds a tenth of the root mean square motion of the first about its mean. Absent where they stay together.
+pub fn parting_time(a: &[NodeHistory], b: &[NodeHistory], rate_hz: f64) -> Option<f64> {
+    let mut motion = 0.0;
+    for history in a {
+        for values in [&history.u, &history.v] {
+            let count = values.len().max(1) as f64;
+            let mean = values.iter().sum::<f64>() / count;
+            motion += values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
+        }
+    }
+    let samples = a.iter().map(|history| history.u.len()).min().unwrap_or(0);
+    let distance = |k: usize| -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a.u[k] - b.u[k]).powi(2) + (a.v[k] - b.v[k]).powi(2)).sum()
+    };
+    let parted = |&k: &usize| motion > 0.0 && distance(k) > PARTED * PARTED * motion;
+    (0..samples).find(parted).map(|k| k as f64 / rate_hz)
+}
+
+/// Mean and standard deviation of a statistic over the members; nothing without any.
+pub fn spread(values: &[f64]) -> Option<(f64, f64)> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    // One member has no spread; more have that of a sample.
+    let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+    (!values.is_empty()).then(|| (mean, (squares / (count - 1.0).max(1.0)).sqrt()))
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers everywhere.
+struct Random(u64);
+
+impl Random {
+    /// The next number in \[-1, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::preset;
+
+    #[test]
+    fn members_start_apart_by_a_micrometre_and_the_first_not_at_all() {
+        let model = Model::new(&preset("paper-200m").unwrap()).unwrap();
+        assert!(disturbance(&model, 0).as_flattened().iter().all(|&value| value == 0.0));
+        let (one, two) = (disturbance(&model, 1), disturbance(&model, 2));
+        for shape in [&one, &two] {
+            let largest = shape.as_flattened().iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            assert!((largest - DISTURBANCE).abs() < 1e-18);
+            assert_eq!(shape[0], [0.0; 6], "the top is held");
+        }
+        assert_ne!(one, two);
+        assert_eq!(one, disturbance(&model, 1));
+    }
+
+    #[test]
+    fn histories_part_where_their_distance_passes_a_tenth_of_the_motion() {
+        let history = |growth: f64| {
+            let time = (0..1000).map(|k| k as f64 / 100.0);
+            let u: Vec<f64> = time.map(|t| t.sin() + 1e-6 * (growth * t).exp()).collect();
+            NodeHistory { v: vec![0.0; u.len()], u, ..NodeHistory::default() }
+        };
+        let (a, b) = ([history(0.0)], [history(2.0)]);
+        // The sine's root mean square is 0.7: parted at ln(0.07 / 1e-6) / 2 = 5.6 s.
+        let parted = parting_time(&a, &b, 100.0).unwrap();
+        assert!((parted - 5.6).abs() < 0.05, "{parted}");
+        assert_eq!(parting_time(&a, &a, 100.0), None);
+    }
+
+    #[test]
+    fn spread_is_that_of_a_sample() {
+        assert_eq!(spread(&[]), None);
+        assert_eq!(spread(&[3.0]), Some((3.0, 0.0)));
+        assert_eq!(spread(&[1.0, 3.0]), Some((2.0, 2.0_f64.sqrt())));
+    }
+}

@@ -2,6 +2,7 @@
 
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::scenario::{PRESETS, Problem, Problems, Scenario, ScenarioRequest, Warning};
+use drillsweep_sim::transient::step_problem;
 use indexmap::IndexMap;
 use serde_json::Value;
 
@@ -58,6 +59,12 @@ pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> 
         } else {
             check_without_axes(request, &scenario, &mut problems);
         }
+    }
+    // One point stands for all: the limit is the mesh's, hardly the mud's.
+    if let Some((point, problem)) =
+        points.first().and_then(|point| Some((point, step_problem(&point.scenario)?)))
+    {
+        problems.add(request, &digits(point.ordinal as usize - 1, request), &problem);
     }
     match problems.0.is_empty() {
         true => Ok(Expansion { points, warnings: warnings.into_vec() }),
@@ -412,6 +419,23 @@ mod tests {
         let mut found = pointers(json!({"scenario": scenario}));
         found.sort();
         assert_eq!(found, ["/scenario/contact/stiffness", "/scenario/mud/flow_index"]);
+    }
+
+    #[test]
+    fn unsafe_time_stepping_is_refused_with_what_would_be_valid() {
+        let of = |accuracy: Value| {
+            problems(
+                json!({"preset": "paper-200m", "set": {"accuracy": accuracy}, "axes": {"flow_rate": {"values": [0.01, 0.02]}}}),
+            )
+        };
+        let beyond = of(json!({"integrator": "rk4", "step": 1e-4}));
+        assert_eq!(beyond.len(), 1, "{beyond:?}");
+        // performance.md section 3: the limit is 6.37e-5 s.
+        assert!(beyond[0].0.starts_with("/set/accuracy") && beyond[0].2.contains("6.3"), "{beyond:?}");
+        let undamped = of(json!({"integrator": "generalized_alpha", "step": 5e-4, "spectral_radius": 1.0}));
+        assert!(undamped.len() == 1 && undamped[0].2.contains("0 to 0.95"), "{undamped:?}");
+        let one_sweep = of(json!({"integrator": "esdirk4", "step": 1e-3, "contact_sweeps": 1}));
+        assert!(one_sweep.len() == 1 && one_sweep[0].2.contains("2 to"), "{one_sweep:?}");
     }
 
     #[test]

@@ -6,7 +6,8 @@
 /// unit of the name without those numbers.
 pub fn unit(column: &str) -> Option<&'static str> {
     Some(match quantity(column) {
-        "time" | "error_time" | "contact_time" | "duration" | "wall_time" | "cpu_time" => "s",
+        "time" | "error_time" | "histories_part_at" | "contact_time" | "duration" | "wall_time"
+        | "cpu_time" => "s",
         "frequency" | "line_frequency_hz" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
@@ -18,7 +19,7 @@ pub fn unit(column: &str) -> Option<&'static str> {
         | "orbit_largest_radius"
         | "orbit_radius_rms"
         | "orbit_radius_deviation" => "m",
-        "line_amplitude" => "m",
+        "line_amplitude" | "band_rms" | "error_estimate_displacement" => "m",
         "u_rate" | "v_rate" | "w_rate" | "annulus_speed" | "bore_speed" => "m/s",
         "theta_x" | "theta_y" | "theta_z" | "low_side_angle" => "rad",
         "theta_z_rate" => "rad/s",
@@ -30,7 +31,11 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "apparent_viscosity" => "m2/s",
         "rotation_damping" | "friction_damping" | "rotation_damping_min" | "rotation_damping_max" => "N s/m2",
         "friction_coefficient" | "friction_coefficient_min" | "friction_coefficient_max" => "1",
-        "eccentricity" | "added_mass_coefficient" | "reynolds_number" | "energy_residual_ratio" => "1",
+        "eccentricity"
+        | "added_mass_coefficient"
+        | "reynolds_number"
+        | "energy_residual_ratio"
+        | "error_estimate" => "1",
         "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "contact_work" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
         "residual" | "energy_residual" => "J",
@@ -38,14 +43,15 @@ pub fn unit(column: &str) -> Option<&'static str> {
     })
 }
 
-/// The name of a column without the numbers of node and window.
+/// The name of a column without the numbers of node and window, and without what says that it is of an ensemble.
 fn quantity(column: &str) -> &str {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let without = |name, separator| match str::rsplit_once(name, separator) {
         Some((rest, number)) if is_number(number) => rest,
         _ => name,
     };
-    without(without(column, "_w"), "_")
+    let of_ensemble = column.strip_prefix("spread_").or_else(|| column.strip_prefix("ensemble_mean_"));
+    without(without(of_ensemble.unwrap_or(column), "_w"), "_")
 }
 
 #[cfg(test)]
@@ -59,6 +65,8 @@ mod tests {
         assert_eq!(unit("theta_z_rate_282"), Some("rad/s"));
         assert_eq!(unit("line_frequency_hz_49_w1"), Some("Hz"));
         assert_eq!(unit("orbit_radius_rms_282"), Some("m"));
+        assert_eq!(unit("spread_orbit_radius_rms_282"), Some("m"));
+        assert_eq!(unit("ensemble_mean_line_frequency_hz_49_w2"), Some("Hz"));
         assert_eq!(unit("node"), None);
         assert_eq!(unit("49"), None);
     }

@@ -97,7 +97,8 @@ pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
 }
 
 fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
-    let bar = ProgressBar::new((scenario.duration * 1000.0) as u64);
+    let total = scenario.duration * f64::from(scenario.ensemble);
+    let bar = ProgressBar::new((total * 1000.0) as u64);
     bar.set_style(ProgressStyle::with_template("{bar:40} {msg} of simulated time, {elapsed}, {eta} left")?);
     let control = Arc::new(Control::new());
     let done = AtomicBool::new(false);
@@ -106,7 +107,7 @@ fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
             while !done.load(Ordering::Relaxed) {
                 let time = control.simulated_time();
                 bar.set_position((time * 1000.0) as u64);
-                bar.set_message(format!("{time:.1} of {:.1} s", scenario.duration));
+                bar.set_message(format!("{time:.1} of {total:.1} s"));
                 std::thread::park_timeout(Duration::from_millis(200));
             }
         });
@@ -186,6 +187,22 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 spectrum.window.to,
                 lines.join(", ")
             )?;
+        }
+        writeln!(
+            text,
+            "error of a lateral displacement: {:.1e} of the motion ({:.1e} m), estimated, as long as histories do not part",
+            transient.error_estimate.relative, transient.error_estimate.displacement
+        )?;
+        match (computed.ensemble.is_empty(), computed.histories_part_at) {
+            (true, _) => writeln!(text, "one run, so no spread is known (--set ensemble=8 gives it)")?,
+            (false, Some(time)) => writeln!(
+                text,
+                "{} runs that start 1e-6 m apart part at {time:.2} s: beyond, only statistics mean something",
+                1 + computed.ensemble.len()
+            )?,
+            (false, None) => {
+                writeln!(text, "{} runs that start 1e-6 m apart stay together", 1 + computed.ensemble.len())?;
+            }
         }
         let ratio = transient.energy_residual_ratio.unwrap_or(0.0);
         writeln!(

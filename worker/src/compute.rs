@@ -4,9 +4,11 @@ use std::time::Instant;
 
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
+use drillsweep_sim::ensemble::parting_time;
 use drillsweep_sim::model::{Model, ModelError};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
+use drillsweep_sim::study::StudyError;
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{Outcome, Transient, TransientError};
 use drillsweep_store::{Table, TableError, encode_parquet};
@@ -23,6 +25,10 @@ pub struct Computed {
     pub statics: StaticsSummary,
     /// The run in time in scalars; absent where the scenario has none.
     pub transient: Option<TransientSummary>,
+    /// The other members of its ensemble.
+    pub ensemble: Vec<TransientSummary>,
+    /// Time \[s\] at which one of them has first parted from the undisturbed one; absent where they stay together, or without an ensemble.
+    pub histories_part_at: Option<f64>,
     /// Versions, integrator, steps and cost.
     pub provenance: Map<String, Value>,
 }
@@ -53,6 +59,9 @@ pub enum ComputeError {
     /// The run in time failed.
     #[error(transparent)]
     Transient(#[from] TransientError),
+    /// A cost study has no reference to compare with.
+    #[error(transparent)]
+    Study(#[from] StudyError),
     /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
@@ -78,7 +87,7 @@ impl ComputeError {
 impl Computed {
     /// The flat row that the sweep's table shows.
     pub fn summary_row(&self) -> Map<String, Value> {
-        summary_row(&self.statics, self.transient.as_ref())
+        summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at)
     }
 
     /// The tables as Parquet.
@@ -108,15 +117,22 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();
-    let records = if scenario.effects.transient.is_on() {
-        match Transient::new(&model, &equilibrium)?.run(control)? {
-            Outcome::Finished(records) => Some(*records),
-            Outcome::Cancelled | Outcome::Suspended(_) => return Err(ComputeError::Cancelled),
-        }
-    } else {
-        None
+    let run = |member| match Transient::member(&model, &equilibrium, member)?.run(&control.part())? {
+        Outcome::Finished(records) => Ok(*records),
+        Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
     };
+    let records = scenario.effects.transient.is_on().then(|| run(0)).transpose()?;
     let transient_cost = started.elapsed();
+    let mut ensemble = Vec::new();
+    let mut histories_part_at: Option<f64> = None;
+    if let Some(first) = &records {
+        for member in 1..scenario.ensemble {
+            let other = run(member)?;
+            let parted = parting_time(&first.histories, &other.histories, first.rate_hz);
+            histories_part_at = histories_part_at.into_iter().chain(parted).reduce(f64::min);
+            ensemble.push(TransientSummary::new(&model, &other));
+        }
+    }
     let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
 
     let mut provenance = Map::new();
@@ -136,27 +152,35 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         provenance.insert("step_subdivisions".into(), json!(effort.subdivisions));
         provenance.insert("steps".into(), json!(effort.steps));
         provenance.insert("rejected_steps".into(), json!(effort.rejected_steps));
+        provenance.insert("sweeps".into(), json!(effort.sweeps.sweeps));
         provenance.insert("sweep_largest_change".into(), json!(effort.sweeps.largest_change));
+        provenance.insert("loose_solves".into(), json!(effort.sweeps.loose_solves));
+        provenance.insert("error_estimate".into(), json!(records.error));
+        provenance.insert("error_estimate_of".into(), json!(ERROR_ESTIMATE_OF));
         provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    Ok(Computed { tables, statics, transient, provenance })
+    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, provenance })
 }
 
+/// What the error estimate is an estimate of, for people.
+const ERROR_ESTIMATE_OF: &str = "root mean square error of a lateral displacement over all nodes at the end of the run, \
+                                 as long as histories do not part: displacement [m], and relative to the motion";
+
 /// Wall and processor time of the calling thread.
-struct Stopwatch {
+pub(crate) struct Stopwatch {
     wall: Instant,
     cpu: f64,
 }
 
 impl Stopwatch {
-    fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self { wall: Instant::now(), cpu: thread_cpu_time() }
     }
 
     /// Wall and processor time since the start \[s\].
-    fn elapsed(&self) -> (f64, f64) {
+    pub(crate) fn elapsed(&self) -> (f64, f64) {
         (self.wall.elapsed().as_secs_f64(), thread_cpu_time() - self.cpu)
     }
 }

@@ -7,9 +7,11 @@
 
 mod claim;
 mod compute;
+mod cost;
 mod lease;
 mod tables;
 
 pub use claim::{WorkerConfig, WorkerError, run};
 pub use compute::{ComputeError, Computed, EncodedTable, compute};
+pub use cost::{cost_study, study_time};
 pub use tables::{point_tables, summary_row};

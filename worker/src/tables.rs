@@ -1,6 +1,7 @@
 //! What a point's result becomes: tables for the object store, and one flat row for the sweep's table.
 
 use drillsweep_api::units::unit;
+use drillsweep_sim::ensemble::spread;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
@@ -25,7 +26,15 @@ pub fn point_tables(
 
 /// The point's scalars under flat names; a name ends in the node's number where it belongs to a node, and in `_wK`
 /// where it belongs to the scenario's K-th spectrum window.
-pub fn summary_row(statics: &StaticsSummary, transient: Option<&TransientSummary>) -> Map<String, Value> {
+///
+/// Of an ensemble the values are those of the undisturbed member; `ensemble_mean_` and `spread_` before a name make it the
+/// mean and the standard deviation over all members. A row with one member says so, and has no spread.
+pub fn summary_row(
+    statics: &StaticsSummary,
+    transient: Option<&TransientSummary>,
+    ensemble: &[TransientSummary],
+    histories_part_at: Option<f64>,
+) -> Map<String, Value> {
     let mut row = Map::new();
     let mut put = |name: String, value: Value| {
         row.insert(name, value);
@@ -45,6 +54,34 @@ pub fn summary_row(statics: &StaticsSummary, transient: Option<&TransientSummary
         put("rotation_damping_max".into(), json!(largest));
     }
     let Some(transient) = transient else { return row };
+    row.extend(transient_row(transient));
+    row.insert("ensemble_members".into(), json!(1 + ensemble.len()));
+    if ensemble.is_empty() {
+        return row;
+    }
+    row.insert("histories_part_at".into(), json!(histories_part_at));
+    let members: Vec<_> = std::iter::once(transient).chain(ensemble).map(transient_row).collect();
+    for name in members[0].keys() {
+        // Forward and backward lines of one motion are often nearly alike: which is the higher says nothing.
+        let value = |row: &Map<String, Value>| {
+            let value = row.get(name)?.as_f64()?;
+            Some(if name.starts_with("line_frequency_hz") { value.abs() } else { value })
+        };
+        let values: Vec<f64> = members.iter().filter_map(value).collect();
+        if let Some((mean, deviation)) = spread(&values) {
+            row.insert(format!("ensemble_mean_{name}"), json!(mean));
+            row.insert(format!("spread_{name}"), json!(deviation));
+        }
+    }
+    row
+}
+
+/// The scalars of one run in time.
+fn transient_row(transient: &TransientSummary) -> Map<String, Value> {
+    let mut row = Map::new();
+    let mut put = |name: String, value: Value| {
+        row.insert(name, value);
+    };
     for orbit in &transient.orbits {
         let node = orbit.node;
         put(format!("orbit_offset_{node}"), json!(orbit.offset));
@@ -58,6 +95,7 @@ pub fn summary_row(statics: &StaticsSummary, transient: Option<&TransientSummary
     for spectrum in &transient.spectra {
         window_number = if spectrum.node == node_before { window_number + 1 } else { 1 };
         node_before = spectrum.node;
+        put(format!("band_rms_{}_w{window_number}", spectrum.node), json!(spectrum.band_rms));
         if let Some(line) = spectrum.lines.first() {
             let place = format!("{}_w{window_number}", spectrum.node);
             put(format!("line_frequency_hz_{place}"), json!(line.frequency_hz));
@@ -66,6 +104,8 @@ pub fn summary_row(statics: &StaticsSummary, transient: Option<&TransientSummary
     }
     put("contact_count".into(), json!(transient.contact_count));
     put("largest_normal_force".into(), json!(transient.largest_normal_force));
+    put("error_estimate".into(), json!(transient.error_estimate.relative));
+    put("error_estimate_displacement".into(), json!(transient.error_estimate.displacement));
     put("energy_residual".into(), json!(transient.energy_residual));
     put("energy_residual_ratio".into(), json!(transient.energy_residual_ratio));
     row

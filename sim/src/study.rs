@@ -144,9 +144,9 @@ pub struct CostErrors {
     /// Distance \[Hz\] of the reference's strongest line to the nearest of the run's, worst recorded node; absent where
     /// there are no lines.
     pub line_frequency_hz: Option<f64>,
-    /// Static position: largest distance of a node over the hole's radius.
+    /// Static position: largest distance of a node, over the hole's radius.
     pub static_position: f64,
-    /// C_f, worst element; absent without mud.
+    /// C_f, mean over the string's length; absent without mud.
     pub friction_coefficient: Option<f64>,
     /// Energy residual over the net work of the contacts; absent where there was none.
     pub energy: Option<f64>,
@@ -328,12 +328,13 @@ impl Measure {
                 let strongest = reference.lines.first()?.frequency_hz.abs();
                 of.lines.iter().map(|line| (line.frequency_hz.abs() - strongest).abs()).reduce(f64::min)
             });
-        let friction: Vec<(f64, f64)> = (self.friction.iter())
-            .zip(&self.position)
-            .filter_map(|((bottom, friction), (top, _))| {
-                Some((*friction, reference.friction_at(0.5 * (top + bottom))?))
-            })
-            .collect();
+        let (mut friction_distance, mut friction) = (0.0, 0.0);
+        for ((bottom, value), (top, _)) in self.friction.iter().zip(&self.position) {
+            if let Some(reference) = reference.friction_at(0.5 * (top + bottom)) {
+                friction_distance += (bottom - top) * (value - reference).abs();
+                friction += (bottom - top) * reference;
+            }
+        }
         CostErrors {
             trajectory: trajectory_error(
                 &self.histories,
@@ -347,8 +348,7 @@ impl Measure {
                 let [u_reference, v_reference] = reference.position_at(depth);
                 (u - u_reference).hypot(v - v_reference) / self.hole_radius
             })),
-            friction_coefficient: (!friction.is_empty())
-                .then(|| worst(&mut friction.iter().map(|&(value, reference)| relative(value, reference)))),
+            friction_coefficient: (friction > 0.0).then(|| friction_distance / friction),
             energy: self.summary.energy_residual_ratio,
             estimate: self.error_estimate,
         }

@@ -1,11 +1,9 @@
 //! ESDIRK4(3)6L\[2\]SA, the implicit part of ARK4(3)6L\[2\]SA of Kennedy and Carpenter (2003): order 4, L-stable,
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
-use super::State;
-use super::energy::Ledger;
-use super::error::ErrorSum;
 use super::forces::Forces;
 use super::implicit::{StageSolver, flat, flat_mut};
+use super::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -85,8 +83,7 @@ impl Esdirk {
         forces: &Forces,
         time: f64,
         state: &mut State,
-        ledger: &mut Ledger,
-        errors: &mut ErrorSum,
+        Books { ledger, errors }: Books<'_>,
     ) {
         let h = self.step;
         let c = 1.0 / (DIAGONAL * h);

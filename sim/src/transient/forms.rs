@@ -144,9 +144,9 @@ fn add_symmetric(
 ) -> Four {
     let mut sum = sum;
     let twice = v_next.map(|v| v + v);
-    for row in 0..DOFS {
+    for (row, weighted) in weighted.iter().enumerate() {
         let own = row_product(d, row, v, Four::splat(0.0));
-        sum = weighted[row].mul_add(row_product(u, row, &twice, own), sum);
+        sum = weighted.mul_add(row_product(u, row, &twice, own), sum);
     }
     sum
 }

@@ -1,10 +1,8 @@
 //! The generalized-alpha method of Chung and Hulbert (1993), second order.
 
-use super::State;
-use super::energy::Ledger;
-use super::error::ErrorSum;
 use super::forces::Forces;
 use super::implicit::{StageSolver, flat, flat_mut};
+use super::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -65,8 +63,7 @@ impl GeneralizedAlpha {
         forces: &Forces,
         time: f64,
         state: &mut State,
-        ledger: &mut Ledger,
-        errors: &mut ErrorSum,
+        Books { ledger, errors }: Books<'_>,
     ) {
         let (alpha_m, alpha_f, beta, gamma) = parameters(self.spectral_radius);
         let h = self.step;

@@ -85,6 +85,12 @@ struct State {
     adaptive_step: f64,
 }
 
+/// Where a step's work and error are entered.
+struct Books<'a> {
+    ledger: &'a mut Ledger,
+    errors: &'a mut ErrorSum,
+}
+
 #[derive(Debug, Clone)]
 enum Stepper {
     GeneralizedAlpha(Box<GeneralizedAlpha>),
@@ -381,7 +387,7 @@ impl<'m> Transient<'m> {
         match stepper {
             Stepper::GeneralizedAlpha(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, ledger, errors);
+                    method.advance(system, forces, start + i as f64 * step, state, Books { ledger, errors });
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
@@ -389,14 +395,15 @@ impl<'m> Transient<'m> {
             }
             Stepper::Esdirk(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, ledger, errors);
+                    method.advance(system, forces, start + i as f64 * step, state, Books { ledger, errors });
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
                 progress.steps += self.steps_per_sample;
             }
             Stepper::Rk4(method) => {
-                let outcome = method.advance(system, forces, start, self.interval, state, ledger, errors);
+                let outcome =
+                    method.advance(system, forces, start, self.interval, state, Books { ledger, errors });
                 observe(&mut progress.contacts, state, &method.contact, self.interval);
                 progress.steps += std::mem::take(&mut method.steps);
                 progress.rejected += std::mem::take(&mut method.rejected);

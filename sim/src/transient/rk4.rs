@@ -2,11 +2,11 @@
 //!
 //! Stable up to h = 2.785 / omega_max, about 6e-5 s for half-metre collars, whatever the accuracy asked for.
 
-use super::State;
 use super::energy::Ledger;
 use super::error::ErrorSum;
 use super::forces::{ContactForces, Forces, NodeContact, add_contact};
 use super::implicit::{flat, flat_mut, held_list};
+use super::{Books, State};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -68,8 +68,7 @@ impl Rk4 {
         time: f64,
         interval: f64,
         state: &mut State,
-        ledger: &mut Ledger,
-        errors: &mut ErrorSum,
+        Books { ledger, errors }: Books<'_>,
     ) -> Result<(), StepCollapsed> {
         let Some(tolerance) = self.tolerance else {
             let count = (interval / self.largest_step * (1.0 - 1e-12)).ceil().max(1.0);

@@ -2,12 +2,13 @@
 //!
 //! A [`SweepRequest`] is [expanded](expand()) into the points to compute; what comes of them is shown as a
 //! [`Sweep`], as [points](point) and as [tables](table::Table); what goes wrong as [problems](problem). The
-//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
+//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored, and [`picture`]s show them.
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
 pub mod expand;
+pub mod picture;
 pub mod point;
 pub mod preset;
 pub mod problem;

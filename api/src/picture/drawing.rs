@@ -1,0 +1,109 @@
+//! A laid-out picture: shapes on a page, in the order in which they are painted.
+
+use super::{PictureError, marker::Marker, raster, svg, text::Text};
+
+/// A place on the page: from the left and from the top, in page units (CSS pixels).
+pub(super) type Position = [f64; 2];
+
+/// A picture that is laid out and can be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    pub(super) title: String,
+    pub(super) width: f64,
+    pub(super) height: f64,
+    pub(super) shapes: Vec<Shape>,
+}
+
+impl Drawing {
+    /// A standalone SVG 1.1 document on white ground. The same drawing gives the same bytes.
+    pub fn svg(&self) -> String {
+        svg::write(self)
+    }
+
+    /// A PNG image on white ground, `width` pixels wide and as high as the picture's proportions want.
+    ///
+    /// # Errors
+    ///
+    /// [`PictureError::Size`] if the width is zero or the image would be too large.
+    pub fn png(&self, width: u32) -> Result<Vec<u8>, PictureError> {
+        raster::png(self, width)
+    }
+
+    /// The width of the page in CSS pixels: the width at which text has its natural size.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// The height of the page in CSS pixels.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    /// Shapes that belong together, under a name that SVG shows as their class.
+    Group(&'static str, Vec<Shape>),
+    Rectangle(Rectangle, Stroke),
+    /// White that lets little of what is below show through, for text to stand on.
+    Ground(Rectangle),
+    Polyline(Vec<Position>, Stroke),
+    Marker(Position, Marker, Colour),
+    Text(Text),
+}
+
+impl Shape {
+    pub(super) const GROUND_OPACITY: f32 = 0.8;
+}
+
+/// A rectangle with upright sides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rectangle {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Rectangle {
+    pub(super) fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    pub(super) fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stroke {
+    pub(super) colour: Colour,
+    pub(super) width: f64,
+    pub(super) dashed: bool,
+}
+
+impl Stroke {
+    /// The lengths of dash and gap of a dashed stroke.
+    pub(super) const DASHES: [f64; 2] = [6.0, 4.0];
+
+    pub(super) const fn solid(colour: Colour, width: f64) -> Self {
+        Self { colour, width, dashed: false }
+    }
+
+    pub(super) const fn dashed(colour: Colour, width: f64) -> Self {
+        Self { colour, width, dashed: true }
+    }
+}
+
+/// Red, green and blue in sRGB.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Colour(pub(super) u8, pub(super) u8, pub(super) u8);
+
+impl Colour {
+    pub(super) const WHITE: Self = Self(0xff, 0xff, 0xff);
+    pub(super) const TEXT: Self = Self(0x22, 0x22, 0x22);
+    pub(super) const QUIET_TEXT: Self = Self(0x55, 0x55, 0x55);
+    pub(super) const FRAME: Self = Self(0x77, 0x77, 0x77);
+    pub(super) const GRID: Self = Self(0xd9, 0xd9, 0xd9);
+    pub(super) const FINE_GRID: Self = Self(0xf0, 0xf0, 0xf0);
+}

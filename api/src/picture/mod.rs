@@ -1,0 +1,24 @@
+//! Pictures of results, as SVG and PNG.
+//!
+//! A chart, such as a [`WorkPrecisionChart`], lays itself out as a [`Drawing`]: a list of shapes in a fixed
+//! page. The drawing is then written as SVG or rasterised as PNG, both from the same shapes and with the same
+//! font metrics, so the two show the same picture. The font for PNG is built in: nothing depends on what the
+//! machine has installed.
+//!
+//! A further kind of picture is one file that builds a [`Drawing`] from a [`PlotAxis`] for each direction,
+//! the plot area with its grid, and the placing of labels.
+
+pub mod axis;
+mod drawing;
+mod label;
+mod marker;
+mod plot_area;
+mod raster;
+mod svg;
+mod text;
+mod work_precision;
+
+pub use axis::{PlotAxis, Tick};
+pub use drawing::Drawing;
+pub use raster::PictureError;
+pub use work_precision::{Point, Series, WantedAccuracy, WorkPrecisionChart};

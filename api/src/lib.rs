@@ -7,6 +7,7 @@
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
+pub mod cost;
 pub mod expand;
 pub mod picture;
 pub mod point;

@@ -78,6 +78,12 @@ fn points(client: &Client, id: &str, output: &Path, format: &str) -> anyhow::Res
             let bytes = client.bytes(&format!("{path}/{table}?format={format}"))?;
             write(&folder.join(format!("{table}.{format}")), &bytes)?;
         }
+        if has("cost") {
+            for extension in ["json", "csv", "svg", "png"] {
+                let bytes = client.bytes(&format!("{path}/cost?format={extension}"))?;
+                write(&folder.join(format!("cost.{extension}")), &bytes)?;
+            }
+        }
         if has("history") {
             for node in recorded_nodes(&point["summary"]) {
                 for window in

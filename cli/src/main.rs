@@ -1,6 +1,7 @@
 //! The drillsweep command: server, worker and client in one binary.
 
 mod client;
+mod cost;
 mod fetch;
 mod service;
 mod simulate;
@@ -33,6 +34,8 @@ enum Command {
     Fetch(fetch::FetchArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
+    /// Measure what accuracy costs: methods, steps and meshes against a converged run.
+    Cost(cost::CostArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -54,6 +57,7 @@ fn main() -> anyhow::Result<()> {
         Command::Watch(arguments) => submit::watch(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Cost(arguments) => cost::cost(&arguments),
         Command::Scenario { name } => simulate::print_scenario(name.as_deref()),
         Command::Openapi => {
             print(drillsweep_server::openapi_json());

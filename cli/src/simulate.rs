@@ -10,7 +10,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::{PRESETS, Scenario, preset};
-use drillsweep_worker::{Computed, compute};
+use drillsweep_worker::{Computed, compute, simulated_time_total};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -45,7 +45,7 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
     for warning in warnings {
         tracing::warn!("{}: {}", warning.path, warning.message);
     }
-    let computed = with_progress(&scenario)?;
+    let computed = with_progress(simulated_time_total(&scenario), |control| compute(&scenario, control))?;
     if let Some(directory) = &arguments.output {
         write_tables(&computed, directory)?;
     }
@@ -96,8 +96,14 @@ pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
     Ok((path.trim().to_owned(), value))
 }
 
-fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
-    let total = scenario.duration * f64::from(scenario.ensemble);
+/// Runs `work` with a progress bar over `total` seconds of simulated time.
+pub(crate) fn with_progress<T, E>(
+    total: f64,
+    work: impl FnOnce(&Control) -> Result<T, E>,
+) -> anyhow::Result<T>
+where
+    E: std::error::Error + Send + Sync + 'static,
+{
     let bar = ProgressBar::new((total * 1000.0) as u64);
     bar.set_style(ProgressStyle::with_template("{bar:40} {msg} of simulated time, {elapsed}, {eta} left")?);
     let control = Arc::new(Control::new());
@@ -111,7 +117,7 @@ fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
                 std::thread::park_timeout(Duration::from_millis(200));
             }
         });
-        let computed = compute(scenario, &control);
+        let computed = work(&control);
         done.store(true, Ordering::Relaxed);
         computed
     });
@@ -121,9 +127,9 @@ fn with_progress(scenario: &Scenario) -> anyhow::Result<Computed> {
 
 fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
-    for table in computed.encode()? {
-        let path = directory.join(format!("{}.parquet", table.name));
-        std::fs::write(&path, table.parquet).with_context(|| format!("cannot write {}", path.display()))?;
+    for artifact in computed.encode()? {
+        let path = directory.join(artifact.file_name());
+        std::fs::write(&path, &artifact.bytes).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
 }

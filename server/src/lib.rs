@@ -6,6 +6,7 @@
 mod app;
 mod artifact;
 mod convert;
+mod cost;
 mod error;
 mod extract;
 mod format;

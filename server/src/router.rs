@@ -10,7 +10,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 
 use crate::app::{App, Config};
 use crate::error::Error;
-use crate::{health, middleware, openapi, points, results, scenarios, status, sweeps};
+use crate::{cost, health, middleware, openapi, points, results, scenarios, status, sweeps};
 
 /// The service without the network. `stopping` ends long polls when it turns true.
 pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
@@ -39,6 +39,7 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(results::spectrum))
         .routes(routes!(results::contacts))
         .routes(routes!(results::energy))
+        .routes(routes!(cost::show))
         .routes(routes!(scenarios::list))
         .routes(routes!(scenarios::show))
         .routes(routes!(status::workers))

@@ -223,3 +223,49 @@ fn point_without_an_equilibrium_ends_as_failed_with_node_and_reason() {
     assert!(error["node"].as_u64().is_some_and(|node| (1..=297).contains(&node)), "{error}");
     assert!(error["reason"].as_str().unwrap().contains("no equilibrium"), "{error}");
 }
+
+#[test]
+fn cost_study_over_rest_is_served_as_numbers_lines_and_charts() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "1"]);
+    let study = json!({
+        "duration": 0.1,
+        "methods": [
+            {"integrator": "generalized_alpha", "steps": [1e-3, 5e-4]},
+            {"integrator": "rk4", "steps": [5e-5, 1e-4]},
+        ],
+    });
+    let request = json!({ "preset": "paper-200m", "set": { "cost_study": study } });
+    let run = post(&format!("{server}/v1/runs"), &request);
+    let id = run["id"].as_str().unwrap().to_owned();
+    let sweep = wait(&server, &id, completed);
+    assert_eq!(sweep["counts"]["succeeded"], 1, "{sweep}");
+    let path = format!("{server}/v1/sweeps/{id}/points/1");
+
+    let report = get(&format!("{path}/cost"));
+    let methods = report["methods"].as_array().unwrap();
+    let of = |integrator: &str| -> Vec<&Value> {
+        methods.iter().filter(|row| row["integrator"] == integrator).collect()
+    };
+    let error = |row: &Value| row["errors"]["trajectory"].as_f64().unwrap();
+    // Finer steps are nearer and dearer; the explicit method beyond its limit is said to be so, and spoils nothing.
+    let alpha = of("generalized_alpha");
+    assert!(error(alpha[1]) < error(alpha[0]) && error(alpha[0]) < 0.1, "{report}");
+    assert!(alpha[1]["steps"].as_u64() > alpha[0]["steps"].as_u64());
+    assert!(error(of("rk4")[0]) < error(alpha[1]), "{report}");
+    assert!(of("rk4")[1]["failure"].as_str().unwrap().contains("stability limit"), "{report}");
+    assert!(get(&path)["summary"]["cpu_time_for_error_0.01"].as_f64().unwrap() > 0.0);
+
+    let text = |query: &str| {
+        ureq::get(format!("{path}/cost?{query}")).call().unwrap().body_mut().read_to_vec().unwrap()
+    };
+    assert_eq!(String::from_utf8(text("format=csv")).unwrap().lines().count(), 1 + 1 + 4);
+    let svg = String::from_utf8(text("format=svg&measure=trajectory")).unwrap();
+    assert!(svg.contains("<svg") && svg.contains("generalized_alpha"));
+    assert_eq!(&text("format=png")[..8], b"\x89PNG\r\n\x1a\n");
+    // A plain run has no study, and says so.
+    let plain = submit(&server, 0.05, &json!({}));
+    wait(&server, &plain, completed);
+    let missing = ureq::get(format!("{server}/v1/sweeps/{plain}/points/1/cost")).call();
+    assert!(matches!(missing, Err(ureq::Error::StatusCode(404))), "{missing:?}");
+}

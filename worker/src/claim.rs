@@ -12,7 +12,7 @@ use drillsweep_store::{
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
-use crate::compute::{ComputeError, Computed, EncodedTable, compute};
+use crate::compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 
 /// How a worker works.
@@ -128,7 +128,7 @@ async fn work_on(store: &Store, heartbeat: &Heartbeat, claim: Claim, stop: &mut 
     heartbeat.watch(Some(Watched {
         lease: lease.clone(),
         control: control.clone(),
-        duration: scenario.duration,
+        duration: simulated_time_total(&scenario),
         verdict: verdict.clone(),
     }));
     let watched = control.clone();
@@ -221,12 +221,12 @@ async fn write_end(
 /// Writes the tables as blobs, before any row names them.
 async fn upload(store: &Store, computed: &Computed) -> drillsweep_store::Result<Vec<NewArtifact>> {
     let mut artifacts = Vec::new();
-    for EncodedTable { name, row_count, parquet } in computed.encode()? {
-        let size = parquet.len() as i64;
+    for EncodedArtifact { name, media_type, row_count, bytes } in computed.encode()? {
+        let size = bytes.len() as i64;
         artifacts.push(NewArtifact {
             name: name.to_owned(),
-            media_type: "application/vnd.apache.parquet".to_owned(),
-            blob: store.blobs().put(parquet).await?,
+            media_type: media_type.to_owned(),
+            blob: store.blobs().put(bytes).await?,
             bytes: size,
             row_count: row_count as i64,
         });

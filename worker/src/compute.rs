@@ -8,12 +8,13 @@ use drillsweep_sim::ensemble::parting_time;
 use drillsweep_sim::model::{Model, ModelError};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
-use drillsweep_sim::study::StudyError;
+use drillsweep_sim::study::{CostReport, Recommendation, StudyError};
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{Outcome, Transient, TransientError};
 use drillsweep_store::{Table, TableError, encode_parquet};
 use serde_json::{Map, Value, json};
 
+use crate::cost::{cost_study, study_time};
 use crate::tables::{point_tables, summary_row};
 
 /// A finished point.
@@ -29,20 +30,35 @@ pub struct Computed {
     pub ensemble: Vec<TransientSummary>,
     /// Time \[s\] at which one of them has first parted from the undisturbed one; absent where they stay together, or without an ensemble.
     pub histories_part_at: Option<f64>,
+    /// The cost study in place of a run, where the scenario asks for one.
+    pub study: Option<CostReport>,
     /// Versions, integrator, steps and cost.
     pub provenance: Map<String, Value>,
 }
 
-/// A table as it is stored.
+/// A table or report as it is stored.
 #[derive(Debug, Clone, PartialEq)]
-pub struct EncodedTable {
+pub struct EncodedArtifact {
     /// Its name within the result.
     pub name: &'static str,
+    /// Its media type.
+    pub media_type: &'static str,
     /// Number of rows.
     pub row_count: usize,
-    /// The table as Parquet.
-    pub parquet: Vec<u8>,
+    /// Its content.
+    pub bytes: Vec<u8>,
 }
+
+impl EncodedArtifact {
+    /// Name of the file that it is kept as.
+    pub fn file_name(&self) -> String {
+        let extension = if self.media_type == JSON { "json" } else { "parquet" };
+        format!("{}.{extension}", self.name)
+    }
+}
+
+const JSON: &str = "application/json";
+const PARQUET: &str = "application/vnd.apache.parquet";
 
 /// Why a point has no result.
 #[derive(Debug, thiserror::Error)]
@@ -87,20 +103,44 @@ impl ComputeError {
 impl Computed {
     /// The flat row that the sweep's table shows.
     pub fn summary_row(&self) -> Map<String, Value> {
-        summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at)
+        let mut row =
+            summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at);
+        if let Some(study) = &self.study {
+            row.insert("histories_part_at".into(), json!(study.histories_part_at));
+            for Recommendation { orbit_size, cpu_time, .. } in &study.recommendations {
+                row.insert(format!("cpu_time_for_error_{orbit_size}"), json!(cpu_time));
+            }
+        }
+        row
     }
 
-    /// The tables as Parquet.
+    /// The tables as Parquet, and the study as JSON.
     ///
     /// # Errors
     /// When a table cannot be encoded.
-    pub fn encode(&self) -> Result<Vec<EncodedTable>, TableError> {
-        let tables = self.tables.iter();
-        tables
-            .map(|(name, table)| {
-                Ok(EncodedTable { name, row_count: table.rows(), parquet: encode_parquet(table)? })
-            })
-            .collect()
+    pub fn encode(&self) -> Result<Vec<EncodedArtifact>, TableError> {
+        let mut artifacts = Vec::new();
+        for (name, table) in &self.tables {
+            let bytes = encode_parquet(table)?;
+            artifacts.push(EncodedArtifact { name, media_type: PARQUET, row_count: table.rows(), bytes });
+        }
+        if let Some(study) = &self.study {
+            artifacts.push(EncodedArtifact {
+                name: "cost",
+                media_type: JSON,
+                row_count: 1 + study.methods.len() + study.meshes.len(),
+                bytes: json!(study).to_string().into_bytes(),
+            });
+        }
+        Ok(artifacts)
+    }
+}
+
+/// Simulated time of all runs of a point \[s\]: of its ensemble, or of its cost study.
+pub fn simulated_time_total(scenario: &Scenario) -> f64 {
+    match &scenario.cost_study {
+        Some(_) => study_time(scenario),
+        None => scenario.duration * f64::from(scenario.ensemble),
     }
 }
 
@@ -121,7 +161,9 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         Outcome::Finished(records) => Ok(*records),
         Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
     };
-    let records = scenario.effects.transient.is_on().then(|| run(0)).transpose()?;
+    let study = scenario.cost_study.is_some().then(|| cost_study(scenario, control)).transpose()?;
+    let runs = study.is_none() && scenario.effects.transient.is_on();
+    let records = runs.then(|| run(0)).transpose()?;
     let transient_cost = started.elapsed();
     let mut ensemble = Vec::new();
     let mut histories_part_at: Option<f64> = None;
@@ -161,7 +203,7 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, provenance })
+    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, study, provenance })
 }
 
 /// What the error estimate is an estimate of, for people.

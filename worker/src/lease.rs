@@ -18,7 +18,7 @@ const RENEWALS_PER_LEASE: u32 = 3;
 pub(crate) struct Watched {
     pub(crate) lease: Lease,
     pub(crate) control: Arc<Control>,
-    /// Simulated time of the whole run \[s\].
+    /// Simulated time of all its runs \[s\].
     pub(crate) duration: f64,
     pub(crate) verdict: Arc<Verdict>,
 }

@@ -12,6 +12,6 @@ mod lease;
 mod tables;
 
 pub use claim::{WorkerConfig, WorkerError, run};
-pub use compute::{ComputeError, Computed, EncodedTable, compute};
+pub use compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
 pub use cost::{cost_study, study_time};
 pub use tables::{point_tables, summary_row};

@@ -8,7 +8,7 @@ use crate::scenario::Integrator;
 ///
 /// Each step's local error is what the embedded method of order 3 (ESDIRK4, RK4), step doubling (adaptive RK4) or the
 /// Taylor series (generalized-alpha) says about it. Contact makes the steps' errors look independent, so their squares add up; how
-/// much of that sum is left in the motion is calibrated once a method (see [`calibration`]) against converged runs. It
+/// much of that sum is left in the motion is calibrated once a method against converged runs. It
 /// is an estimate for the *history*. Once impacts have made histories part from each other, no step makes it true, and
 /// only statistics mean something: [`ensembles`](crate::ensemble) tell when that is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,131 @@
+//! A point's work-precision study: numbers, lines, charts.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::cost::{CostReport, Measure, chart, csv};
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+
+use crate::app::App;
+use crate::artifact;
+use crate::error::{Error, Result};
+use crate::extract::{Path, Query};
+use crate::openapi::Problems;
+use crate::results::PointPath;
+use crate::work::blocking;
+
+/// Width of a chart as PNG \[pixels\].
+const PNG_WIDTH: u32 = 1600;
+
+/// How a study is served.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CostQuery {
+    /// Format; absent means that `Accept` decides, and JSON where it does not.
+    #[param(inline)]
+    format: Option<CostFormat>,
+    /// Which error a chart shows.
+    #[serde(default)]
+    #[param(inline)]
+    measure: ChartMeasure,
+}
+
+/// The formats in which a study is served.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+enum CostFormat {
+    /// The report in full.
+    Json,
+    /// One line a run.
+    Csv,
+    /// The chart, as a drawing.
+    Svg,
+    /// The chart, as pixels.
+    Png,
+}
+
+/// The error that a chart shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+enum ChartMeasure {
+    /// Of the orbit's size.
+    #[default]
+    OrbitSize,
+    /// Of the trajectory, up to where histories part.
+    Trajectory,
+}
+
+impl CostFormat {
+    fn media_type(self) -> &'static str {
+        match self {
+            CostFormat::Json => "application/json",
+            CostFormat::Csv => "text/csv",
+            CostFormat::Svg => "image/svg+xml",
+            CostFormat::Png => "image/png",
+        }
+    }
+
+    fn choose(asked: Option<CostFormat>, headers: &HeaderMap) -> CostFormat {
+        let accepted = headers.get(header::ACCEPT).and_then(|value| value.to_str().ok()).unwrap_or_default();
+        let offered = [CostFormat::Csv, CostFormat::Svg, CostFormat::Png].into_iter();
+        asked
+            .or_else(|| offered.into_iter().find(|format| accepted.contains(format.media_type())))
+            .unwrap_or(CostFormat::Json)
+    }
+}
+
+/// What accuracy costs: a point's work-precision study
+///
+/// Only a point whose scenario has a `cost_study` has one: methods, steps and meshes against a converged run, each
+/// with its errors and its processor time, and the cheapest way to some accuracies.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/cost",
+    tag = "points",
+    operation_id = "get_cost",
+    params(PointPath, CostQuery),
+    responses(
+        (status = 200, description = "The study", content(
+            (CostReport = "application/json"),
+            (String = "text/csv"),
+            (String = "image/svg+xml"),
+            (Vec<u8> = "image/png")
+        )),
+        Problems
+    )
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<CostQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = CostFormat::choose(query.format, &headers);
+    let stored = artifact::load(&app.store, &id, n, "cost").await?;
+    if format == CostFormat::Json {
+        return Ok(answer(stored.into(), format));
+    }
+    blocking(move || {
+        let report: CostReport = serde_json::from_slice(&stored).map_err(|error| Error::internal(&error))?;
+        let measure = match query.measure {
+            ChartMeasure::OrbitSize => Measure::OrbitSize,
+            ChartMeasure::Trajectory => Measure::Trajectory,
+        };
+        let body = match format {
+            CostFormat::Json | CostFormat::Csv => csv(&report).into_bytes(),
+            CostFormat::Svg => chart(&report, measure).svg().into_bytes(),
+            CostFormat::Png => {
+                chart(&report, measure).png(PNG_WIDTH).map_err(|error| Error::internal(&error))?
+            }
+        };
+        Ok(answer(body, format))
+    })
+    .await
+}
+
+fn answer(body: Vec<u8>, format: CostFormat) -> Response {
+    let media_type = HeaderValue::from_static(format.media_type());
+    ([(header::CONTENT_TYPE, media_type)], body).into_response()
+}

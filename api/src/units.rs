@@ -7,8 +7,8 @@
 pub fn unit(column: &str) -> Option<&'static str> {
     Some(match quantity(column) {
         "time" | "error_time" | "histories_part_at" | "contact_time" | "duration" | "wall_time"
-        | "cpu_time" => "s",
-        "frequency" | "line_frequency_hz" => "Hz",
+        | "cpu_time" | "step" => "s",
+        "frequency" | "line_frequency_hz" | "line_frequency_error_hz" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
@@ -39,6 +39,9 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "contact_work" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
         "residual" | "energy_residual" => "J",
+        "cpu_per_simulated_second" | "trajectory_error" | "orbit_size_error" | "mean_radius_error" => "1",
+        "static_position_error" | "friction_coefficient_error" | "energy_error" | "estimated_error" => "1",
+        name if name.starts_with("cost_step_") || name.starts_with("cost_cpu_time_") => "s",
         _ => return None,
     })
 }
@@ -67,6 +70,7 @@ mod tests {
         assert_eq!(unit("orbit_radius_rms_282"), Some("m"));
         assert_eq!(unit("spread_orbit_radius_rms_282"), Some("m"));
         assert_eq!(unit("ensemble_mean_line_frequency_hz_49_w2"), Some("Hz"));
+        assert_eq!(unit("cost_cpu_time_0_1_percent"), Some("s"));
         assert_eq!(unit("node"), None);
         assert_eq!(unit("49"), None);
     }

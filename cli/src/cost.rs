@@ -4,17 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use drillsweep_api::cost::{Measure, chart, csv, text};
-use drillsweep_sim::scenario::{CostStudy, Scenario};
+use drillsweep_api::cost::{Measure, PNG_WIDTH, chart, csv, text};
+use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::CostReport;
 use drillsweep_worker::{cost_study, study_time};
 use serde_json::{Value, json};
 
 use crate::print;
 use crate::simulate::{parse_set, read_scenario, with_progress};
-
-/// Width of the chart as PNG \[pixels\].
-const PNG_WIDTH: u32 = 1600;
 
 #[derive(Args)]
 pub(crate) struct CostArguments {
@@ -23,9 +20,9 @@ pub(crate) struct CostArguments {
     /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
     set: Vec<(String, Value)>,
-    /// Simulated time of each run [s].
-    #[arg(long, default_value_t = CostStudy::default().duration)]
-    duration: f64,
+    /// Simulated time of each run [s]; 10 where the scenario says nothing else.
+    #[arg(long)]
+    duration: Option<f64>,
     /// Methods and steps in place of the usual ones, as JSON: `[{"integrator": "esdirk4", "steps": [1e-3, 5e-4]}]`.
     #[arg(long, value_parser = json_value)]
     methods: Option<Value>,
@@ -35,18 +32,12 @@ pub(crate) struct CostArguments {
     /// Directory for cost.csv, cost.json, cost.svg and cost.png.
     #[arg(long)]
     output: Option<PathBuf>,
-    /// What the chart shows.
-    #[arg(long, default_value = "orbit-size")]
-    measure: ChartMeasure,
+    /// What the chart shows: orbit_size or trajectory; absent means the first, or the other where the first has no error.
+    #[arg(long)]
+    measure: Option<Measure>,
     /// What is printed.
     #[arg(long, default_value = "text")]
     format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ChartMeasure {
-    OrbitSize,
-    Trajectory,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -62,11 +53,15 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
     for (path, value) in arguments.set.iter().cloned() {
         scenario = scenario.with(&path, value)?;
     }
-    let mut study = json!({"duration": arguments.duration, "mesh_factors": arguments.mesh_factors});
-    if let Some(methods) = &arguments.methods {
-        study["methods"] = methods.clone();
+    let mut scenario = without_windows(scenario);
+    scenario.cost_study.get_or_insert_default();
+    let duration = arguments.duration.map(|duration| ("cost_study.duration", json!(duration)));
+    let methods = arguments.methods.clone().map(|methods| ("cost_study.methods", methods));
+    let factors = &arguments.mesh_factors;
+    let meshes = (!factors.is_empty()).then(|| ("cost_study.mesh_factors", json!(factors)));
+    for (path, value) in [duration, methods, meshes].into_iter().flatten() {
+        scenario = scenario.with(path, value)?;
     }
-    let scenario = without_windows(scenario).with("cost_study", study)?;
     scenario.validate()?;
     let report = with_progress(study_time(&scenario), |control| cost_study(&scenario, control))?;
     if let Some(directory) = &arguments.output {
@@ -87,15 +82,9 @@ fn without_windows(mut scenario: Scenario) -> Scenario {
     scenario
 }
 
-fn write(report: &CostReport, directory: &Path, measure: ChartMeasure) -> anyhow::Result<()> {
+fn write(report: &CostReport, directory: &Path, measure: Option<Measure>) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
-    let chart = chart(
-        report,
-        match measure {
-            ChartMeasure::OrbitSize => Measure::OrbitSize,
-            ChartMeasure::Trajectory => Measure::Trajectory,
-        },
-    );
+    let chart = chart(report, measure.unwrap_or_else(|| Measure::usual(report)));
     let files = [
         ("cost.csv", csv(report).into_bytes()),
         ("cost.json", serde_json::to_vec_pretty(report)?),

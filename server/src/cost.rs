@@ -1,9 +1,9 @@
 //! A point's work-precision study: numbers, lines, charts.
 
 use axum::extract::State;
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::cost::{CostReport, Measure, chart, csv};
+use drillsweep_api::cost::{CostReport, Measure, PNG_WIDTH, chart, csv};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
@@ -15,28 +15,26 @@ use crate::openapi::Problems;
 use crate::results::PointPath;
 use crate::work::blocking;
 
-/// Width of a chart as PNG \[pixels\].
-const PNG_WIDTH: u32 = 1600;
-
 /// How a study is served.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CostQuery {
-    /// Format; absent means that `Accept` decides, and JSON where it does not.
-    #[param(inline)]
-    format: Option<CostFormat>,
-    /// Which error a chart shows.
+    /// Format of the answer.
     #[serde(default)]
     #[param(inline)]
-    measure: ChartMeasure,
+    format: CostFormat,
+    /// Which error a chart shows; absent means orbit size, or the trajectory where that has no error.
+    #[param(inline)]
+    measure: Option<ChartMeasure>,
 }
 
 /// The formats in which a study is served.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum CostFormat {
     /// The report in full.
+    #[default]
     Json,
     /// One line a run.
     Csv,
@@ -47,11 +45,10 @@ enum CostFormat {
 }
 
 /// The error that a chart shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum ChartMeasure {
     /// Of the orbit's size.
-    #[default]
     OrbitSize,
     /// Of the trajectory, up to where histories part.
     Trajectory,
@@ -65,14 +62,6 @@ impl CostFormat {
             CostFormat::Svg => "image/svg+xml",
             CostFormat::Png => "image/png",
         }
-    }
-
-    fn choose(asked: Option<CostFormat>, headers: &HeaderMap) -> CostFormat {
-        let accepted = headers.get(header::ACCEPT).and_then(|value| value.to_str().ok()).unwrap_or_default();
-        let offered = [CostFormat::Csv, CostFormat::Svg, CostFormat::Png].into_iter();
-        asked
-            .or_else(|| offered.into_iter().find(|format| accepted.contains(format.media_type())))
-            .unwrap_or(CostFormat::Json)
     }
 }
 
@@ -99,19 +88,18 @@ impl CostFormat {
 pub(crate) async fn show(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(query): Query<CostQuery>,
-    headers: HeaderMap,
+    Query(CostQuery { format, measure }): Query<CostQuery>,
 ) -> Result<Response> {
-    let format = CostFormat::choose(query.format, &headers);
     let stored = artifact::load(&app.store, &id, n, "cost").await?;
     if format == CostFormat::Json {
         return Ok(answer(stored.into(), format));
     }
     blocking(move || {
         let report: CostReport = serde_json::from_slice(&stored).map_err(|error| Error::internal(&error))?;
-        let measure = match query.measure {
-            ChartMeasure::OrbitSize => Measure::OrbitSize,
-            ChartMeasure::Trajectory => Measure::Trajectory,
+        let measure = match measure {
+            Some(ChartMeasure::OrbitSize) => Measure::OrbitSize,
+            Some(ChartMeasure::Trajectory) => Measure::Trajectory,
+            None => Measure::usual(&report),
         };
         let body = match format {
             CostFormat::Json | CostFormat::Csv => csv(&report).into_bytes(),

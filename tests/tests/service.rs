@@ -254,7 +254,7 @@ fn cost_study_over_rest_is_served_as_numbers_lines_and_charts() {
     assert!(alpha[1]["steps"].as_u64() > alpha[0]["steps"].as_u64());
     assert!(error(of("rk4")[0]) < error(alpha[1]), "{report}");
     assert!(of("rk4")[1]["failure"].as_str().unwrap().contains("stability limit"), "{report}");
-    assert!(get(&path)["summary"]["cpu_time_for_error_0.01"].as_f64().unwrap() > 0.0);
+    assert!(get(&path)["summary"]["cost_cpu_time_1_percent"].as_f64().unwrap() > 0.0);
 
     let text = |query: &str| {
         ureq::get(format!("{path}/cost?{query}")).call().unwrap().body_mut().read_to_vec().unwrap()

@@ -108,7 +108,9 @@ impl Computed {
         if let Some(study) = &self.study {
             row.insert("histories_part_at".into(), json!(study.histories_part_at));
             for Recommendation { orbit_size, cpu_time, .. } in &study.recommendations {
-                row.insert(format!("cpu_time_for_error_{orbit_size}"), json!(cpu_time));
+                // 0.001 is 0.1 %; a dot in a column's name would read as a path.
+                let percent = (100.0 * orbit_size).to_string().replace('.', "_");
+                row.insert(format!("cost_cpu_time_{percent}_percent"), json!(cpu_time));
             }
         }
         row

@@ -156,7 +156,8 @@ async fn renew(
     let Some(store) = store else { return Ok(()) };
     store.register_worker(worker).await?;
     let Some(point) = point else { return Ok(()) };
-    let progress = (point.control.simulated_time() / point.duration).clamp(0.0, 1.0);
+    let progress = if point.duration > 0.0 { point.control.simulated_time() / point.duration } else { 0.0 };
+    let progress = progress.clamp(0.0, 1.0);
     let reason = match store.renew(&point.lease, lease_ms, progress).await? {
         Renewal::Held => return Ok(()),
         Renewal::CancelRequested => StopReason::Cancelled,

@@ -8,6 +8,8 @@ pub use chart::{Measure, PNG_WIDTH, chart};
 pub use table::{csv, table};
 pub use text::text;
 
+pub use drillsweep_sim::study::{CostErrors, CostReport, CostRow, Recommendation};
+
 /// A step in the unit that reads best, to three digits: `1 ms`, `0.25 ms`, `58.8 µs`.
 fn step_text(step: f64) -> String {
     let (value, unit) = match step {

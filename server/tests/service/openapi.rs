@@ -58,7 +58,7 @@ fn every_route_is_documented() {
     .map(str::to_owned)
     .into();
     expected.push(format!("get {point}"));
-    for table in ["profile", "statics", "history", "orbit", "spectrum", "contacts", "energy"] {
+    for table in ["profile", "statics", "history", "orbit", "spectrum", "contacts", "energy", "cost"] {
         expected.push(format!("get {point}/{table}"));
     }
     expected.sort();

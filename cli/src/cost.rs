@@ -20,7 +20,7 @@ pub(crate) struct CostArguments {
     /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
     set: Vec<(String, Value)>,
-    /// Simulated time of each run [s]; 10 where the scenario says nothing else.
+    /// Seconds of simulated time of each run; 10 where the scenario says nothing else.
     #[arg(long)]
     duration: Option<f64>,
     /// Methods and steps in place of the usual ones, as JSON: `[{"integrator": "esdirk4", "steps": [1e-3, 5e-4]}]`.

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -13,14 +13,8 @@ use serde_json::{Value, json};
 /// Longest that any state may take to be reached on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(180);
 
-/// Builds the binary (nothing to do when it is fresh) and tells where it is.
-fn binary() -> PathBuf {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let built = Command::new(&cargo).args(["build", "--locked", "-q", "-p", "drillsweep"]).status().unwrap();
-    assert!(built.success(), "the binary does not build");
-    let metadata = cargo_metadata::MetadataCommand::new().no_deps().exec().unwrap();
-    metadata.target_directory.join("debug").join("drillsweep").into_std_path_buf()
-}
+/// The binary that cargo built for these tests.
+const BINARY: &str = env!("CARGO_BIN_EXE_drillsweep");
 
 /// A process that does not outlive its test.
 struct Process(Child);
@@ -44,7 +38,7 @@ impl Drop for Process {
 }
 
 fn start(data: &Path, arguments: &[&str]) -> (Process, BufReader<std::process::ChildStderr>) {
-    let mut child = Command::new(binary())
+    let mut child = Command::new(BINARY)
         .args(arguments)
         .arg("--data")
         .arg(data)
@@ -128,7 +122,7 @@ fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
     let sweep = wait(&server, &id, completed);
     assert_eq!(sweep["counts"]["succeeded"], 2, "{sweep}");
 
-    let alone = Command::new(binary())
+    let alone = Command::new(BINARY)
         .args(["simulate", "paper-200m", "--json", "--accuracy", "draft", "--set", "duration=0.5"])
         .args(["--set", "recording.spectrum_windows=[]", "--set", "recording.orbit_window=null"])
         .args(["--set", "mud.flow_rate=0.02"])
@@ -261,7 +255,7 @@ fn cost_study_over_rest_is_served_as_numbers_lines_and_charts() {
     };
     assert_eq!(String::from_utf8(text("format=csv")).unwrap().lines().count(), 1 + 1 + 4);
     let svg = String::from_utf8(text("format=svg&measure=trajectory")).unwrap();
-    assert!(svg.contains("<svg") && svg.contains("generalized_alpha"));
+    assert!(svg.contains("<svg") && svg.contains("generalized-alpha"));
     assert_eq!(&text("format=png")[..8], b"\x89PNG\r\n\x1a\n");
     // A plain run has no study, and says so.
     let plain = submit(&server, 0.05, &json!({}));

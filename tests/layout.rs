@@ -17,7 +17,6 @@ const ARROWS: &[(&str, &[&str])] = &[
         "drillsweep",
         &["drillsweep-api", "drillsweep-server", "drillsweep-sim", "drillsweep-store", "drillsweep-worker"],
     ),
-    ("drillsweep-tests", &[]),
 ];
 
 /// Libraries that only some crates may know.

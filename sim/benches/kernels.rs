@@ -6,7 +6,7 @@ use std::hint::black_box;
 use divan::Bencher;
 use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
 use drillsweep_sim::linalg::{Block, BlockTridiagonal, BlockVector, Factor};
-use drillsweep_sim::scenario::{Adhesion, ContactLaw, Effects};
+use drillsweep_sim::scenario::{ActiveEffects, Adhesion, ContactLaw};
 
 const ROWS: usize = 296;
 
@@ -70,7 +70,7 @@ fn contact(bencher: Bencher) {
         friction_reference_speed: 0.033,
         reference_length: None,
     };
-    let law = ContactParameters::<f64>::new(&law, &Effects::default());
+    let law = ContactParameters::<f64>::new(&law, &ActiveEffects::ALL);
     let node = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
     let (mut x, v, mut force) = (vector(0.2), vector(0.3), vector(0.4));
     for (row, x) in x.iter_mut().enumerate() {

@@ -208,7 +208,7 @@ fn suspended_run_goes_on_to_the_same_bits() {
         let bytes = checkpoint.to_bytes();
         let restored = Checkpoint::from_bytes(&bytes).expect("its own bytes");
         let resumed =
-            Transient::resume(&model, &equilibrium, restored).expect("same scenario").run(&Control::new());
+            Transient::resume(&model, &equilibrium, &restored).expect("same scenario").run(&Control::new());
         let Ok(Outcome::Finished(resumed)) = resumed else { panic!("not finished: {resumed:?}") };
         assert_eq!(*resumed, whole, "{integrator:?}");
     }
@@ -230,7 +230,7 @@ fn checkpoint_of_another_scenario_is_refused() {
     other.operation.weight_on_bit = -9e4;
     let other_model = Model::new(&other).expect("valid");
     let other_equilibrium = Equilibrium::find(&other_model).expect("rests");
-    let refused = Transient::resume(&other_model, &other_equilibrium, *checkpoint).map(|_| ());
+    let refused = Transient::resume(&other_model, &other_equilibrium, &checkpoint).map(|_| ());
     assert_eq!(refused, Err(CheckpointError::OtherScenario));
     assert!(matches!(Checkpoint::from_bytes(b"not a checkpoint"), Err(CheckpointError::Malformed(_))));
 }

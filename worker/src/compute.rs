@@ -164,7 +164,7 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
     };
     let study = scenario.cost_study.is_some().then(|| cost_study(scenario, control)).transpose()?;
-    let runs = study.is_none() && scenario.effects.transient.is_on();
+    let runs = study.is_none() && model.effects.transient;
     let records = runs.then(|| run(0)).transpose()?;
     let transient_cost = started.elapsed();
     let mut ensemble = Vec::new();

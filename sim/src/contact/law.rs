@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::linalg::Lane;
-use crate::scenario::{Adhesion, ContactLaw, Effects};
+use crate::scenario::{ActiveEffects, Adhesion, ContactLaw};
 
 /// A [`ContactLaw`] with its switches, ready to evaluate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +20,8 @@ pub struct ContactParameters<L> {
     xi: L,
     /// Decay a of (14) \[s/m\].
     decay: L,
+    /// Whether any friction is felt: without, its coefficient is not evaluated.
+    pub(super) has_friction: bool,
     /// 1 where friction pushes along the wall, 0 where that is switched off.
     pub(super) tangential_share: L,
     /// 1 where friction turns the string, 0 where that is switched off.
@@ -40,7 +42,7 @@ impl<L: Lane> ContactParameters<L> {
     ///
     /// `friction` off drops the force along the wall and `friction_torque` off the torque about the axis, each
     /// on its own. Whether there is contact at all is for the caller to ask.
-    pub fn new(law: &ContactLaw, effects: &Effects) -> Self {
+    pub fn new(law: &ContactLaw, effects: &ActiveEffects) -> Self {
         let (static_friction, dynamic_friction) = (law.static_friction, law.dynamic_friction);
         let frictionless = static_friction == 0.0;
         let ratio = if frictionless { 1.0 } else { dynamic_friction / static_friction };
@@ -60,8 +62,9 @@ impl<L: Lane> ContactParameters<L> {
             half_slope: L::splat(half_slope),
             xi: L::splat(xi),
             decay: L::splat(decay),
-            tangential_share: share(effects.friction.is_on()),
-            torque_share: share(effects.friction_torque.is_on()),
+            has_friction: !frictionless && (effects.friction || effects.friction_torque),
+            tangential_share: share(effects.friction),
+            torque_share: share(effects.friction_torque),
         }
     }
 

@@ -67,7 +67,8 @@ pub fn dynamic_contact<L: Lane>(
     let whole = law.stiffness(penetration) * penetration;
     let elastic = whole * node.share;
     let normal = law.normal_force(penetration, penetration_rate, whole) * node.share;
-    let friction = law.friction_coefficient(sliding_speed) * normal.abs();
+    let friction =
+        if law.has_friction { law.friction_coefficient(sliding_speed) * normal.abs() } else { zero };
     let tangential = friction * law.tangential_share;
     let torque = friction * law.torque_share * node.contact_radius;
 

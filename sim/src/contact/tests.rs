@@ -2,7 +2,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::*;
 use crate::linalg::{Four, Lane};
-use crate::scenario::{Adhesion, ContactLaw, Effects, Switch};
+use crate::scenario::{ActiveEffects, Adhesion, ContactLaw};
 
 /// The law of the 200 m base case (physics.md section 9).
 const BASE: ContactLaw = ContactLaw {
@@ -25,7 +25,7 @@ const FRICTIONLESS: ContactLaw = ContactLaw { static_friction: 0.0, dynamic_fric
 const NODE: ContactNode<f64> = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
 
 fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
-    ContactParameters::new(law, &Effects::default())
+    ContactParameters::new(law, &ActiveEffects::ALL)
 }
 
 /// K_c P by (11) with the system's arctangent.
@@ -187,15 +187,16 @@ fn friction_limits_without_falling_branch_without_dynamic_part_and_without_frict
 fn friction_force_and_friction_torque_switch_off_separately() {
     let motion = LateralMotion { u: 0.0402, v: 0.0, u_rate: 0.0, v_rate: 0.1, theta_z_rate: 0.0 };
     let with = |friction, friction_torque| {
-        let law = ContactParameters::new(&BASE, &Effects { friction, friction_torque, ..Effects::default() });
+        let law =
+            ContactParameters::new(&BASE, &ActiveEffects { friction, friction_torque, ..ActiveEffects::ALL });
         let moving = dynamic_contact(&law, &NODE, &motion, 12.0);
         let resting = static_contact(&law, &NODE, 0.0402, 0.0, 12.0);
         [moving.force_v, moving.torque_z, resting.force_v, resting.torque_z].map(|force| force != 0.0)
     };
-    assert_eq!(with(Switch::On, Switch::On), [true, true, true, true]);
-    assert_eq!(with(Switch::Off, Switch::On), [false, true, false, true]);
-    assert_eq!(with(Switch::On, Switch::Off), [true, false, true, false]);
-    assert_eq!(with(Switch::Off, Switch::Off), [false, false, false, false]);
+    assert_eq!(with(true, true), [true, true, true, true]);
+    assert_eq!(with(false, true), [false, true, false, true]);
+    assert_eq!(with(true, false), [true, false, true, false]);
+    assert_eq!(with(false, false), [false, false, false, false]);
 }
 
 #[test]
@@ -387,8 +388,8 @@ fn a_sharp_wall_has_the_restitution_of_spring_and_dashpot() {
 #[test]
 fn a_lane_has_the_bits_of_a_node_alone() {
     let radii = [0.0402, 0.03, 0.0, 0.041];
-    let law = ContactParameters::<f64>::new(&BASE, &Effects::default());
-    let four = ContactParameters::<Four>::new(&BASE, &Effects::default());
+    let law = ContactParameters::<f64>::new(&BASE, &ActiveEffects::ALL);
+    let four = ContactParameters::<Four>::new(&BASE, &ActiveEffects::ALL);
     let node = ContactNode {
         clearance: Four::splat(NODE.clearance),
         contact_radius: Four::splat(0.0635),

@@ -1,21 +1,21 @@
-//! 6 x 6 blocks, column by column.
+//! Small square blocks, column by column.
 
 use std::ops::{Index, IndexMut};
 
 use super::lane::{Lane, Mask};
 
-/// Degrees of freedom of a node, and rows of a block.
+/// Degrees of freedom of a node, and rows of a block where nothing else is said.
 pub const DOFS: usize = 6;
 
-/// A 6 x 6 matrix stored by columns, so that a product sums whole columns.
+/// A D x D matrix, D from 2 to 6, stored by columns, so that a product sums whole columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(32))]
-pub struct Block<L> {
-    /// The columns, each of six rows.
-    pub columns: [[L; DOFS]; DOFS],
+pub struct Block<L, const D: usize = DOFS> {
+    /// The columns, each of D rows.
+    pub columns: [[L; D]; D],
 }
 
-impl<L> Index<(usize, usize)> for Block<L> {
+impl<L, const D: usize> Index<(usize, usize)> for Block<L, D> {
     type Output = L;
 
     /// The entry at (row, column).
@@ -25,23 +25,23 @@ impl<L> Index<(usize, usize)> for Block<L> {
     }
 }
 
-impl<L> IndexMut<(usize, usize)> for Block<L> {
+impl<L, const D: usize> IndexMut<(usize, usize)> for Block<L, D> {
     #[inline(always)]
     fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut L {
         &mut self.columns[column][row]
     }
 }
 
-impl<L: Lane> Block<L> {
+impl<L: Lane, const D: usize> Block<L, D> {
     /// The zero block.
     pub fn zero() -> Self {
-        Block { columns: [[L::splat(0.0); DOFS]; DOFS] }
+        Block { columns: [[L::splat(0.0); D]; D] }
     }
 
     /// The identity.
     pub fn identity() -> Self {
         let mut block = Self::zero();
-        for i in 0..DOFS {
+        for i in 0..D {
             block.columns[i][i] = L::splat(1.0);
         }
         block
@@ -64,7 +64,7 @@ impl<L: Lane> Block<L> {
 
     /// `sum + self x`.
     #[inline(always)]
-    pub(super) fn multiply_add(&self, x: &[L; DOFS], sum: [L; DOFS]) -> [L; DOFS] {
+    pub(super) fn multiply_add(&self, x: &[L; D], sum: [L; D]) -> [L; D] {
         L::columns_mul_add(&self.columns, x, sum)
     }
 
@@ -96,7 +96,7 @@ impl<L: Lane> Block<L> {
 
     /// The largest magnitude of an entry that is a number.
     pub(super) fn largest(&self) -> L {
-        let mut rows = [L::splat(0.0); DOFS];
+        let mut rows = [L::splat(0.0); D];
         for column in &self.columns {
             for (largest, entry) in rows.iter_mut().zip(column) {
                 *largest = entry.abs().max(*largest);
@@ -119,10 +119,10 @@ impl<L: Lane> Block<L> {
     pub(super) fn inverse(&self) -> (Self, L) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let mut columns = self.columns;
-        let mut swaps = [[L::Mask::splat(false); DOFS]; DOFS];
+        let mut swaps = [[L::Mask::splat(false); D]; D];
         let mut smallest_pivot = L::splat(f64::INFINITY);
-        for pivot in 0..DOFS {
-            for row in pivot + 1..DOFS {
+        for pivot in 0..D {
+            for row in pivot + 1..D {
                 let swap = columns[pivot][row].abs().greater_than(columns[pivot][pivot].abs());
                 swaps[pivot][row] = swap;
                 if swap.any() {
@@ -142,7 +142,7 @@ impl<L: Lane> Block<L> {
             multipliers[pivot] = one;
             let reciprocal = one / columns[pivot][pivot];
             // The eliminated column makes room for the inverse's, which starts as the identity's.
-            columns[pivot] = [zero; DOFS];
+            columns[pivot] = [zero; D];
             columns[pivot][pivot] = one;
             for column in &mut columns {
                 let scaled = column[pivot] * reciprocal;
@@ -153,8 +153,8 @@ impl<L: Lane> Block<L> {
             }
         }
         // Rows swapped on the way in are columns of the inverse to swap back.
-        for pivot in (0..DOFS).rev() {
-            for other in (pivot + 1..DOFS).rev() {
+        for pivot in (0..D).rev() {
+            for other in (pivot + 1..D).rev() {
                 let swap = swaps[pivot][other];
                 if swap.any() {
                     let (before, after) = columns.split_at_mut(other);

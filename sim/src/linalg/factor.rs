@@ -10,14 +10,14 @@ use super::tridiagonal::BlockTridiagonal;
 /// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
 /// matrix can be regular and still fail; [`Factor::growth`] tells how much was lost.
 #[derive(Debug, Clone)]
-pub struct Factor<L> {
+pub struct Factor<L, const D: usize = DOFS> {
     /// From the top end, in the order of elimination.
-    top: Chain<L>,
+    top: Chain<L, D>,
     /// From the bottom end, in the order of elimination.
-    bottom: Chain<L>,
-    middle: Elimination<L>,
+    bottom: Chain<L, D>,
+    middle: Elimination<L, D>,
     /// `-S^-1 U` of the middle row, S its pivot block.
-    middle_from_below: Block<L>,
+    middle_from_below: Block<L, D>,
     growth: L,
 }
 
@@ -33,27 +33,27 @@ pub struct SingularBlock {
 
 /// Rows eliminated one after the other from one end.
 #[derive(Debug, Clone)]
-struct Chain<L> {
-    eliminations: Vec<Elimination<L>>,
+struct Chain<L, const D: usize = DOFS> {
+    eliminations: Vec<Elimination<L, D>>,
     /// `-S^-1` times the coupling to the next row inwards.
-    inward: Vec<Block<L>>,
+    inward: Vec<Block<L, D>>,
 }
 
 /// What eliminating a row leaves for the way inwards; S is its pivot block.
 #[derive(Debug, Clone, Copy)]
-struct Elimination<L> {
+struct Elimination<L, const D: usize = DOFS> {
     /// `S^-1`.
-    inverse: Block<L>,
+    inverse: Block<L, D>,
     /// `-S^-1` times the coupling to the row before.
-    outward: Block<L>,
+    outward: Block<L, D>,
 }
 
-impl<L: Lane> Factor<L> {
+impl<L: Lane, const D: usize> Factor<L, D> {
     /// Factors a matrix of at least one row.
     ///
     /// # Errors
     /// The row whose pivot block is singular to working precision, or holds values that are not finite.
-    pub fn new(matrix: &BlockTridiagonal<L>) -> Result<Self, SingularBlock> {
+    pub fn new(matrix: &BlockTridiagonal<L, D>) -> Result<Self, SingularBlock> {
         let rows = matrix.rows();
         assert!(rows > 0, "a matrix without rows");
         let middle = rows / 2;
@@ -103,19 +103,19 @@ impl<L: Lane> Factor<L> {
     }
 
     /// Solves `A x = b`.
-    pub fn solve_into(&self, b: &[[L; DOFS]], x: &mut [[L; DOFS]]) {
+    pub fn solve_into(&self, b: &[[L; D]], x: &mut [[L; D]]) {
         x.copy_from_slice(b);
         self.solve_in_place(x);
     }
 
     /// Replaces a right-hand side by the solution.
-    pub fn solve_in_place(&self, x: &mut [[L; DOFS]]) {
+    pub fn solve_in_place(&self, x: &mut [[L; D]]) {
         assert_eq!(x.len(), self.rows());
         let (above, rest) = x.split_at_mut(self.top.inward.len());
         let [middle, below @ ..] = rest else { unreachable!("the middle row exists") };
 
-        let mut from_top = [L::splat(0.0); DOFS];
-        let mut from_bottom = [L::splat(0.0); DOFS];
+        let mut from_top = [L::splat(0.0); D];
+        let mut from_bottom = [L::splat(0.0); D];
         let mut bottom_rows = self.bottom.eliminations.iter().zip(below.iter_mut().rev());
         for (elimination, x) in self.top.eliminations.iter().zip(above.iter_mut()) {
             from_top = elimination.apply(x, &from_top);
@@ -144,13 +144,13 @@ impl<L: Lane> Factor<L> {
     }
 }
 
-impl<L: Lane> Chain<L> {
+impl<L: Lane, const D: usize> Chain<L, D> {
     fn with_capacity(rows: usize) -> Self {
         Chain { eliminations: Vec::with_capacity(rows), inward: Vec::with_capacity(rows) }
     }
 
     /// Adds a row and returns its inward block.
-    fn push(&mut self, inverse: Block<L>, outward: &Block<L>, inward: &Block<L>) -> Block<L> {
+    fn push(&mut self, inverse: Block<L, D>, outward: &Block<L, D>, inward: &Block<L, D>) -> Block<L, D> {
         let negated = inverse.negated();
         let inward = negated.multiply_block(inward);
         self.eliminations.push(Elimination { inverse, outward: negated.multiply_block(outward) });
@@ -159,26 +159,26 @@ impl<L: Lane> Chain<L> {
     }
 }
 
-impl<L: Lane> Elimination<L> {
+impl<L: Lane, const D: usize> Elimination<L, D> {
     /// `S^-1 b - S^-1 (coupling) previous`.
     #[inline(always)]
-    fn apply(&self, b: &[L; DOFS], previous: &[L; DOFS]) -> [L; DOFS] {
-        let sum = self.inverse.multiply_add(b, [L::splat(0.0); DOFS]);
+    fn apply(&self, b: &[L; D], previous: &[L; D]) -> [L; D] {
+        let sum = self.inverse.multiply_add(b, [L::splat(0.0); D]);
         self.outward.multiply_add(previous, sum)
     }
 }
 
 /// The inverse of a pivot block; counts its growth over the matrix' own block.
-fn invert<L: Lane>(
-    pivot: &Block<L>,
+fn invert<L: Lane, const D: usize>(
+    pivot: &Block<L, D>,
     row: usize,
-    original: &Block<L>,
+    original: &Block<L, D>,
     growth: &mut L,
-) -> Result<Block<L>, SingularBlock> {
+) -> Result<Block<L, D>, SingularBlock> {
     let largest = pivot.largest();
     let (inverse, smallest_pivot) = pivot.inverse();
     let regular =
-        smallest_pivot.greater_than(largest * L::splat(DOFS as f64 * f64::EPSILON)) & inverse.is_finite();
+        smallest_pivot.greater_than(largest * L::splat(D as f64 * f64::EPSILON)) & inverse.is_finite();
     if (!regular).any() {
         let lane = (0..L::LANES).position(|lane| !regular.lane(lane)).unwrap_or(0);
         return Err(SingularBlock { row, lane });

@@ -5,8 +5,6 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use wide::{f64x2, f64x4};
 
-use super::block::DOFS;
-
 /// One value for each of [`Lane::LANES`] sweep points.
 ///
 /// Every operation acts on each lane alone and rounds as the same operation of one `f64` does, so a lane's
@@ -75,14 +73,17 @@ pub trait Lane:
         Self::select(other.less_than(self), self, other)
     }
 
-    /// `sum + sum_j columns_j x_j`: columns 0, 2, 4 on top of `sum`, columns 1, 3, 5 beside them (a chain of three
-    /// additions is waited for, not one of six), then both added.
+    /// `sum + sum_j columns_j x_j` with two columns or more: the even ones on top of `sum`, the odd ones beside them (a
+    /// chain of three additions is waited for, not one of six), then both added.
     #[inline(always)]
-    fn columns_mul_add(columns: &[[Self; DOFS]; DOFS], x: &[Self; DOFS], sum: [Self; DOFS]) -> [Self; DOFS] {
+    fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
         std::array::from_fn(|row| {
-            let even = columns[2][row].mul_add(x[2], columns[0][row].mul_add(x[0], sum[row]));
-            let odd = columns[3][row].mul_add(x[3], columns[1][row] * x[1]);
-            columns[4][row].mul_add(x[4], even) + columns[5][row].mul_add(x[5], odd)
+            let (mut even, mut odd) = (columns[0][row].mul_add(x[0], sum[row]), columns[1][row] * x[1]);
+            for j in 2..D {
+                let chain = if j % 2 == 0 { &mut even } else { &mut odd };
+                *chain = columns[j][row].mul_add(x[j], *chain);
+            }
+            even + odd
         })
     }
 
@@ -204,28 +205,33 @@ impl Lane for f64 {
 
     /// In vectors of four rows and two: left to itself, the compiler goes row by row from the fifth on.
     #[inline(always)]
-    fn columns_mul_add(columns: &[[Self; DOFS]; DOFS], x: &[Self; DOFS], sum: [Self; DOFS]) -> [Self; DOFS] {
-        let split = |&[a, b, c, d, e, f]: &[f64; DOFS]| (f64x4::new([a, b, c, d]), f64x2::new([e, f]));
+    fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
+        // Rows that a block does not have are zeros beside it.
+        let at = |column: &[f64; D], row: usize| if row < D { column[row] } else { 0.0 };
+        let split = |column: &[f64; D]| {
+            let at = |row| at(column, row);
+            (f64x4::new([at(0), at(1), at(2), at(3)]), f64x2::new([at(4), at(5)]))
+        };
         let column = |j: usize| {
             let (head, tail) = split(&columns[j]);
             (head, f64x4::splat(x[j]), tail, f64x2::splat(x[j]))
         };
         let (mut head, mut tail) = split(&sum);
-        for j in [0, 2, 4] {
+        for j in (0..D).step_by(2) {
             let (column_head, x_head, column_tail, x_tail) = column(j);
             head = column_head.mul_add(x_head, head);
             tail = column_tail.mul_add(x_tail, tail);
         }
         let (column_head, x_head, column_tail, x_tail) = column(1);
         let (mut odd_head, mut odd_tail) = (column_head * x_head, column_tail * x_tail);
-        for j in [3, 5] {
+        for j in (3..D).step_by(2) {
             let (column_head, x_head, column_tail, x_tail) = column(j);
             odd_head = column_head.mul_add(x_head, odd_head);
             odd_tail = column_tail.mul_add(x_tail, odd_tail);
         }
         (head, tail) = (head + odd_head, tail + odd_tail);
-        let ([a, b, c, d], [e, f]) = (head.to_array(), tail.to_array());
-        [a, b, c, d, e, f]
+        let (head, tail) = (head.to_array(), tail.to_array());
+        std::array::from_fn(|row| if row < 4 { head[row] } else { tail[row - 4] })
     }
 }
 

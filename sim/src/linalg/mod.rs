@@ -1,7 +1,7 @@
 //! Block-tridiagonal kernels over a lane type.
 //!
 //! A string is a chain, so every matrix of it couples a node to its two neighbours only: a
-//! [`BlockTridiagonal`] of 6 x 6 [`Block`]s, factored once by [`Factor`]. All kernels are written over a
+//! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`]. All kernels are written over a
 //! [`Lane`]: one `f64`, or several sweep points side by side, with the same operations in the same order.
 
 mod block;
@@ -19,5 +19,5 @@ pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
 pub use tridiagonal::BlockTridiagonal;
 
-/// One row of six values for every node.
-pub type BlockVector<L> = Vec<[L; DOFS]>;
+/// One row of values for every node.
+pub type BlockVector<L, const D: usize = DOFS> = Vec<[L; D]>;

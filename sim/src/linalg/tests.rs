@@ -109,7 +109,8 @@ fn solutions_equal_dense_solutions() {
 /// A permutation has no non-zero diagonal: only pivoting inside the block inverts it.
 #[test]
 fn blocks_are_inverted_with_pivoting() {
-    let permutation = Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
+    let permutation: Block<f64> =
+        Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
     let (inverse, smallest_pivot) = permutation.inverse();
     assert_eq!(inverse, Block::from_fn(|row, column| permutation[(column, row)]));
     assert_eq!(smallest_pivot, 1.0);

@@ -5,16 +5,16 @@ use super::lane::Lane;
 
 /// A square matrix of n x n blocks, zero but on three diagonals.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BlockTridiagonal<L> {
+pub struct BlockTridiagonal<L, const D: usize = DOFS> {
     /// `lower[i]` stands at (i, i - 1); `lower[0]` takes no part.
-    pub lower: Vec<Block<L>>,
+    pub lower: Vec<Block<L, D>>,
     /// `diagonal[i]` stands at (i, i).
-    pub diagonal: Vec<Block<L>>,
+    pub diagonal: Vec<Block<L, D>>,
     /// `upper[i]` stands at (i, i + 1); the last one takes no part.
-    pub upper: Vec<Block<L>>,
+    pub upper: Vec<Block<L, D>>,
 }
 
-impl<L: Lane> BlockTridiagonal<L> {
+impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
     /// The zero matrix of `rows` block rows.
     pub fn zeros(rows: usize) -> Self {
         let zero = vec![Block::zero(); rows];
@@ -30,7 +30,7 @@ impl<L: Lane> BlockTridiagonal<L> {
     ///
     /// # Panics
     /// When the place is outside the three diagonals.
-    pub fn add_block(&mut self, row: usize, column: usize, block: &Block<L>) {
+    pub fn add_block(&mut self, row: usize, column: usize, block: &Block<L, D>) {
         assert!(row < self.rows() && column < self.rows(), "block ({row}, {column}) of {} rows", self.rows());
         if row == column {
             self.diagonal[row].add(block);
@@ -45,7 +45,7 @@ impl<L: Lane> BlockTridiagonal<L> {
 
     /// `a A + b B + c C`.
     pub fn combine(a: L, matrix_a: &Self, b: L, matrix_b: &Self, c: L, matrix_c: &Self) -> Self {
-        let blocks = |a_blocks: &[Block<L>], b_blocks: &[Block<L>], c_blocks: &[Block<L>]| {
+        let blocks = |a_blocks: &[Block<L, D>], b_blocks: &[Block<L, D>], c_blocks: &[Block<L, D>]| {
             let rows = a_blocks.iter().zip(b_blocks).zip(c_blocks);
             rows.map(|((block_a, block_b), block_c)| {
                 Block::from_fn(|row, column| {
@@ -63,17 +63,17 @@ impl<L: Lane> BlockTridiagonal<L> {
     }
 
     /// `y = A x`.
-    pub fn multiply_into(&self, x: &[[L; DOFS]], y: &mut [[L; DOFS]]) {
+    pub fn multiply_into(&self, x: &[[L; D]], y: &mut [[L; D]]) {
         self.for_rows(x, y, |_, product| product);
     }
 
     /// `y = y + A x`.
-    pub fn multiply_add(&self, x: &[[L; DOFS]], y: &mut [[L; DOFS]]) {
+    pub fn multiply_add(&self, x: &[[L; D]], y: &mut [[L; D]]) {
         self.for_rows(x, y, |y, product| std::array::from_fn(|dof| y[dof] + product[dof]));
     }
 
     /// `out = A x + B y` in one pass.
-    pub fn multiply_two_into(a: &Self, x: &[[L; DOFS]], b: &Self, y: &[[L; DOFS]], out: &mut [[L; DOFS]]) {
+    pub fn multiply_two_into(a: &Self, x: &[[L; D]], b: &Self, y: &[[L; D]], out: &mut [[L; D]]) {
         let rows = out.len();
         assert!(a.rows() == rows && b.rows() == rows && x.len() == rows && y.len() == rows);
         for (row, out) in out.iter_mut().enumerate() {
@@ -84,12 +84,7 @@ impl<L: Lane> BlockTridiagonal<L> {
     }
 
     #[inline(always)]
-    fn for_rows(
-        &self,
-        x: &[[L; DOFS]],
-        y: &mut [[L; DOFS]],
-        finish: impl Fn([L; DOFS], [L; DOFS]) -> [L; DOFS],
-    ) {
+    fn for_rows(&self, x: &[[L; D]], y: &mut [[L; D]], finish: impl Fn([L; D], [L; D]) -> [L; D]) {
         let rows = y.len();
         assert!(self.rows() == rows && x.len() == rows);
         for (row, y) in y.iter_mut().enumerate() {
@@ -98,8 +93,8 @@ impl<L: Lane> BlockTridiagonal<L> {
     }
 
     #[inline(always)]
-    fn row_product(&self, row: usize, x: &[[L; DOFS]]) -> [L; DOFS] {
-        let mut sum = self.diagonal[row].multiply_add(&x[row], [L::splat(0.0); DOFS]);
+    fn row_product(&self, row: usize, x: &[[L; D]]) -> [L; D] {
+        let mut sum = self.diagonal[row].multiply_add(&x[row], [L::splat(0.0); D]);
         if row > 0 {
             sum = self.lower[row].multiply_add(&x[row - 1], sum);
         }

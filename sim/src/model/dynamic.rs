@@ -3,7 +3,7 @@
 use super::element::FlowMomentum;
 use super::{Model, NodalVector, add_element_matrix, add_element_vector};
 use crate::beam::ElementMatrix;
-use crate::linalg::BlockTridiagonal;
+use crate::linalg::{Block, BlockTridiagonal};
 use crate::statics::Equilibrium;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
@@ -11,28 +11,31 @@ use crate::statics::Equilibrium;
 /// Held degrees of freedom have empty rows and columns in every matrix; what they push with at their equilibrium
 /// values is part of the load.
 #[derive(Debug, Clone)]
-pub struct DynamicSystem {
+pub struct DynamicSystem<const D: usize = 6> {
+    /// Which of a node's six degrees of freedom these are, in rising order. A system starts with all six;
+    /// [`DynamicSystem::reduced_to`] leaves out those that are held at every node.
+    pub places: [usize; D],
     /// Mass: structure and added mass of the mud.
-    pub mass: BlockTridiagonal<f64>,
+    pub mass: BlockTridiagonal<f64, D>,
     /// Everything that multiplies velocities: Rayleigh damping, gyroscopic, mud damping, Coriolis.
-    pub damping: BlockTridiagonal<f64>,
+    pub damping: BlockTridiagonal<f64, D>,
     /// Everything that multiplies displacements.
-    pub stiffness: BlockTridiagonal<f64>,
+    pub stiffness: BlockTridiagonal<f64, D>,
     /// The part of `damping` that is the structure's Rayleigh damping (for the energy ledger).
-    pub structural_damping: BlockTridiagonal<f64>,
+    pub structural_damping: BlockTridiagonal<f64, D>,
     /// The part of `damping` that is the mud's lateral damping (for the energy ledger).
-    pub mud_damping: BlockTridiagonal<f64>,
+    pub mud_damping: BlockTridiagonal<f64, D>,
     /// The part of `damping` that is the flows' Coriolis matrix (for the energy ledger).
-    pub coriolis: BlockTridiagonal<f64>,
+    pub coriolis: BlockTridiagonal<f64, D>,
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
-    pub load: NodalVector,
+    pub load: NodalVector<D>,
     /// Unbalance forces.
     pub unbalance: Vec<UnbalanceForce>,
     /// Speed of rotation \[rad/s\].
     pub rotation_speed: f64,
     /// Degrees of freedom that stay at their equilibrium value.
-    pub held: Vec<[bool; 6]>,
+    pub held: Vec<[bool; D]>,
 }
 
 /// A force of constant size that turns with the string.
@@ -50,7 +53,7 @@ impl Model {
     /// Assembles the equations of motion about an equilibrium.
     pub fn dynamic_system(&self, equilibrium: &Equilibrium) -> DynamicSystem {
         let n = self.node_count();
-        let effects = &self.scenario.effects;
+        let effects = &self.effects;
         let damping_law = &self.scenario.damping;
         let mut mass = BlockTridiagonal::zeros(n);
         let mut structural_damping = BlockTridiagonal::zeros(n);
@@ -65,7 +68,7 @@ impl Model {
             let structural_mass = to_nodes(&beam.mass());
             add_element_matrix(&mut mass, e, &structural_mass);
             add_element_matrix(&mut stiffness, e, &element.stiffness(tension, torque));
-            if effects.structural_damping.is_on() {
+            if effects.structural_damping {
                 let mut c = structural_mass * damping_law.mass_proportional;
                 if damping_law.stiffness_proportional != 0.0 {
                     let mut k = element.elastic;
@@ -77,23 +80,23 @@ impl Model {
                 add_element_matrix(&mut structural_damping, e, &c);
                 add_element_matrix(&mut damping, e, &c);
             }
-            if effects.gyroscopic.is_on() {
+            if effects.gyroscopic {
                 add_element_matrix(&mut damping, e, &to_nodes(&beam.gyroscopic(self.rotation_speed)));
             }
             if let Some(mud) = &self.scenario.mud {
                 let momentum = FlowMomentum::new(mud, beam.section(), self.scenario.well.hole_diameter);
                 let lateral = to_nodes(&beam.lateral_mass());
-                if effects.fluid_added_mass.is_on() {
+                if effects.fluid_added_mass {
                     let added =
                         momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass;
                     add_element_matrix(&mut mass, e, &(lateral * added));
                 }
-                if let Some(flow) = equilibrium.flows.get(e).filter(|_| effects.fluid_damping.is_on()) {
+                if let Some(flow) = equilibrium.flows.get(e).filter(|_| effects.fluid_damping) {
                     let c = lateral * (flow.friction_damping + flow.rotation_damping);
                     add_element_matrix(&mut mud_damping, e, &c);
                     add_element_matrix(&mut damping, e, &c);
                 }
-                if effects.fluid_coriolis.is_on() {
+                if effects.fluid_coriolis {
                     let c = to_nodes(&beam.coriolis()) * momentum.coriolis;
                     add_element_matrix(&mut coriolis, e, &c);
                     add_element_matrix(&mut damping, e, &c);
@@ -114,6 +117,7 @@ impl Model {
             clear_held(matrix, &held);
         }
         DynamicSystem {
+            places: std::array::from_fn(|dof| dof),
             mass,
             damping,
             stiffness,
@@ -145,7 +149,7 @@ impl Model {
     }
 
     fn unbalance_forces(&self) -> Vec<UnbalanceForce> {
-        if !self.scenario.effects.unbalance.is_on() {
+        if !self.effects.unbalance {
             return Vec::new();
         }
         let omega2 = self.rotation_speed * self.rotation_speed;
@@ -164,15 +168,56 @@ impl Model {
     }
 
     fn held_in_motion(&self) -> Vec<[bool; 6]> {
-        let effects = &self.scenario.effects;
+        let effects = &self.effects;
         (0..self.node_count())
             .map(|node| {
                 let mut held = self.held_by_top(node);
-                held[2] |= !effects.axial_motion.is_on();
-                held[5] |= !effects.torsion.is_on();
+                held[2] |= !effects.axial_motion;
+                held[5] |= !effects.torsion;
                 held
             })
             .collect()
+    }
+}
+
+impl<const D: usize> DynamicSystem<D> {
+    /// Where the twist stands among the degrees of freedom; none where it is held.
+    pub fn twist(&self) -> Option<usize> {
+        self.places.iter().position(|&place| place == 5)
+    }
+}
+
+impl DynamicSystem {
+    /// Degrees of freedom, of six, that move at some node, in rising order.
+    pub fn moving(&self) -> Vec<usize> {
+        (0..6).filter(|&dof| self.held.iter().any(|held| !held[dof])).collect()
+    }
+
+    /// The same system without the degrees of freedom that are held at every node: `places` are the others.
+    pub fn reduced_to<const D: usize>(&self, places: [usize; D]) -> DynamicSystem<D> {
+        let reduced = |matrix: &BlockTridiagonal<f64>| {
+            let of = |blocks: &[Block<f64>]| -> Vec<Block<f64, D>> {
+                blocks.iter().map(|b| Block::from_fn(|i, j| b[(places[i], places[j])])).collect()
+            };
+            BlockTridiagonal {
+                lower: of(&matrix.lower),
+                diagonal: of(&matrix.diagonal),
+                upper: of(&matrix.upper),
+            }
+        };
+        DynamicSystem {
+            places,
+            mass: reduced(&self.mass),
+            damping: reduced(&self.damping),
+            stiffness: reduced(&self.stiffness),
+            structural_damping: reduced(&self.structural_damping),
+            mud_damping: reduced(&self.mud_damping),
+            coriolis: reduced(&self.coriolis),
+            load: self.load.iter().map(|load| places.map(|dof| load[dof])).collect(),
+            unbalance: self.unbalance.clone(),
+            rotation_speed: self.rotation_speed,
+            held: self.held.iter().map(|held| places.map(|dof| held[dof])).collect(),
+        }
     }
 }
 

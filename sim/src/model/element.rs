@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::chord::Chord;
 use crate::beam::{BeamElement, BeamSection, ElementMatrix, ElementVector};
 use crate::mud::FlowGeometry;
-use crate::scenario::{Effects, Mud};
+use crate::scenario::{ActiveEffects, Mud};
 use crate::well::NodeFrame;
 
 /// Gravity \[m/s2\], the value behind the buoyed weights of the hydraulic tables.
@@ -51,8 +51,8 @@ pub struct ElementInput<'a> {
     pub hole_diameter: f64,
     /// The mud, if there is any.
     pub mud: Option<&'a Mud>,
-    /// Switches.
-    pub effects: &'a Effects,
+    /// The effects that take part.
+    pub effects: &'a ActiveEffects,
     /// True for the element whose lower node is the bit.
     pub ends_at_bit: bool,
 }
@@ -68,7 +68,7 @@ impl StringElement {
 
         let steel = section.density * section.area;
         let weight = match input.mud {
-            Some(mud) if effects.buoyancy.is_on() => {
+            Some(mud) if effects.buoyancy => {
                 steel + mud.density * (section.bore_area() - section.displaced_area())
             }
             _ => steel,
@@ -80,7 +80,7 @@ impl StringElement {
             outer_diameter: section.outer_diameter,
             inner_diameter: section.inner_diameter,
         };
-        if let Some(mud) = input.mud.filter(|_| effects.flow_stiffness.is_on()) {
+        if let Some(mud) = input.mud.filter(|_| effects.flow_stiffness) {
             let momentum = FlowMomentum::new(mud, section, input.hole_diameter);
             let curvature = chord.components(&input.curvature);
             for (load, kappa) in distributed.iter_mut().zip(curvature).take(2) {
@@ -94,14 +94,14 @@ impl StringElement {
             flow = Some(chord.matrix_to_nodes(&matrix));
         }
         let mut load = beam.distributed_load(distributed);
-        if effects.well_bending.is_on() {
+        if effects.well_bending {
             load -= stiffness * chord.tangent_rotations(input.frames[0], input.frames[1]);
         }
         let to_nodes = |m: ElementMatrix| chord.matrix_to_nodes(&m);
         Self {
             elastic: to_nodes(stiffness),
-            tension_unit: effects.axial_stiffening.is_on().then(|| to_nodes(beam.tension_stiffening())),
-            torque_unit: effects.torque_stiffening.is_on().then(|| to_nodes(beam.torque_stiffening())),
+            tension_unit: effects.axial_stiffening.then(|| to_nodes(beam.tension_stiffening())),
+            torque_unit: effects.torque_stiffening.then(|| to_nodes(beam.torque_stiffening())),
             flow,
             tension_row: chord.vector_to_nodes(&beam.tension_row()),
             torque_row: chord.vector_to_nodes(&beam.torque_row()),

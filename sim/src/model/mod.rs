@@ -16,18 +16,20 @@ use std::f64::consts::PI;
 
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
 use crate::linalg::{Block, BlockTridiagonal};
-use crate::scenario::{Scenario, TopCondition};
+use crate::scenario::{ActiveEffects, Scenario, TopCondition};
 use crate::string::{MeshError, StringMesh};
 use crate::well::{NodeFrame, WellError, WellPath};
 
-/// Nodal values: (u, v, w, theta_x, theta_y, theta_z) of every node, from the top.
-pub type NodalVector = Vec<[f64; 6]>;
+/// Nodal values from the top: (u, v, w, theta_x, theta_y, theta_z) of every node, or those of them that a run solves for.
+pub type NodalVector<const D: usize = 6> = Vec<[f64; D]>;
 
 /// The string in its well.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// The scenario that it was built from.
     pub scenario: Scenario,
+    /// The effects that take part in it.
+    pub effects: ActiveEffects,
     /// Nodes and elements of the string.
     pub mesh: StringMesh,
     /// Frame of every node.
@@ -56,6 +58,7 @@ impl Model {
     /// When the survey has no path or the string no mesh; a validated scenario has both.
     pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
         let path = WellPath::new(&scenario.well)?;
+        let effects = scenario.active_effects();
         let mesh = StringMesh::new(scenario)?;
         let frames = path.frames(&mesh.depths());
         let last = mesh.elements.len().saturating_sub(1);
@@ -74,13 +77,14 @@ impl Model {
                     curvature: path.curvature(element.top + 0.5 * element.length),
                     hole_diameter: scenario.well.hole_diameter,
                     mud: scenario.mud.as_ref(),
-                    effects: &scenario.effects,
+                    effects: &effects,
                     ends_at_bit: i == last,
                 })
             })
             .collect();
         Ok(Self {
             scenario: scenario.clone(),
+            effects,
             mesh,
             frames,
             elements,

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::{
-    ContactLaw, CostStudy, DrillString, Effects, Mesh, Mud, Operation, RayleighDamping, Recording, Scenario,
-    TimeStepping, Well,
+    ActiveEffects, ContactLaw, CostStudy, DrillString, Mesh, Mud, Operation, RayleighDamping, Recording,
+    Scenario, TimeStepping, Well,
 };
 
-/// What decides the numbers of a run: a scenario without its name, its accuracy written out.
+/// What decides the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
 #[derive(Serialize)]
 struct Canonical {
     well: Well,
@@ -20,7 +20,7 @@ struct Canonical {
     duration: f64,
     recording: Recording,
     accuracy: TimeStepping,
-    effects: Effects,
+    effects: ActiveEffects,
     ensemble: u32,
     cost_study: Option<CostStudy>,
 }
@@ -29,9 +29,10 @@ impl Scenario {
     /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-    /// as integrator and step, and with -0.0 written as 0.0. Any change of the scenario's fields changes the
+    /// as integrator and step, with every effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the
     /// encoding, so keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
+        let active = self.active_effects();
         // Taken apart in full, so that a new field cannot be forgotten.
         let Scenario {
             name: _,
@@ -45,7 +46,7 @@ impl Scenario {
             duration,
             recording,
             accuracy,
-            effects,
+            effects: _,
             ensemble,
             cost_study,
         } = self.without_negative_zeros();
@@ -60,7 +61,7 @@ impl Scenario {
             duration,
             recording,
             accuracy: accuracy.time_stepping(),
-            effects,
+            effects: active,
             ensemble,
             cost_study,
         };

@@ -1,23 +1,30 @@
-//! The switches of a scenario's effects: off means that the term is not assembled at all.
+//! The switches of a scenario's effects: a term that is off is not assembled at all, and a motion that is off is not solved for.
 
 use serde::{Deserialize, Serialize};
 
 /// Whether a term of the model takes part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// The term is assembled.
+    /// The term is assembled where the scene calls for it: left out only where it could not change a number, or where
+    /// nothing is asked for that it decides.
     #[default]
+    Auto,
+    /// The term is assembled.
     On,
     /// The term is not assembled.
     Off,
 }
 
 impl Switch {
-    /// True for [`Switch::On`].
-    pub fn is_on(self) -> bool {
-        self == Switch::On
+    /// The name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            Switch::Auto => "auto",
+            Switch::On => "on",
+            Switch::Off => "off",
+        }
     }
 }
 
@@ -29,8 +36,13 @@ macro_rules! effects {
         #[serde(deny_unknown_fields, default)]
         pub struct Effects { $($(#[$doc])* pub $field: Switch,)* }
 
+        /// The effects that take part in a model: the switches with every `auto` decided.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+        pub struct ActiveEffects { $($(#[$doc])* pub $field: bool,)* }
+
         /// One effect.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
         #[serde(rename_all = "snake_case")]
         pub enum Effect { $($(#[$doc])* $variant,)* }
 
@@ -45,14 +57,29 @@ macro_rules! effects {
         }
 
         impl Effects {
-            /// Whether an effect is switched on.
-            pub fn is_on(&self, effect: Effect) -> bool {
-                match effect { $(Effect::$variant => self.$field.is_on(),)* }
+            /// An effect's switch.
+            pub fn switch(&self, effect: Effect) -> Switch {
+                match effect { $(Effect::$variant => self.$field,)* }
             }
 
             /// Switches an effect.
             pub fn set(&mut self, effect: Effect, switch: Switch) {
                 match effect { $(Effect::$variant => self.$field = switch,)* }
+            }
+        }
+
+        impl ActiveEffects {
+            /// Every effect.
+            pub const ALL: ActiveEffects = ActiveEffects { $($field: true,)* };
+
+            /// Whether an effect takes part.
+            pub fn is_active(&self, effect: Effect) -> bool {
+                match effect { $(Effect::$variant => self.$field,)* }
+            }
+
+            /// Lets an effect take part, or not.
+            pub fn set(&mut self, effect: Effect, active: bool) {
+                match effect { $(Effect::$variant => self.$field = active,)* }
             }
         }
     };
@@ -89,9 +116,9 @@ effects! {
     well_bending / WellBending,
     /// Rayleigh damping.
     structural_damping / StructuralDamping,
-    /// Torsional motion; off holds every twist at its static value.
+    /// Torsional motion; off holds every twist at its static value and does not solve for it.
     torsion / Torsion,
-    /// Axial motion; off holds every axial displacement at its static value.
+    /// Axial motion; off holds every axial displacement at its static value and does not solve for it.
     axial_motion / AxialMotion,
     /// The run in time; off ends a run after its equilibrium and hydraulic profile.
     transient / Transient,

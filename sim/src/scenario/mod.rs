@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod canonical;
+mod decide;
 mod effects;
 mod format;
 mod preset;
@@ -15,7 +16,8 @@ mod study;
 mod validate;
 
 pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
-pub use effects::{Effect, Effects, Switch};
+pub use decide::EffectDecision;
+pub use effects::{ActiveEffects, Effect, Effects, Switch};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
@@ -53,7 +55,7 @@ pub struct Scenario {
     /// Integrator and step, as a preset or in full.
     #[serde(default)]
     pub accuracy: Accuracy,
-    /// Which terms of the model are assembled.
+    /// Which terms of the model are assembled: `auto` (those that the scene calls for), `on` or `off`.
     #[serde(default)]
     pub effects: Effects,
     /// Runs of the point: the first as it is, the others disturbed by 1e-6 m at the start. More than one gives every

@@ -128,7 +128,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::scenario::{Accuracy, Integrator, NodeChoice, preset};
+    use crate::scenario::{Accuracy, Integrator, NodeChoice, Switch, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
@@ -145,7 +145,7 @@ mod tests {
         let changed = paper().with("duration", json!(30)).unwrap();
         assert_eq!(changed.duration, 30.0);
         let changed = paper().with("effects.torsion", json!("off")).unwrap();
-        assert!(!changed.effects.torsion.is_on());
+        assert_eq!(changed.effects.torsion, Switch::Off);
     }
 
     #[test]

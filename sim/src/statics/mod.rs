@@ -167,7 +167,7 @@ fn contact_at(
     node: usize,
     displacement: &[f64; 6],
 ) -> Option<StaticContactForce> {
-    if node == 0 || !model.scenario.effects.contact.is_on() {
+    if node == 0 || !model.effects.contact {
         return None;
     }
     let data = &model.mesh.nodes[node];
@@ -181,7 +181,7 @@ fn contact_at(
 }
 
 fn contact_law(model: &Model) -> ContactParameters<f64> {
-    ContactParameters::new(&model.scenario.contact, &model.scenario.effects)
+    ContactParameters::new(&model.scenario.contact, &model.effects)
 }
 
 /// The flow past every cross-section of the string, solved once for each pair of diameters.
@@ -231,7 +231,7 @@ fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pre
 }
 
 fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {
-    if !model.scenario.effects.mud_drag.is_on() {
+    if !model.effects.mud_drag {
         return Vec::new();
     }
     flows.iter().map(|flow| flow.effective_drag_per_length).collect()

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Progress, TransientError};
+use super::{Progress, State, TransientError};
 use crate::PHYSICS_VERSION;
 use crate::scenario::Scenario;
 
@@ -11,7 +11,8 @@ use crate::scenario::Scenario;
 pub struct Checkpoint {
     physics_version: u32,
     scenario: Vec<u8>,
-    progress: Progress,
+    /// Progress of as many degrees of freedom as the scenario solves for, encoded.
+    progress: Vec<u8>,
 }
 
 /// Why a checkpoint cannot be used.
@@ -35,13 +36,17 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    pub(super) fn new(scenario: &Scenario, progress: Progress) -> Self {
-        Self { physics_version: PHYSICS_VERSION, scenario: scenario.canonical_bytes(), progress }
+    pub(super) fn new<const D: usize>(scenario: &Scenario, progress: &Progress<D>) -> Self {
+        Self {
+            physics_version: PHYSICS_VERSION,
+            scenario: scenario.canonical_bytes(),
+            progress: encoded(progress),
+        }
     }
 
     /// The checkpoint as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        postcard::to_stdvec(self).expect("numbers and vectors always encode")
+        encoded(self)
     }
 
     /// A checkpoint from bytes.
@@ -52,13 +57,52 @@ impl Checkpoint {
         Ok(postcard::from_bytes(bytes)?)
     }
 
-    pub(super) fn progress_for(self, scenario: &Scenario) -> Result<Progress, CheckpointError> {
+    /// What it holds, if it is of this scenario and of a string of `nodes` nodes.
+    pub(super) fn progress_for<const D: usize>(
+        &self,
+        scenario: &Scenario,
+        nodes: usize,
+    ) -> Result<Progress<D>, CheckpointError> {
         if self.physics_version != PHYSICS_VERSION {
             return Err(CheckpointError::OtherPhysicsVersion { found: self.physics_version });
         }
         if self.scenario != scenario.canonical_bytes() {
             return Err(CheckpointError::OtherScenario);
         }
-        Ok(self.progress)
+        let progress: Progress<D> = postcard::from_bytes(&self.progress)?;
+        let State { displacement, velocity, acceleration, .. } = &progress.state;
+        let lengths = [displacement.len(), velocity.len(), acceleration.len(), progress.contacts.len()];
+        if lengths != [nodes; 4] || progress.histories.iter().any(|history| history.node >= nodes) {
+            return Err(CheckpointError::OtherScenario);
+        }
+        Ok(progress)
+    }
+}
+
+fn encoded(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("numbers and vectors always encode")
+}
+
+/// Nodal vectors as one row of numbers: serde knows no arrays of a length that is a parameter.
+pub(super) mod nodal {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
+    use crate::model::NodalVector;
+
+    pub(in super::super) fn serialize<S: Serializer, const D: usize>(
+        values: &NodalVector<D>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        values.as_flattened().serialize(serializer)
+    }
+
+    pub(in super::super) fn deserialize<'de, T: Deserializer<'de>, const D: usize>(
+        deserializer: T,
+    ) -> Result<NodalVector<D>, T::Error> {
+        let flat = Vec::<f64>::deserialize(deserializer)?;
+        match flat.as_chunks::<D>() {
+            (nodes, []) => Ok(nodes.to_vec()),
+            _ => Err(de::Error::invalid_length(flat.len(), &"a multiple of a node's degrees of freedom")),
+        }
     }
 }

@@ -70,25 +70,27 @@ pub struct EnergyRow {
 
 /// Accumulates work; [`Ledger::row`] closes the balance.
 #[derive(Debug, Clone)]
-pub(super) struct Ledger {
-    mass: BlockTridiagonal<f64>,
-    stiffness: BlockTridiagonal<f64>,
-    load: NodalVector,
+pub(super) struct Ledger<const D: usize> {
+    mass: BlockTridiagonal<f64, D>,
+    stiffness: BlockTridiagonal<f64, D>,
+    load: NodalVector<D>,
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
-    forms: Forms<3>,
+    forms: Forms<3, D>,
     contact: ContactParameters<f64>,
     /// Clearance \[m\] and share of the contact law of every node.
     walls: Vec<(f64, f64)>,
     with_contact: bool,
+    /// Where the twist stands among the degrees of freedom; none where it is held.
+    twist: Option<usize>,
     rotation_speed: f64,
     work: Work,
     initial_stored: f64,
     initial_wall: f64,
-    scratch: NodalVector,
+    scratch: NodalVector<D>,
 }
 
-impl Ledger {
-    pub(super) fn new(model: &Model, system: &DynamicSystem, initial: &[[f64; 6]]) -> Self {
+impl<const D: usize> Ledger<D> {
+    pub(super) fn new(model: &Model, system: &DynamicSystem<D>, initial: &[[f64; D]]) -> Self {
         let mut ledger = Self {
             mass: system.mass.clone(),
             stiffness: half_sum(&system.stiffness, 0.5),
@@ -97,14 +99,15 @@ impl Ledger {
                 [&system.structural_damping, &system.mud_damping, &system.coriolis],
                 &system.stiffness,
             ),
-            contact: ContactParameters::new(&model.scenario.contact, &model.scenario.effects),
+            contact: ContactParameters::new(&model.scenario.contact, &model.effects),
             walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.contact_share)).collect(),
-            with_contact: model.scenario.effects.contact.is_on(),
+            with_contact: model.effects.contact,
+            twist: system.twist(),
             rotation_speed: system.rotation_speed,
             work: Work::default(),
             initial_stored: 0.0,
             initial_wall: 0.0,
-            scratch: vec![[0.0; 6]; model.node_count()],
+            scratch: vec![[0.0; D]; model.node_count()],
         };
         ledger.initial_stored = ledger.stored(initial);
         ledger.initial_wall = ledger.wall(initial);
@@ -116,8 +119,8 @@ impl Ledger {
     pub(super) fn book(
         &mut self,
         weight: f64,
-        velocity: &[[f64; 6]],
-        displacement: &[[f64; 6]],
+        velocity: &[[f64; D]],
+        displacement: &[[f64; D]],
         contact: &[NodeContact],
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) -> Work {
@@ -134,8 +137,8 @@ impl Ledger {
     pub(super) fn book_again(
         &mut self,
         weight: f64,
-        velocity: &[[f64; 6]],
-        displacement: &[[f64; 6]],
+        velocity: &[[f64; D]],
+        displacement: &[[f64; D]],
         power: &Work,
     ) {
         if !self.forms.weigh_last(weight) {
@@ -147,8 +150,8 @@ impl Ledger {
     /// Powers \[W\] of contact and unbalance.
     pub(super) fn power(
         &self,
-        velocity: &[[f64; 6]],
-        displacement: &[[f64; 6]],
+        velocity: &[[f64; D]],
+        displacement: &[[f64; D]],
         contact: &[NodeContact],
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) -> Work {
@@ -164,8 +167,9 @@ impl Ledger {
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
             let normal = -contact.normal_force / contact.radius * (v[0] * x[0] + v[1] * x[1]);
             power.normal_contact += normal;
+            let twist_rate = self.twist.map_or(0.0, |twist| v[twist]);
             power.friction +=
-                v[0] * contact.force[0] + v[1] * contact.force[1] - normal + v[5] * contact.torque;
+                v[0] * contact.force[0] + v[1] * contact.force[1] - normal + twist_rate * contact.torque;
             torque += contact.torque;
         }
         // The frame turns with Omega: the drive works against the friction torque there.
@@ -194,7 +198,7 @@ impl Ledger {
     }
 
     /// The balance at `time` \[s\].
-    pub(super) fn row(&mut self, time: f64, displacement: &[[f64; 6]], velocity: &[[f64; 6]]) -> EnergyRow {
+    pub(super) fn row(&mut self, time: f64, displacement: &[[f64; D]], velocity: &[[f64; D]]) -> EnergyRow {
         self.settle();
         self.mass.multiply_into(velocity, &mut self.scratch);
         let kinetic = 0.5 * dot(velocity, &self.scratch);
@@ -237,28 +241,32 @@ impl Ledger {
     }
 
     /// Energy of the conservative linear forces and constant loads.
-    fn stored(&mut self, x: &[[f64; 6]]) -> f64 {
+    fn stored(&mut self, x: &[[f64; D]]) -> f64 {
         self.stiffness.multiply_into(x, &mut self.scratch);
         0.5 * dot(x, &self.scratch) - dot(x, &self.load)
     }
 
     /// Energy stored in the wall's springs.
-    fn wall(&self, x: &[[f64; 6]]) -> f64 {
+    fn wall(&self, x: &[[f64; D]]) -> f64 {
         if !self.with_contact {
             return 0.0;
         }
         let nodes = x.iter().zip(&self.walls).skip(1);
-        let stored = |(x, &(clearance, share)): (&[f64; 6], &(f64, f64))| {
+        let stored = |(x, &(clearance, share)): (&[f64; D], &(f64, f64))| {
             share * self.contact.potential_energy(x[0].hypot(x[1]) - clearance)
         };
         nodes.map(stored).sum()
     }
 }
 
-fn dot_node(a: &[f64; 6], b: &[f64; 6]) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+/// Sums by pairs, so that a node's terms do not wait for each other.
+fn dot_node<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    (0..D).step_by(2).fold(0.0, |sum, i| {
+        let next = if i + 1 < D { a[i + 1] * b[i + 1] } else { 0.0 };
+        sum + (a[i] * b[i] + next)
+    })
 }
 
-fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+fn dot<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot_node(a, b)).sum()
 }

@@ -58,7 +58,7 @@ impl ErrorSum {
     }
 
     /// Takes in the motion at a row of the ledger.
-    pub(super) fn observe_motion(&mut self, displacement: &[[f64; 6]], start: &[[f64; 6]]) {
+    pub(super) fn observe_motion<const D: usize>(&mut self, displacement: &[[f64; D]], start: &[[f64; D]]) {
         let squares =
             displacement.iter().zip(start).map(|(x, x0)| (x[0] - x0[0]).powi(2) + (x[1] - x0[1]).powi(2));
         self.motion += squares.sum::<f64>();

@@ -44,26 +44,26 @@ const ERROR_WEIGHTS: [f64; STAGES] = [
 
 /// Stage values of one step; the last stage of a step is the first of the next.
 #[derive(Debug, Clone)]
-pub(super) struct Esdirk {
+pub(super) struct Esdirk<const D: usize> {
     step: f64,
-    pub(super) solver: StageSolver,
-    velocities: [NodalVector; STAGES],
-    accelerations: [NodalVector; STAGES],
-    displacement_base: NodalVector,
-    velocity_base: NodalVector,
-    acceleration_offset: NodalVector,
-    velocity_offset: NodalVector,
+    pub(super) solver: StageSolver<D>,
+    velocities: [NodalVector<D>; STAGES],
+    accelerations: [NodalVector<D>; STAGES],
+    displacement_base: NodalVector<D>,
+    velocity_base: NodalVector<D>,
+    acceleration_offset: NodalVector<D>,
+    velocity_offset: NodalVector<D>,
 }
 
-impl Esdirk {
+impl<const D: usize> Esdirk<D> {
     pub(super) fn new(
-        system: &DynamicSystem,
-        initial: &[[f64; 6]],
+        system: &DynamicSystem<D>,
+        initial: &[[f64; D]],
         step: f64,
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
         let c = 1.0 / (DIAGONAL * step);
-        let zero = vec![[0.0; 6]; initial.len()];
+        let zero = vec![[0.0; D]; initial.len()];
         Ok(Self {
             step,
             solver: StageSolver::new(system, initial, c * c, c, sweeps)?,
@@ -79,11 +79,11 @@ impl Esdirk {
     /// Advances `state` by one step from `time`. `state.stage_power` holds the powers of the step's first stage.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem,
-        forces: &Forces,
+        system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         time: f64,
-        state: &mut State,
-        Books { ledger, errors }: Books<'_>,
+        state: &mut State<D>,
+        Books { ledger, errors }: Books<'_, D>,
     ) {
         let h = self.step;
         let c = 1.0 / (DIAGONAL * h);
@@ -135,7 +135,13 @@ impl Esdirk {
 }
 
 /// `out = start + h sum_j a_stage,j rates_j` over the stages before `stage`.
-fn combine(out: &mut NodalVector, start: &NodalVector, h: f64, stage: usize, rates: &[NodalVector; STAGES]) {
+fn combine<const D: usize>(
+    out: &mut NodalVector<D>,
+    start: &NodalVector<D>,
+    h: f64,
+    stage: usize,
+    rates: &[NodalVector<D>; STAGES],
+) {
     let c: [f64; STAGES - 1] = STRICTLY_LOWER[stage].map(|a| h * a);
     let [r0, r1, r2, r3, r4, _] = rates.each_ref().map(|rate| flat(rate));
     let (out, start) = (flat_mut(out), flat(start));

@@ -25,19 +25,21 @@ pub(super) struct NodeContact {
 
 /// Everything that pushes the string.
 #[derive(Debug, Clone)]
-pub(super) struct Forces {
-    pub(super) load: NodalVector,
+pub(super) struct Forces<const D: usize> {
+    pub(super) load: NodalVector<D>,
     unbalance: Vec<crate::model::UnbalanceForce>,
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
     /// Four nodes side by side, from the second one on; places beyond the bit can never touch.
     sites: Vec<ContactNode<Four>>,
     contact: bool,
+    /// Where the twist stands among the degrees of freedom; none where it is held.
+    twist: Option<usize>,
 }
 
-impl Forces {
-    pub(super) fn new(model: &Model, system: &DynamicSystem) -> Self {
-        let effects = &model.scenario.effects;
+impl<const D: usize> Forces<D> {
+    pub(super) fn new(model: &Model, system: &DynamicSystem<D>) -> Self {
+        let effects = &model.effects;
         let parameters = ContactParameters::new(&model.scenario.contact, effects);
         // The clamped top node never touches.
         let sites = model.mesh.nodes[1..].chunks(LANES).map(|nodes| {
@@ -56,12 +58,13 @@ impl Forces {
             rotation_speed: system.rotation_speed,
             parameters,
             sites: sites.collect(),
-            contact: effects.contact.is_on(),
+            contact: effects.contact,
+            twist: system.twist(),
         }
     }
 
     /// Constant loads and unbalance at `time` \[s\].
-    pub(super) fn external_into(&self, time: f64, out: &mut NodalVector) {
+    pub(super) fn external_into(&self, time: f64, out: &mut NodalVector<D>) {
         out.copy_from_slice(&self.load);
         for (node, force) in self.unbalance_at(time) {
             out[node][0] += force[0];
@@ -80,7 +83,7 @@ impl Forces {
     }
 
     /// Contact forces for given displacements and velocities, four nodes at a time; the clamped top node never touches.
-    pub(super) fn contact_into(&self, x: &[[f64; 6]], v: &[[f64; 6]], out: &mut ContactForces) {
+    pub(super) fn contact_into(&self, x: &[[f64; D]], v: &[[f64; D]], out: &mut ContactForces) {
         if !self.contact {
             return;
         }
@@ -94,7 +97,7 @@ impl Forces {
                 v: side_by_side(x, 1),
                 u_rate: side_by_side(v, 0),
                 v_rate: side_by_side(v, 1),
-                theta_z_rate: side_by_side(v, 5),
+                theta_z_rate: self.twist.map_or(Four::splat(0.0), |twist| side_by_side(v, twist)),
             };
             let contact = dynamic_contact(&self.parameters, site, &motion, rotation_speed);
             let (force_u, force_v) = (contact.force_u.to_array(), contact.force_v.to_array());
@@ -112,25 +115,27 @@ impl Forces {
             }
         }
     }
+
+    /// Adds contact forces to nodal forces.
+    pub(super) fn add_contact(&self, nodal: &mut [[f64; D]], contact: &[NodeContact]) {
+        for (nodal, contact) in nodal.iter_mut().zip(contact) {
+            nodal[0] += contact.force[0];
+            nodal[1] += contact.force[1];
+            if let Some(twist) = self.twist {
+                nodal[twist] += contact.torque;
+            }
+        }
+    }
 }
 
 const LANES: usize = Four::LANES;
 
 #[inline(always)]
-fn side_by_side(nodes: &[[f64; 6]; LANES], dof: usize) -> Four {
+fn side_by_side<const D: usize>(nodes: &[[f64; D]; LANES], dof: usize) -> Four {
     Four::new([nodes[0][dof], nodes[1][dof], nodes[2][dof], nodes[3][dof]])
 }
 
 /// Places beyond the bit filled with zeros.
-fn padded(nodes: &[[f64; 6]]) -> [[f64; 6]; LANES] {
-    std::array::from_fn(|lane| nodes.get(lane).copied().unwrap_or_default())
-}
-
-/// Adds contact forces to nodal forces.
-pub(super) fn add_contact(forces: &mut [[f64; 6]], contact: &[NodeContact]) {
-    for (force, contact) in forces.iter_mut().zip(contact) {
-        force[0] += contact.force[0];
-        force[1] += contact.force[1];
-        force[5] += contact.torque;
-    }
+fn padded<const D: usize>(nodes: &[[f64; D]]) -> [[f64; D]; LANES] {
+    std::array::from_fn(|lane| nodes.get(lane).copied().unwrap_or([0.0; D]))
 }

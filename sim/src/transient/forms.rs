@@ -1,6 +1,6 @@
 //! Work that the string's matrices do along its motion.
 
-use crate::linalg::{Block, BlockTridiagonal, DOFS, Four, Lane};
+use crate::linalg::{Block, BlockTridiagonal, Four, Lane};
 use crate::model::NodalVector;
 
 /// Stages that are gathered before the forms' matrices are read: one vector of them.
@@ -14,29 +14,29 @@ const CANCELLED: f64 = 1e-13;
 ///
 /// Stages are gathered first and then taken side by side, so that a matrix is read once for all of them.
 #[derive(Debug, Clone)]
-pub(super) struct Forms<const N: usize> {
-    symmetric: [Form; N],
-    skew: Form,
-    stages: [Stage; GATHERED],
+pub(super) struct Forms<const N: usize, const D: usize> {
+    symmetric: [Form<D>; N],
+    skew: Form<D>,
+    stages: [Stage<D>; GATHERED],
     gathered: usize,
 }
 
 /// Velocities and displacements at a stage.
 #[derive(Debug, Clone)]
-struct Stage {
+struct Stage<const D: usize> {
     weight: f64,
-    velocity: NodalVector,
-    displacement: NodalVector,
+    velocity: NodalVector<D>,
+    displacement: NodalVector<D>,
 }
 
 /// What is left of a matrix at each node: the block on the diagonal and the one above it, or nothing. The symmetric
 /// part of the Coriolis matrix lives where the section changes, the skew part of the stiffness where the torque does
 /// and at the free end: between equal neighbours the element's boundary terms cancel.
 #[derive(Debug, Clone)]
-struct Form(Vec<Option<Box<[Block<f64>; 2]>>>);
+struct Form<const D: usize>(Vec<Option<Box<[Block<f64, D>; 2]>>>);
 
 /// Values of a node at the gathered stages, side by side.
-type Values = [Four; DOFS];
+type Values<const D: usize> = [Four; D];
 
 /// Integrals of the forms: the symmetric ones, then the skew one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,9 +45,9 @@ pub(super) struct Integrals<const N: usize> {
     pub(super) skew: f64,
 }
 
-impl<const N: usize> Forms<N> {
-    pub(super) fn new(symmetric: [&BlockTridiagonal<f64>; N], skew: &BlockTridiagonal<f64>) -> Self {
-        let zero = vec![[0.0; DOFS]; skew.rows()];
+impl<const N: usize, const D: usize> Forms<N, D> {
+    pub(super) fn new(symmetric: [&BlockTridiagonal<f64, D>; N], skew: &BlockTridiagonal<f64, D>) -> Self {
+        let zero = vec![[0.0; D]; skew.rows()];
         let stage = Stage { weight: 0.0, velocity: zero.clone(), displacement: zero };
         Self {
             symmetric: symmetric.map(|m| Form::new(m, 0.5)),
@@ -68,7 +68,7 @@ impl<const N: usize> Forms<N> {
     }
 
     /// Gathers a stage.
-    pub(super) fn gather(&mut self, weight: f64, velocity: &[[f64; DOFS]], displacement: &[[f64; DOFS]]) {
+    pub(super) fn gather(&mut self, weight: f64, velocity: &[[f64; D]], displacement: &[[f64; D]]) {
         let stage = &mut self.stages[self.gathered];
         stage.weight = weight;
         stage.velocity.copy_from_slice(velocity);
@@ -119,9 +119,9 @@ impl<const N: usize> Forms<N> {
     }
 }
 
-impl Form {
+impl<const D: usize> Form<D> {
     /// The symmetric part of `m` for `with_transpose` = 1/2, the skew part for -1/2.
-    fn new(m: &BlockTridiagonal<f64>, with_transpose: f64) -> Self {
+    fn new(m: &BlockTridiagonal<f64, D>, with_transpose: f64) -> Self {
         let part = half_sum(m, with_transpose);
         let threshold = CANCELLED * largest(m);
         let rows = part.diagonal.iter().zip(&part.upper).map(|(diagonal, upper)| {
@@ -135,12 +135,12 @@ impl Form {
 
 /// Adds `w v_n^T (D v_n + 2 U v_(n+1))`, U being mirrored below the diagonal; `weighted` is w v_n.
 #[inline(always)]
-fn add_symmetric(
+fn add_symmetric<const D: usize>(
     sum: Four,
-    [d, u]: &[Block<f64>; 2],
-    weighted: &Values,
-    v: &Values,
-    v_next: &Values,
+    [d, u]: &[Block<f64, D>; 2],
+    weighted: &Values<D>,
+    v: &Values<D>,
+    v_next: &Values<D>,
 ) -> Four {
     let mut sum = sum;
     let twice = v_next.map(|v| v + v);
@@ -153,14 +153,14 @@ fn add_symmetric(
 
 /// Adds `w v_n^T (D x_n + U x_(n+1)) - w x_n^T U v_(n+1)`: below the diagonal stands minus the transposed U.
 #[inline(always)]
-fn add_skew(
+fn add_skew<const D: usize>(
     sum: Four,
-    [d, u]: &[Block<f64>; 2],
-    (weighted_velocity, v_next): (&Values, &Values),
-    (weighted_displacement, x, x_next): (&Values, &Values, &Values),
+    [d, u]: &[Block<f64, D>; 2],
+    (weighted_velocity, v_next): (&Values<D>, &Values<D>),
+    (weighted_displacement, x, x_next): (&Values<D>, &Values<D>, &Values<D>),
 ) -> Four {
     let mut sum = sum;
-    for row in 0..DOFS {
+    for row in 0..D {
         let own = row_product(d, row, x, Four::splat(0.0));
         sum = weighted_velocity[row].mul_add(row_product(u, row, x_next, own), sum);
         let pulled = row_product(u, row, v_next, Four::splat(0.0));
@@ -170,32 +170,35 @@ fn add_skew(
 }
 
 #[inline(always)]
-fn row_product(block: &Block<f64>, row: usize, x: &Values, sum: Four) -> Four {
+fn row_product<const D: usize>(block: &Block<f64, D>, row: usize, x: &Values<D>, sum: Four) -> Four {
     let columns = block.columns.iter().zip(x);
     columns.fold(sum, |sum, (column, x)| Four::splat(column[row]).mul_add(*x, sum))
 }
 
 /// Values of one node at all stages; zero beyond the bit.
 #[inline(always)]
-fn side_by_side(stages: [Option<&[f64; DOFS]>; GATHERED]) -> Values {
-    let [a, b, c, d] = stages.map(|values| values.unwrap_or(&[0.0; DOFS]));
+fn side_by_side<const D: usize>(stages: [Option<&[f64; D]>; GATHERED]) -> Values<D> {
+    let [a, b, c, d] = stages.map(|values| values.unwrap_or(&[0.0; D]));
     std::array::from_fn(|dof| Four::new([a[dof], b[dof], c[dof], d[dof]]))
 }
 
 /// `m / 2 + with_transpose m^T`.
-pub(super) fn half_sum(m: &BlockTridiagonal<f64>, with_transpose: f64) -> BlockTridiagonal<f64> {
+pub(super) fn half_sum<const D: usize>(
+    m: &BlockTridiagonal<f64, D>,
+    with_transpose: f64,
+) -> BlockTridiagonal<f64, D> {
     BlockTridiagonal::combine(0.5, m, with_transpose, &transpose(m), 0.0, m)
 }
 
-fn largest(m: &BlockTridiagonal<f64>) -> f64 {
+fn largest<const D: usize>(m: &BlockTridiagonal<f64, D>) -> f64 {
     let blocks = m.lower.iter().chain(&m.diagonal).chain(&m.upper);
     blocks.flat_map(|block| block.columns.iter().flatten()).fold(0.0_f64, |most, v| most.max(v.abs()))
 }
 
-fn transpose(m: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
+fn transpose<const D: usize>(m: &BlockTridiagonal<f64, D>) -> BlockTridiagonal<f64, D> {
     let n = m.rows();
     let mut t = BlockTridiagonal::zeros(n);
-    let flip = |block: &Block<f64>| Block::from_fn(|row, column| block[(column, row)]);
+    let flip = |block: &Block<f64, D>| Block::from_fn(|row, column| block[(column, row)]);
     for i in 0..n {
         t.diagonal[i] = flip(&m.diagonal[i]);
         if i + 1 < n {
@@ -209,6 +212,7 @@ fn transpose(m: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::DOFS;
 
     /// `full` of every hundred rows carry blocks.
     fn matrix(rows: usize, full: usize) -> BlockTridiagonal<f64> {

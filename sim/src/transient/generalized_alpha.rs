@@ -20,19 +20,19 @@ fn parameters(spectral_radius: f64) -> (f64, f64, f64, f64) {
 
 /// The unknown of a step is the displacement at t + (1 - alpha_f) h, where the forces are balanced.
 #[derive(Debug, Clone)]
-pub(super) struct GeneralizedAlpha {
+pub(super) struct GeneralizedAlpha<const D: usize> {
     step: f64,
     spectral_radius: f64,
-    pub(super) solver: StageSolver,
-    acceleration_offset: NodalVector,
-    velocity_offset: NodalVector,
-    mean_velocity: NodalVector,
+    pub(super) solver: StageSolver<D>,
+    acceleration_offset: NodalVector<D>,
+    velocity_offset: NodalVector<D>,
+    mean_velocity: NodalVector<D>,
 }
 
-impl GeneralizedAlpha {
+impl<const D: usize> GeneralizedAlpha<D> {
     pub(super) fn new(
-        system: &DynamicSystem,
-        initial: &[[f64; 6]],
+        system: &DynamicSystem<D>,
+        initial: &[[f64; D]],
         step: f64,
         sweeps: u32,
         spectral_radius: f64,
@@ -45,7 +45,7 @@ impl GeneralizedAlpha {
             gamma / (beta * step),
             sweeps,
         )?;
-        let zero = vec![[0.0; 6]; initial.len()];
+        let zero = vec![[0.0; D]; initial.len()];
         Ok(Self {
             step,
             spectral_radius,
@@ -59,11 +59,11 @@ impl GeneralizedAlpha {
     /// Advances `state` by one step from `time`.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem,
-        forces: &Forces,
+        system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         time: f64,
-        state: &mut State,
-        Books { ledger, errors }: Books<'_>,
+        state: &mut State<D>,
+        Books { ledger, errors }: Books<'_, D>,
     ) {
         let (alpha_m, alpha_f, beta, gamma) = parameters(self.spectral_radius);
         let h = self.step;

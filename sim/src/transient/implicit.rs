@@ -5,7 +5,7 @@
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix is factored once a run;
 //! contact stays on the right-hand side and is evaluated afresh in each sweep.
 
-use super::forces::{ContactForces, Forces, NodeContact, add_contact};
+use super::forces::{ContactForces, Forces, NodeContact};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -15,19 +15,19 @@ const SWEEP_TOLERANCE: f64 = 1e-9;
 
 /// The stage's matrix, factored, with the vectors that a solve works in.
 #[derive(Debug, Clone)]
-pub(super) struct StageSolver {
-    factor: Factor<f64>,
+pub(super) struct StageSolver<const D: usize> {
+    factor: Factor<f64, D>,
     velocity_coefficient: f64,
     held: Vec<(usize, usize)>,
     held_values: Vec<f64>,
     sweeps: u32,
-    external: NodalVector,
-    linear: NodalVector,
-    right: NodalVector,
+    external: NodalVector<D>,
+    linear: NodalVector<D>,
+    right: NodalVector<D>,
     /// Displacements of the stage: the predictor before a solve, the solution after it.
-    pub(super) displacement: NodalVector,
+    pub(super) displacement: NodalVector<D>,
     /// Velocities of the stage, likewise.
-    pub(super) velocity: NodalVector,
+    pub(super) velocity: NodalVector<D>,
     /// Contact forces that went into the last sweep.
     pub(super) contact: ContactForces,
     pub(super) monitor: SweepMonitor,
@@ -54,10 +54,10 @@ impl SweepMonitor {
     }
 }
 
-impl StageSolver {
+impl<const D: usize> StageSolver<D> {
     pub(super) fn new(
-        system: &DynamicSystem,
-        initial: &[[f64; 6]],
+        system: &DynamicSystem<D>,
+        initial: &[[f64; D]],
         acceleration_coefficient: f64,
         velocity_coefficient: f64,
         sweeps: u32,
@@ -75,7 +75,7 @@ impl StageSolver {
             matrix.diagonal[node][(dof, dof)] = 1.0;
         }
         let n = initial.len();
-        let zero = vec![[0.0; 6]; n];
+        let zero = vec![[0.0; D]; n];
         Ok(Self {
             factor: Factor::new(&matrix)?,
             velocity_coefficient,
@@ -96,11 +96,11 @@ impl StageSolver {
     /// a^ and `velocity_offset` is v^.
     pub(super) fn solve(
         &mut self,
-        system: &DynamicSystem,
-        forces: &Forces,
+        system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         time: f64,
-        acceleration_offset: &[[f64; 6]],
-        velocity_offset: &[[f64; 6]],
+        acceleration_offset: &[[f64; D]],
+        velocity_offset: &[[f64; D]],
     ) {
         forces.external_into(time, &mut self.external);
         BlockTridiagonal::multiply_two_into(
@@ -117,7 +117,7 @@ impl StageSolver {
         for sweep in 1..=self.sweeps {
             forces.contact_into(&self.displacement, &self.velocity, &mut self.contact);
             self.right.copy_from_slice(&self.external);
-            add_contact(&mut self.right, &self.contact);
+            forces.add_contact(&mut self.right, &self.contact);
             for (&(node, dof), &value) in self.held.iter().zip(&self.held_values) {
                 self.right[node][dof] = value;
             }
@@ -150,19 +150,19 @@ impl StageSolver {
 }
 
 /// Held degrees of freedom as (node, dof).
-pub(super) fn held_list(system: &DynamicSystem) -> Vec<(usize, usize)> {
+pub(super) fn held_list<const D: usize>(system: &DynamicSystem<D>) -> Vec<(usize, usize)> {
     system
         .held
         .iter()
         .enumerate()
-        .flat_map(|(node, held)| (0..6).filter(|&dof| held[dof]).map(move |dof| (node, dof)))
+        .flat_map(|(node, held)| (0..D).filter(|&dof| held[dof]).map(move |dof| (node, dof)))
         .collect()
 }
 
-pub(super) fn flat(v: &[[f64; 6]]) -> &[f64] {
+pub(super) fn flat<const D: usize>(v: &[[f64; D]]) -> &[f64] {
     v.as_flattened()
 }
 
-pub(super) fn flat_mut(v: &mut [[f64; 6]]) -> &mut [f64] {
+pub(super) fn flat_mut<const D: usize>(v: &mut [[f64; D]]) -> &mut [f64] {
     v.as_flattened_mut()
 }

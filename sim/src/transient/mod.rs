@@ -33,7 +33,7 @@ use crate::statics::Equilibrium;
 use energy::{Ledger, Work};
 use error::ErrorSum;
 use esdirk::Esdirk;
-use forces::{ContactForces, Forces, NodeContact, add_contact};
+use forces::{ContactForces, Forces, NodeContact};
 use generalized_alpha::GeneralizedAlpha;
 use rk4::Rk4;
 
@@ -41,28 +41,40 @@ use rk4::Rk4;
 const LEDGER_RATE_HZ: f64 = 10.0;
 
 /// A run under way.
-pub struct Transient<'m> {
+pub struct Transient<'m>(Solved<'m>);
+
+/// The run, by how many degrees of freedom of a node move: those that are held along the whole string are not solved for.
+enum Solved<'m> {
+    Six(Box<Run<'m, 6>>),
+    Five(Box<Run<'m, 5>>),
+    Four(Box<Run<'m, 4>>),
+}
+
+/// A run that solves for D degrees of freedom a node.
+struct Run<'m, const D: usize> {
     model: &'m Model,
-    system: DynamicSystem,
-    forces: Forces,
-    /// Displacements at the start.
-    initial: NodalVector,
-    stepper: Stepper,
-    ledger: Ledger,
+    system: DynamicSystem<D>,
+    forces: Forces<D>,
+    /// Displacements at the start, of all degrees of freedom.
+    rest: NodalVector,
+    /// Those that are solved for.
+    initial: NodalVector<D>,
+    stepper: Stepper<D>,
+    ledger: Ledger<D>,
     /// Samples of a whole run.
     samples: u64,
     interval: f64,
     steps_per_sample: u64,
     ledger_every: u64,
     subdivisions: u32,
-    progress: Progress,
+    progress: Progress<D>,
 }
 
 /// Everything that changes during a run and is not scratch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Progress {
+struct Progress<const D: usize> {
     sample: u64,
-    state: State,
+    state: State<D>,
     work: Work,
     monitor: SweepMonitor,
     errors: ErrorSum,
@@ -75,10 +87,13 @@ struct Progress {
 
 /// Motion at a step's end, with what the methods carry from step to step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct State {
-    displacement: NodalVector,
-    velocity: NodalVector,
-    acceleration: NodalVector,
+struct State<const D: usize> {
+    #[serde(with = "checkpoint::nodal")]
+    displacement: NodalVector<D>,
+    #[serde(with = "checkpoint::nodal")]
+    velocity: NodalVector<D>,
+    #[serde(with = "checkpoint::nodal")]
+    acceleration: NodalVector<D>,
     /// Powers at the step's end (the first stage of the next ESDIRK step).
     stage_power: Work,
     /// Step of the adaptive method \[s\].
@@ -86,16 +101,16 @@ struct State {
 }
 
 /// Where a step's work and error are entered.
-struct Books<'a> {
-    ledger: &'a mut Ledger,
+struct Books<'a, const D: usize> {
+    ledger: &'a mut Ledger<D>,
     errors: &'a mut ErrorSum,
 }
 
 #[derive(Debug, Clone)]
-enum Stepper {
-    GeneralizedAlpha(Box<GeneralizedAlpha>),
-    Esdirk(Box<Esdirk>),
-    Rk4(Box<Rk4>),
+enum Stepper<const D: usize> {
+    GeneralizedAlpha(Box<GeneralizedAlpha<D>>),
+    Esdirk(Box<Esdirk<D>>),
+    Rk4(Box<Rk4<D>>),
 }
 
 /// What a finished run leaves.
@@ -202,19 +217,80 @@ impl<'m> Transient<'m> {
     /// # Errors
     /// As [`Transient::new`].
     pub fn member(model: &'m Model, equilibrium: &Equilibrium, member: u32) -> Result<Self, TransientError> {
-        let scenario = &model.scenario;
         let system = model.dynamic_system(equilibrium);
-        let forces = Forces::new(model, &system);
-        let mut initial = disturbance(model, member);
-        for (value, rest) in initial.iter_mut().flatten().zip(equilibrium.displacement.iter().flatten()) {
-            *value += rest;
+        let mut rest = disturbance(model, member);
+        for (value, at_rest) in rest.iter_mut().flatten().zip(equilibrium.displacement.iter().flatten()) {
+            *value += at_rest;
         }
+        Ok(Self(match *system.moving() {
+            [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], rest)?)),
+            [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], rest)?)),
+            _ => Solved::Six(Box::new(Run::new(model, &system, system.places, rest)?)),
+        }))
+    }
+
+    /// A run that goes on from a checkpoint of the same scenario.
+    ///
+    /// # Errors
+    /// When the checkpoint belongs to another scenario or model version, or as [`Transient::new`].
+    pub fn resume(
+        model: &'m Model,
+        equilibrium: &Equilibrium,
+        checkpoint: &Checkpoint,
+    ) -> Result<Self, CheckpointError> {
+        let mut transient = Self::new(model, equilibrium)?;
+        match &mut transient.0 {
+            Solved::Six(run) => run.go_on_from(checkpoint)?,
+            Solved::Five(run) => run.go_on_from(checkpoint)?,
+            Solved::Four(run) => run.go_on_from(checkpoint)?,
+        }
+        Ok(transient)
+    }
+
+    /// Degrees of freedom of a node that the run solves for.
+    pub fn degrees_of_freedom(&self) -> usize {
+        match &self.0 {
+            Solved::Six(_) => 6,
+            Solved::Five(_) => 5,
+            Solved::Four(_) => 4,
+        }
+    }
+
+    /// Runs to the end of the scenario's duration, or until `control` stops it.
+    ///
+    /// # Errors
+    /// When the motion diverges.
+    pub fn run(self, control: &Control) -> Result<Outcome, TransientError> {
+        match self.0 {
+            Solved::Six(run) => run.run(control),
+            Solved::Five(run) => run.run(control),
+            Solved::Four(run) => run.run(control),
+        }
+    }
+}
+
+impl<'m, const D: usize> Run<'m, D> {
+    /// A run of the degrees of freedom `places` of `system`, from the displacements `rest`.
+    fn new(
+        model: &'m Model,
+        system: &DynamicSystem,
+        places: [usize; D],
+        rest: NodalVector,
+    ) -> Result<Self, TransientError> {
+        let scenario = &model.scenario;
+        let stepping = scenario.accuracy.time_stepping();
+        let subdivisions = stability::subdivisions(model, system, stepping.integrator, stepping.step);
+        let rk4_limit = match stepping.integrator {
+            Integrator::Rk4 => stability::rk4_limit(model, system)?,
+            _ => f64::INFINITY,
+        };
+        let system = system.reduced_to(places);
+        let forces = Forces::new(model, &system);
+        let initial: NodalVector<D> = rest.iter().map(|rest| places.map(|place| rest[place])).collect();
         let initial = &initial;
         let ledger = Ledger::new(model, &system, initial);
-        let stepping = scenario.accuracy.time_stepping();
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
-        let subdivisions = stability::subdivisions(model, &system, stepping.integrator, stepping.step);
         let steps_per_sample =
             (interval / stepping.step * (1.0 - 1e-9)).ceil().max(1.0) as u64 * u64::from(subdivisions);
         let step = interval / steps_per_sample as f64;
@@ -231,16 +307,16 @@ impl<'m> Transient<'m> {
                 Stepper::Esdirk(Box::new(Esdirk::new(&system, initial, step, stepping.contact_sweeps)?))
             }
             Integrator::Rk4 => {
-                let limit = stability::rk4_limit(model, &system)?;
-                if stepping.tolerance.is_none() && stepping.step > limit {
+                if stepping.tolerance.is_none() && stepping.step > rk4_limit {
+                    let limit = rk4_limit;
                     return Err(TransientError::StepBeyondStability { step: stepping.step, limit });
                 }
-                let largest = stepping.step.min(0.95 * limit);
+                let largest = stepping.step.min(0.95 * rk4_limit);
                 let largest = if stepping.tolerance.is_none() { stepping.step } else { largest };
                 Stepper::Rk4(Box::new(Rk4::new(&system, largest, stepping.tolerance, hole_radius)?))
             }
         };
-        let mut transient = Self {
+        let mut run = Self {
             progress: Progress {
                 sample: 0,
                 state: State::at_rest(initial, stepping.step),
@@ -260,6 +336,7 @@ impl<'m> Transient<'m> {
             system,
             forces,
             initial: initial.clone(),
+            rest,
             stepper,
             ledger,
             samples,
@@ -268,31 +345,17 @@ impl<'m> Transient<'m> {
             ledger_every: (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64,
             subdivisions,
         };
-        transient.start()?;
-        Ok(transient)
+        run.start()?;
+        Ok(run)
     }
 
-    /// A run that goes on from a checkpoint of the same scenario.
-    ///
-    /// # Errors
-    /// When the checkpoint belongs to another scenario or model version, or as [`Transient::new`].
-    pub fn resume(
-        model: &'m Model,
-        equilibrium: &Equilibrium,
-        checkpoint: Checkpoint,
-    ) -> Result<Self, CheckpointError> {
-        let progress = checkpoint.progress_for(&model.scenario)?;
-        let mut transient = Self::new(model, equilibrium)?;
-        transient.ledger.set_work(progress.work);
-        transient.progress = progress;
-        Ok(transient)
+    fn go_on_from(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        self.progress = checkpoint.progress_for(&self.model.scenario, self.model.node_count())?;
+        self.ledger.set_work(self.progress.work);
+        Ok(())
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it.
-    ///
-    /// # Errors
-    /// When the motion diverges.
-    pub fn run(mut self, control: &Control) -> Result<Outcome, TransientError> {
+    fn run(mut self, control: &Control) -> Result<Outcome, TransientError> {
         while self.progress.sample < self.samples {
             if control.is_cancelled() {
                 return Ok(Outcome::Cancelled);
@@ -302,7 +365,7 @@ impl<'m> Transient<'m> {
                 self.progress.work = self.ledger.work();
                 return Ok(Outcome::Suspended(Box::new(Checkpoint::new(
                     &self.model.scenario,
-                    self.progress,
+                    &self.progress,
                 ))));
             }
             self.record();
@@ -338,15 +401,15 @@ impl<'m> Transient<'m> {
     fn start(&mut self) -> Result<(), TransientError> {
         let state = &mut self.progress.state;
         let n = state.displacement.len();
-        let mut right = vec![[0.0; 6]; n];
-        let mut linear = vec![[0.0; 6]; n];
+        let mut right = vec![[0.0; D]; n];
+        let mut linear = vec![[0.0; D]; n];
         let mut contact: ContactForces = vec![NodeContact::default(); n];
         self.forces.external_into(0.0, &mut right);
         self.forces.contact_into(&state.displacement, &state.velocity, &mut contact);
-        add_contact(&mut right, &contact);
+        self.forces.add_contact(&mut right, &contact);
         self.system.stiffness.multiply_into(&state.displacement, &mut linear);
         for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
-            for dof in 0..6 {
+            for dof in 0..D {
                 right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
             }
         }
@@ -364,7 +427,15 @@ impl<'m> Transient<'m> {
 
     fn record(&mut self) {
         for history in &mut self.progress.histories {
-            history.push(&self.progress.state);
+            let (node, state) = (history.node, &self.progress.state);
+            let all = |values: [f64; D], held: [f64; 6]| {
+                self.system.places.iter().zip(values).fold(held, |mut all, (&place, value)| {
+                    all[place] = value;
+                    all
+                })
+            };
+            history
+                .push(&all(state.displacement[node], self.rest[node]), &all(state.velocity[node], [0.0; 6]));
         }
         if self.progress.sample.is_multiple_of(self.ledger_every) {
             let time = self.time();
@@ -422,7 +493,7 @@ impl<'m> Transient<'m> {
         let state = &self.progress.state;
         let hole_radius = 0.5 * self.model.scenario.well.hole_diameter;
         // Without a wall the string may swing freely, but not out of the theory of small rotations.
-        let bound = if self.model.scenario.effects.contact.is_on() { 2.0 } else { 100.0 } * hole_radius;
+        let bound = if self.model.effects.contact { 2.0 } else { 100.0 } * hole_radius;
         for (node, (x, v)) in state.displacement.iter().zip(&state.velocity).enumerate() {
             if !x.iter().chain(v).all(|value| value.is_finite()) {
                 return Err(self.diverged(node, DivergenceReason::NotFinite));
@@ -446,9 +517,9 @@ impl<'m> Transient<'m> {
     }
 }
 
-impl State {
-    fn at_rest(displacement: &NodalVector, adaptive_step: f64) -> Self {
-        let zero = vec![[0.0; 6]; displacement.len()];
+impl<const D: usize> State<D> {
+    fn at_rest(displacement: &NodalVector<D>, adaptive_step: f64) -> Self {
+        let zero = vec![[0.0; D]; displacement.len()];
         Self {
             displacement: displacement.clone(),
             velocity: zero.clone(),
@@ -473,7 +544,7 @@ pub fn step_problem(scenario: &Scenario) -> Option<Problem> {
     let stepping = scenario.accuracy.time_stepping();
     if stepping.integrator != Integrator::Rk4
         || stepping.tolerance.is_some()
-        || !scenario.effects.transient.is_on()
+        || !scenario.active_effects().transient
     {
         return None;
     }
@@ -493,7 +564,12 @@ pub fn recorded_nodes(model: &Model) -> Vec<usize> {
     model.scenario.recording.nodes.iter().filter_map(|&choice| model.mesh.chosen_node(choice)).collect()
 }
 
-fn observe(statistics: &mut [ContactStatistics], state: &State, contact: &[NodeContact], duration: f64) {
+fn observe<const D: usize>(
+    statistics: &mut [ContactStatistics],
+    state: &State<D>,
+    contact: &[NodeContact],
+    duration: f64,
+) {
     for ((statistics, x), contact) in statistics.iter_mut().zip(&state.displacement).zip(contact) {
         statistics.observe(x, contact, duration);
     }

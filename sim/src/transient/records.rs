@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::State;
 use super::forces::NodeContact;
 
 /// Motion of one node at the recording rate; sample k is at k / rate. Displacements \[m, rad\] in the node's frame,
@@ -45,8 +44,8 @@ impl NodeHistory {
         }
     }
 
-    pub(super) fn push(&mut self, state: &State) {
-        let (x, v) = (&state.displacement[self.node], &state.velocity[self.node]);
+    /// Adds a sample of all six degrees of freedom.
+    pub(super) fn push(&mut self, x: &[f64; 6], v: &[f64; 6]) {
         self.u.push(x[0]);
         self.v.push(x[1]);
         self.w.push(x[2]);
@@ -78,7 +77,7 @@ impl ContactStatistics {
     }
 
     /// Takes in one step of `duration` seconds.
-    pub(super) fn observe(&mut self, x: &[f64; 6], contact: &NodeContact, duration: f64) {
+    pub(super) fn observe<const D: usize>(&mut self, x: &[f64; D], contact: &NodeContact, duration: f64) {
         self.largest_radius_squared = self.largest_radius_squared.max(x[0] * x[0] + x[1] * x[1]);
         if contact.touching {
             self.contact_count += u64::from(!self.in_contact);

@@ -4,7 +4,7 @@
 
 use super::energy::Ledger;
 use super::error::ErrorSum;
-use super::forces::{ContactForces, Forces, NodeContact, add_contact};
+use super::forces::{ContactForces, Forces, NodeContact};
 use super::implicit::{flat, flat_mut, held_list};
 use super::{Books, State};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
@@ -15,17 +15,17 @@ const SMALLEST_STEP_RATIO: f64 = 1e-6;
 
 /// Fixed-step or step-doubling RK4.
 #[derive(Debug, Clone)]
-pub(super) struct Rk4 {
-    mass: Factor<f64>,
+pub(super) struct Rk4<const D: usize> {
+    mass: Factor<f64, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
     /// Local error of a lateral displacement that a pair of steps may make, in hole radii; none means fixed steps.
     tolerance: Option<f64>,
     hole_radius: f64,
-    rates: [(NodalVector, NodalVector); 4],
-    stage: (NodalVector, NodalVector),
-    right: NodalVector,
-    linear: NodalVector,
+    rates: [(NodalVector<D>, NodalVector<D>); 4],
+    stage: (NodalVector<D>, NodalVector<D>),
+    right: NodalVector<D>,
+    linear: NodalVector<D>,
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
     pub(super) steps: u64,
@@ -35,15 +35,15 @@ pub(super) struct Rk4 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StepCollapsed;
 
-impl Rk4 {
+impl<const D: usize> Rk4<D> {
     pub(super) fn new(
-        system: &DynamicSystem,
+        system: &DynamicSystem<D>,
         largest_step: f64,
         tolerance: Option<f64>,
         hole_radius: f64,
     ) -> Result<Self, SingularBlock> {
         let n = system.load.len();
-        let zero = vec![[0.0; 6]; n];
+        let zero = vec![[0.0; D]; n];
         Ok(Self {
             mass: mass_factor(system)?,
             held: held_list(system),
@@ -63,12 +63,12 @@ impl Rk4 {
     /// Advances `state` from `time` over `interval` seconds.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem,
-        forces: &Forces,
+        system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         time: f64,
         interval: f64,
-        state: &mut State,
-        Books { ledger, errors }: Books<'_>,
+        state: &mut State<D>,
+        Books { ledger, errors }: Books<'_, D>,
     ) -> Result<(), StepCollapsed> {
         let Some(tolerance) = self.tolerance else {
             let count = (interval / self.largest_step * (1.0 - 1e-12)).ceil().max(1.0);
@@ -122,7 +122,7 @@ impl Rk4 {
 
     /// The difference to the embedded method of order 3 whose last stage is the step's end: h/6 times the change of the
     /// velocity between the two.
-    fn add_error(&self, h: f64, state: &State, errors: &mut ErrorSum) {
+    fn add_error(&self, h: f64, state: &State<D>, errors: &mut ErrorSum) {
         let (last, _) = &self.rates[3];
         errors.add(last.len(), |n, d| h / 6.0 * (last[n][d] - state.velocity[n][d]));
     }
@@ -130,12 +130,12 @@ impl Rk4 {
     /// One step of `h`, its work in the ledger if it is to be kept.
     fn step(
         &mut self,
-        system: &DynamicSystem,
-        forces: &Forces,
+        system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         time: f64,
         h: f64,
-        state: &mut State,
-        mut ledger: Option<&mut Ledger>,
+        state: &mut State<D>,
+        mut ledger: Option<&mut Ledger<D>>,
     ) {
         const FRACTIONS: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
         const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
@@ -153,7 +153,7 @@ impl Rk4 {
             let stage_time = time + c;
             forces.external_into(stage_time, &mut self.right);
             forces.contact_into(x, v, &mut self.contact);
-            add_contact(&mut self.right, &self.contact);
+            forces.add_contact(&mut self.right, &self.contact);
             BlockTridiagonal::multiply_two_into(&system.damping, v, &system.stiffness, x, &mut self.linear);
             for (right, linear) in flat_mut(&mut self.right).iter_mut().zip(flat(&self.linear)) {
                 *right -= linear;
@@ -178,7 +178,9 @@ impl Rk4 {
 }
 
 /// The mass matrix, factored; held degrees of freedom have a unit diagonal.
-pub(super) fn mass_factor(system: &DynamicSystem) -> Result<Factor<f64>, SingularBlock> {
+pub(super) fn mass_factor<const D: usize>(
+    system: &DynamicSystem<D>,
+) -> Result<Factor<f64, D>, SingularBlock> {
     let mut mass = system.mass.clone();
     for (node, dof) in held_list(system) {
         mass.diagonal[node][(dof, dof)] = 1.0;
@@ -186,13 +188,13 @@ pub(super) fn mass_factor(system: &DynamicSystem) -> Result<Factor<f64>, Singula
     Factor::new(&mass)
 }
 
-fn axpy(y: &mut [[f64; 6]], a: f64, x: &[[f64; 6]]) {
+fn axpy<const D: usize>(y: &mut [[f64; D]], a: f64, x: &[[f64; D]]) {
     for (y, x) in flat_mut(y).iter_mut().zip(flat(x)) {
         *y = a.mul_add(*x, *y);
     }
 }
 
-fn axpy_into(out: &mut [[f64; 6]], start: &[[f64; 6]], a: f64, x: &[[f64; 6]]) {
+fn axpy_into<const D: usize>(out: &mut [[f64; D]], start: &[[f64; D]], a: f64, x: &[[f64; D]]) {
     for ((out, start), x) in flat_mut(out).iter_mut().zip(flat(start)).zip(flat(x)) {
         *out = a.mul_add(*x, *start);
     }

@@ -17,7 +17,7 @@ const POWER_ITERATIONS: usize = 300;
 /// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass for its share of the law: two contact sweeps stay stable below one
 /// (performance.md section 3). `step` is that of one implicit solve.
 pub(super) fn sweep_number(model: &Model, system: &DynamicSystem, step: f64) -> f64 {
-    if !model.scenario.effects.contact.is_on() {
+    if !model.effects.contact {
         return 0.0;
     }
     let contact = &model.scenario.contact;
@@ -53,7 +53,7 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
             }
         }
         system.stiffness.multiply_into(&x, &mut product);
-        if model.scenario.effects.contact.is_on() {
+        if model.effects.contact {
             for ((product, x), node) in product.iter_mut().zip(&x).zip(&model.mesh.nodes).skip(1) {
                 let stiffness = model.scenario.contact.stiffness * node.contact_share;
                 product[0] += stiffness * x[0];

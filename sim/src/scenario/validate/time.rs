@@ -1,7 +1,7 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
-use crate::scenario::{Accuracy, CostStudy, Effect, Integrator, NodeChoice, Scenario, TimeWindow};
+use crate::scenario::{Accuracy, CostStudy, Integrator, NodeChoice, Scenario, TimeWindow};
 use crate::string::StringMesh;
 
 /// Two times that differ by less than this part of them are the same.
@@ -51,7 +51,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         check_window(report, scenario, window, "recording.orbit_window");
     }
     report.warn(
-        recording.nodes.is_empty(),
+        recording.nodes.is_empty() && scenario.active_effects().transient,
         "recording.nodes",
         "no node is recorded: there will be no history",
     );
@@ -85,10 +85,11 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
         );
     }
 
+    let effects = scenario.active_effects();
     let friction_drives_torsion = scenario.contact.static_friction > scenario.contact.dynamic_friction
-        && [Effect::Contact, Effect::FrictionTorque, Effect::Torsion]
-            .into_iter()
-            .all(|effect| scenario.effects.is_on(effect));
+        && effects.contact
+        && effects.friction_torque
+        && effects.torsion;
     report.warn(
         stepping.integrator != Integrator::Rk4
             && stepping.step < FINEST_UNDAMPED_STEP
@@ -155,7 +156,7 @@ fn check_study(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
         ),
     );
     report.require(
-        scenario.effects.transient.is_on(),
+        scenario.active_effects().transient,
         "cost_study",
         "effects.transient off",
         "needs the run in time",

@@ -1,0 +1,253 @@
+//! Which effects a scene calls for, and why.
+
+use serde::Serialize;
+
+use super::{ActiveEffects, Effect, Scenario, SurveyStation, Switch};
+
+/// One effect of a scenario, decided.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct EffectDecision {
+    /// The effect.
+    pub effect: Effect,
+    /// What the scenario says of it.
+    pub switch: Switch,
+    /// Whether it takes part.
+    pub active: bool,
+    /// Why.
+    pub reason: String,
+}
+
+impl Scenario {
+    /// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
+    ///
+    /// `auto` leaves an effect out where the scene makes its term zero, or a motion stand still, exactly, so that the
+    /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for.
+    pub fn decide_effects(&self) -> Vec<EffectDecision> {
+        // Friction torque is decided before torsion, which depends on it.
+        let mut active = ActiveEffects::ALL;
+        let decide = |&effect: &Effect| {
+            let switch = self.effects.switch(effect);
+            let (is_active, reason) = match switch {
+                Switch::On => (true, "asked for"),
+                Switch::Off => (false, "switched off"),
+                Switch::Auto => called_for(effect, self, &active),
+            };
+            active.set(effect, is_active);
+            EffectDecision { effect, switch, active: is_active, reason: reason.to_owned() }
+        };
+        Effect::ALL.iter().map(decide).collect()
+    }
+
+    /// The effects that take part.
+    pub fn active_effects(&self) -> ActiveEffects {
+        let mut active = ActiveEffects::ALL;
+        for decision in self.decide_effects() {
+            active.set(decision.effect, decision.active);
+        }
+        active
+    }
+
+    /// Whether the hole is straight along the whole string.
+    fn is_straight(&self) -> bool {
+        let sections = self.string.sections.iter();
+        let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
+        self.well.survey.windows(2).all(|stations| {
+            let [above, below] = stations else { return true };
+            above.measured_depth >= length || same_direction(above, below)
+        })
+    }
+}
+
+fn same_direction(a: &SurveyStation, b: &SurveyStation) -> bool {
+    let is_vertical = a.inclination_deg == 0.0 || a.inclination_deg == 180.0;
+    a.inclination_deg == b.inclination_deg && (is_vertical || a.azimuth_deg == b.azimuth_deg)
+}
+
+/// Whether the scene calls for an effect, with `active` telling of those before it.
+fn called_for(effect: Effect, scenario: &Scenario, active: &ActiveEffects) -> (bool, &'static str) {
+    let turns = scenario.operation.rotation_speed_rpm != 0.0;
+    let frictionless = scenario.contact.static_friction == 0.0 && scenario.contact.dynamic_friction == 0.0;
+    let is_fluid = matches!(
+        effect,
+        Effect::FluidAddedMass
+            | Effect::FluidDamping
+            | Effect::FluidCoriolis
+            | Effect::FlowStiffness
+            | Effect::MudDrag
+            | Effect::Buoyancy
+    );
+    if is_fluid {
+        return match (&scenario.mud, effect) {
+            (None, _) => (false, "the hole is dry"),
+            (Some(_), Effect::FluidAddedMass | Effect::FluidDamping | Effect::Buoyancy) => {
+                (true, "there is mud")
+            }
+            (Some(mud), _) if mud.flow_rate == 0.0 => (false, "the mud stands still"),
+            (Some(_), _) => (true, "the mud flows"),
+        };
+    }
+    match effect {
+        Effect::Contact => {
+            (true, "the string may reach the wall; while it does not, only the distance is looked at")
+        }
+        Effect::Friction | Effect::FrictionTorque => match (active.contact, frictionless) {
+            (false, _) => (false, "there is no contact"),
+            (true, true) => (false, "the wall is without friction"),
+            (true, false) => (true, "the wall has friction"),
+        },
+        Effect::Unbalance => {
+            let masses = scenario.string.unbalance.iter().any(|mass| mass.mass != 0.0 && mass.radius != 0.0);
+            match (masses, turns) {
+                (false, _) => (false, "no mass is off the axis"),
+                (true, false) => (false, "the string does not turn"),
+                (true, true) => (true, "masses off the axis turn"),
+            }
+        }
+        Effect::Gyroscopic if turns => (true, "the string turns"),
+        Effect::Gyroscopic => (false, "the string does not turn"),
+        Effect::AxialStiffening => (true, "weight and weight on bit load the string"),
+        Effect::TorqueStiffening => match (scenario.operation.torque_on_bit != 0.0, active.friction_torque) {
+            (true, _) => (true, "torque on bit"),
+            (false, true) => (true, "friction twists the string"),
+            // A curved hole guides torque, but makes none.
+            (false, false) => (false, "nothing twists the string"),
+        },
+        Effect::WellBending if scenario.is_straight() => (false, "the hole is straight along the string"),
+        Effect::WellBending => (true, "the hole is curved"),
+        Effect::StructuralDamping => {
+            let damping = &scenario.damping;
+            match damping.mass_proportional != 0.0 || damping.stiffness_proportional != 0.0 {
+                true => (true, "the structure is damped"),
+                false => (false, "both coefficients are zero"),
+            }
+        }
+        Effect::Torsion => match (active.friction_torque, scenario.is_straight()) {
+            (true, _) => (true, "friction twists the string"),
+            (false, false) => (true, "the curved hole couples twist with bending"),
+            (false, true) => (false, "nothing makes the twist of a straight string move"),
+        },
+        Effect::AxialMotion if scenario.is_straight() => {
+            (false, "nothing makes a straight string move along itself")
+        }
+        Effect::AxialMotion => (true, "the curved hole couples axial motion with bending"),
+        Effect::Transient => {
+            let recording = &scenario.recording;
+            let in_time = !recording.nodes.is_empty()
+                || !recording.spectrum_windows.is_empty()
+                || recording.orbit_window.is_some()
+                || scenario.cost_study.is_some();
+            match in_time {
+                true => (true, "histories are asked for"),
+                false => {
+                    (false, "no node is recorded and no window asked for: statics and hydraulics are all")
+                }
+            }
+        }
+        _ => unreachable!("fluid effects are decided above"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Effects, preset};
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    /// Names of the effects that `auto` leaves out.
+    fn left_out(change: impl Fn(&mut Scenario)) -> Vec<&'static str> {
+        let mut scenario = paper();
+        scenario.effects = Effects::default();
+        change(&mut scenario);
+        let left_out = scenario.decide_effects().into_iter().filter(|decision| !decision.active);
+        left_out.map(|decision| decision.effect.name()).collect()
+    }
+
+    #[test]
+    fn the_base_case_calls_for_everything() {
+        assert_eq!(left_out(|_| {}), [""; 0]);
+    }
+
+    #[test]
+    fn a_scene_calls_for_what_it_has() {
+        let fluid =
+            ["fluid_added_mass", "fluid_damping", "fluid_coriolis", "flow_stiffness", "mud_drag", "buoyancy"];
+        assert_eq!(left_out(|s| s.mud = None), fluid);
+        let still = |s: &mut Scenario| s.mud.as_mut().unwrap().flow_rate = 0.0;
+        assert_eq!(left_out(still), ["fluid_coriolis", "flow_stiffness", "mud_drag"]);
+        assert_eq!(left_out(|s| s.operation.rotation_speed_rpm = 0.0), ["unbalance", "gyroscopic"]);
+        assert_eq!(left_out(|s| s.string.unbalance.clear()), ["unbalance"]);
+        assert_eq!(left_out(|s| s.damping.mass_proportional = 0.0), ["structural_damping"]);
+        let nothing_in_time = |s: &mut Scenario| {
+            s.recording.nodes.clear();
+            s.recording.spectrum_windows.clear();
+            s.recording.orbit_window = None;
+        };
+        assert_eq!(left_out(nothing_in_time), ["transient"]);
+    }
+
+    #[test]
+    fn a_motion_that_nothing_drives_is_not_solved_for() {
+        let straighten = |s: &mut Scenario| {
+            for station in &mut s.well.survey {
+                (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+            }
+        };
+        assert_eq!(left_out(straighten), ["well_bending", "axial_motion"]);
+        let without_friction = |s: &mut Scenario| {
+            (s.contact.static_friction, s.contact.dynamic_friction) = (0.0, 0.0);
+        };
+        assert_eq!(left_out(without_friction), ["friction", "friction_torque"]);
+        let both = |s: &mut Scenario| {
+            straighten(s);
+            without_friction(s);
+        };
+        let still = ["friction", "friction_torque", "well_bending", "torsion", "axial_motion"];
+        assert_eq!(left_out(both), still);
+        // Below the string the hole may do as it likes.
+        let curved_below = |s: &mut Scenario| {
+            both(s);
+            let last = *s.well.survey.last().unwrap();
+            let below =
+                SurveyStation { measured_depth: last.measured_depth + 50.0, inclination_deg: 70.0, ..last };
+            s.well.survey.push(below);
+        };
+        assert_eq!(left_out(curved_below), still);
+        let no_torque = |s: &mut Scenario| {
+            without_friction(s);
+            s.operation.torque_on_bit = 0.0;
+        };
+        assert_eq!(left_out(no_torque), ["friction", "friction_torque", "torque_stiffening"]);
+    }
+
+    #[test]
+    fn on_and_off_are_obeyed_and_named() {
+        let mut scenario = paper();
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        scenario.effects.set(Effect::Friction, Switch::On);
+        scenario.operation.rotation_speed_rpm = 0.0;
+        scenario.effects.set(Effect::Gyroscopic, Switch::On);
+        let decisions = scenario.decide_effects();
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        assert_eq!(
+            (of(Effect::Contact).active, of(Effect::Contact).reason.as_str()),
+            (false, "switched off")
+        );
+        assert_eq!((of(Effect::Friction).active, of(Effect::Friction).reason.as_str()), (true, "asked for"));
+        assert!(of(Effect::Gyroscopic).active);
+        // Friction torque follows from what was decided of contact.
+        assert_eq!(of(Effect::FrictionTorque).reason, "there is no contact");
+    }
+
+    #[test]
+    fn a_point_has_one_key_whether_an_effect_is_asked_for_or_called_for() {
+        let mut asked = paper();
+        for &effect in Effect::ALL {
+            asked.effects.set(effect, Switch::On);
+        }
+        assert_eq!(asked.canonical_bytes(), paper().canonical_bytes());
+    }
+}

@@ -1,0 +1,141 @@
+//! Only the effects that a scene calls for: what `auto` leaves out changes no number.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
+use drillsweep_sim::scenario::{Accuracy, Effect, Integrator, Scenario, Switch, TimeStepping, preset};
+use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::transient::{Outcome, Records, Transient};
+
+const METHODS: [(Integrator, f64); 3] =
+    [(Integrator::GeneralizedAlpha, 5e-4), (Integrator::Esdirk4, 1e-3), (Integrator::Rk4, 5e-5)];
+
+/// The base case over `duration` \[s\].
+fn base(duration: f64, (integrator, step): (Integrator, f64)) -> Scenario {
+    let mut scenario = preset("paper-200m").unwrap();
+    scenario.duration = duration;
+    scenario.recording.spectrum_windows.clear();
+    scenario.recording.orbit_window = None;
+    scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(integrator, step));
+    scenario
+}
+
+fn straighten(scenario: &mut Scenario) {
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+    }
+}
+
+fn without_friction(scenario: &mut Scenario) {
+    (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+}
+
+/// A finished run and how many degrees of freedom a node had in it.
+fn run(scenario: &Scenario) -> (Records, usize) {
+    let model = Model::new(scenario).unwrap();
+    let transient = Transient::new(&model, &Equilibrium::find(&model).unwrap()).unwrap();
+    let degrees_of_freedom = transient.degrees_of_freedom();
+    match transient.run(&Control::new()) {
+        Ok(Outcome::Finished(records)) => (*records, degrees_of_freedom),
+        other => panic!("not finished: {other:?}"),
+    }
+}
+
+/// Largest distance of two runs' recorded lateral displacements, relative to the largest motion of the first.
+fn distance(a: &Records, b: &Records) -> f64 {
+    let (mut apart, mut motion) = (0.0_f64, 0.0_f64);
+    for (a, b) in a.histories.iter().zip(&b.histories) {
+        for (a, b) in [(&a.u, &b.u), (&a.v, &b.v)] {
+            for (x, y) in a.iter().zip(b) {
+                apart = apart.max((x - y).abs());
+                motion = motion.max((x - a[0]).abs());
+            }
+        }
+    }
+    apart / motion
+}
+
+#[test]
+fn auto_agrees_with_everything_on_to_rounding() {
+    type Change = fn(&mut Scenario);
+    // Scene, degrees of freedom that it leaves.
+    let scenes: [(&str, Change, usize); 7] = [
+        ("as it is", |_| {}, 6),
+        ("dry", |s| s.mud = None, 6),
+        ("still mud", |s| s.mud.as_mut().unwrap().flow_rate = 0.0, 6),
+        ("frictionless", without_friction, 6),
+        ("straight", straighten, 5),
+        ("straight and frictionless", |s| (straighten(s), without_friction(s)).0, 4),
+        (
+            "straight, friction without torque",
+            |s| {
+                straighten(s);
+                s.effects.set(Effect::FrictionTorque, Switch::Off);
+            },
+            4,
+        ),
+    ];
+    for (name, change, degrees_of_freedom) in scenes {
+        let mut scenario = base(0.2, METHODS[1]);
+        change(&mut scenario);
+        let mut everything = scenario.clone();
+        for &effect in Effect::ALL {
+            if everything.effects.switch(effect) == Switch::Auto {
+                everything.effects.set(effect, Switch::On);
+            }
+        }
+        let ((auto, of_auto), (all, of_all)) = (run(&scenario), run(&everything));
+        assert_eq!((of_auto, of_all), (degrees_of_freedom, 6), "{name}");
+        // 200 steps of six solves, each with 1e-16 times a condition of some thousand.
+        let distance = distance(&all, &auto);
+        assert!(distance < 1e-8, "{name}: {distance:e}");
+    }
+}
+
+#[test]
+fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
+    for method in METHODS {
+        let mut scenario = base(0.1, method);
+        straighten(&mut scenario);
+        without_friction(&mut scenario);
+        let (records, degrees_of_freedom) = run(&scenario);
+        assert_eq!(degrees_of_freedom, 4);
+        for history in &records.histories {
+            assert!(history.theta_z.iter().all(|&twist| twist == history.theta_z[0] && twist != 0.0));
+            assert!(history.w.iter().all(|&w| w == history.w[0] && w != 0.0));
+            assert!(history.u.iter().any(|&u| u != history.u[0]));
+        }
+        let last = records.energy.last().unwrap();
+        // Without friction the unbalance is what drives; the residual is the method's own error.
+        assert!(last.residual.abs() < 0.02 * last.work_unbalance.abs().max(last.kinetic), "{last:?}");
+    }
+}
+
+#[test]
+fn fewer_degrees_of_freedom_resume_to_the_same_bits() {
+    for torsion in [Switch::On, Switch::Off] {
+        let mut scenario = base(0.3, METHODS[0]);
+        straighten(&mut scenario);
+        scenario.effects.set(Effect::Torsion, torsion);
+        let (whole, degrees_of_freedom) = run(&scenario);
+        assert_eq!(degrees_of_freedom, if torsion == Switch::On { 5 } else { 4 });
+        let model = Model::new(&scenario).unwrap();
+        let equilibrium = Equilibrium::find(&model).unwrap();
+        let control = Control::new();
+        let outcome = std::thread::scope(|scope| {
+            let watched = &control;
+            scope.spawn(move || {
+                while watched.simulated_time() < 0.05 {
+                    std::hint::spin_loop();
+                }
+                watched.suspend();
+            });
+            Transient::new(&model, &equilibrium).unwrap().run(&control)
+        });
+        let Ok(Outcome::Suspended(checkpoint)) = outcome else { panic!("not suspended: {outcome:?}") };
+        let resumed = Transient::resume(&model, &equilibrium, &checkpoint).unwrap().run(&Control::new());
+        let Ok(Outcome::Finished(resumed)) = resumed else { panic!("not finished: {resumed:?}") };
+        assert_eq!(*resumed, whole);
+    }
+}

@@ -115,6 +115,65 @@ fn completed(sweep: &Value) -> bool {
 }
 
 #[test]
+fn a_token_opens_the_service_to_other_machines_and_shows_in_no_log() {
+    let data = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        Command::new(BINARY).args(arguments).arg("--data").arg(data.path()).output().unwrap()
+    };
+    let open = ["serve", "--listen", "0.0.0.0:0"];
+    let refused = run(&open);
+    assert!(!refused.status.success());
+    let reason = String::from_utf8(refused.stderr).unwrap();
+    assert!(reason.contains("will not listen on 0.0.0.0") && reason.contains("token create"), "{reason}");
+
+    let created = run(&["token", "create", "--owner", "anne", "--expires", "1h"]);
+    let token = String::from_utf8(created.stdout).unwrap().trim().to_owned();
+    assert!(token.starts_with("dsw_") && token.len() == 68, "{token}");
+    let listed: Value = serde_json::from_slice(&run(&["token", "list", "--json"]).stdout).unwrap();
+    assert_eq!(listed[0]["owner"], "anne");
+    assert_eq!(listed[0]["state"], "valid");
+
+    let log = data.path().join("log");
+    let server = Command::new(BINARY)
+        .args(open)
+        .arg("--data")
+        .arg(data.path())
+        .env("DRILLSWEEP_LOG", "trace")
+        .env("NO_COLOR", "1")
+        .stderr(std::fs::File::create(&log).unwrap())
+        .spawn()
+        .unwrap();
+    let server = Process(server);
+    let deadline = Instant::now() + PATIENCE;
+    let port = loop {
+        let text = std::fs::read_to_string(&log).unwrap();
+        if let Some((_, after)) = text.split_once("http://0.0.0.0:") {
+            let digits: String = after.chars().take_while(char::is_ascii_digit).collect();
+            // The line may be written in parts.
+            if after.len() > digits.len() {
+                break digits;
+            }
+        }
+        assert!(Instant::now() < deadline, "{text}");
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let url = format!("http://127.0.0.1:{port}/v1/sweeps");
+    assert!(matches!(ureq::get(&url).call(), Err(ureq::Error::StatusCode(401))));
+    let sweep: Value = ureq::post(&url)
+        .header("authorization", format!("Bearer {token}"))
+        .send_json(json!({ "preset": "paper-200m" }))
+        .unwrap()
+        .body_mut()
+        .read_json()
+        .unwrap();
+    assert_eq!(sweep["owner"], "anne");
+    drop(server);
+    let text = std::fs::read_to_string(&log).unwrap();
+    assert!(text.contains("/v1/sweeps"), "the log says what was asked for");
+    assert!(!text.contains(&token) && !text.contains(&token[4..]), "and not with which token");
+}
+
+#[test]
 fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
     let data = tempfile::tempdir().unwrap();
     let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);

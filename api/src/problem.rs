@@ -20,6 +20,14 @@ pub enum ProblemKind {
     InvalidParameter,
     /// The body's media type is not accepted.
     UnsupportedMediaType,
+    /// No token, or one that is not valid.
+    Unauthorized,
+    /// The token does not allow it.
+    Forbidden,
+    /// The owner makes too many requests.
+    TooManyRequests,
+    /// The owner has too many points in the queue.
+    QuotaExceeded,
     /// A browser sent the request from another site's page.
     CrossSite,
     /// None of the media types in `Accept` can be served.
@@ -55,6 +63,10 @@ impl ProblemKind {
         ProblemKind::InvalidRequest,
         ProblemKind::InvalidParameter,
         ProblemKind::UnsupportedMediaType,
+        ProblemKind::Unauthorized,
+        ProblemKind::Forbidden,
+        ProblemKind::TooManyRequests,
+        ProblemKind::QuotaExceeded,
         ProblemKind::CrossSite,
         ProblemKind::NotAcceptable,
         ProblemKind::BodyTooLarge,
@@ -98,6 +110,10 @@ impl ProblemKind {
             ProblemKind::UnsupportedMediaType => {
                 ("unsupported-media-type", "The body's media type is not accepted", 415)
             }
+            ProblemKind::Unauthorized => ("unauthorized", "A valid token is needed", 401),
+            ProblemKind::Forbidden => ("forbidden", "The token does not allow this", 403),
+            ProblemKind::TooManyRequests => ("too-many-requests", "Too many requests", 429),
+            ProblemKind::QuotaExceeded => ("quota-exceeded", "Too many points in the queue", 429),
             ProblemKind::CrossSite => ("cross-site", "Requests from other sites are refused", 403),
             ProblemKind::NotAcceptable => ("not-acceptable", "No acceptable format", 406),
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),

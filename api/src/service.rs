@@ -24,9 +24,15 @@ pub struct Limits {
     pub name_length: usize,
     /// Characters in an owner's name.
     pub owner_length: usize,
+    /// Requests that an owner may make a second, over longer times.
+    pub requests_per_second: u32,
+    /// Requests that an owner may make at once after a rest.
+    pub request_burst: u32,
+    /// Points of an owner that may wait or run.
+    pub open_points_per_owner: u64,
 }
 
-/// The limits in force.
+/// The limits in force, but for those of an owner: these are the defaults of what an operator sets.
 pub const LIMITS: Limits = Limits {
     points_per_sweep: 10_000,
     body_bytes: 2 << 20,
@@ -36,6 +42,9 @@ pub const LIMITS: Limits = Limits {
     highest_priority: 10,
     name_length: 200,
     owner_length: 100,
+    requests_per_second: 200,
+    request_burst: 1_000,
+    open_points_per_owner: 500_000,
 };
 
 /// The preset scenarios.

@@ -4,10 +4,13 @@ use anyhow::{Context, bail};
 use clap::Args;
 use serde_json::Value;
 
+/// The environment variable with the token; an argument would show in the list of processes.
+const TOKEN: &str = "DRILLSWEEP_TOKEN";
+
 /// Which server.
 #[derive(Args, Clone)]
 pub(crate) struct ServerArguments {
-    /// Address of the server.
+    /// Address of the server. Its token, where it needs one, comes from the environment variable DRILLSWEEP_TOKEN.
     #[arg(long, env = "DRILLSWEEP_SERVER", default_value = "http://127.0.0.1:7340")]
     pub(crate) server: String,
 }
@@ -16,20 +19,21 @@ pub(crate) struct ServerArguments {
 pub(crate) struct Client {
     agent: ureq::Agent,
     server: String,
+    token: Option<String>,
 }
 
 impl Client {
     pub(crate) fn new(arguments: &ServerArguments) -> Self {
         let config = ureq::Agent::config_builder().http_status_as_error(false).build();
-        Self { agent: config.into(), server: arguments.server.trim_end_matches('/').to_owned() }
+        let token = std::env::var(TOKEN).ok().filter(|token| !token.is_empty());
+        Self { agent: config.into(), server: arguments.server.trim_end_matches('/').to_owned(), token }
     }
 
     /// Posts JSON and reads JSON.
     pub(crate) fn post(&self, path: &str, body: &Value) -> anyhow::Result<Value> {
         let url = format!("{}{path}", self.server);
         let response = self
-            .agent
-            .post(&url)
+            .authorized(self.agent.post(&url))
             .send_json(body)
             .with_context(|| format!("no answer from {url}; is the server up?"))?;
         self.json(response)
@@ -52,7 +56,16 @@ impl Client {
 
     fn request(&self, path: &str) -> anyhow::Result<ureq::http::Response<ureq::Body>> {
         let url = format!("{}{path}", self.server);
-        self.agent.get(&url).call().with_context(|| format!("no answer from {url}; is the server up?"))
+        self.authorized(self.agent.get(&url))
+            .call()
+            .with_context(|| format!("no answer from {url}; is the server up?"))
+    }
+
+    fn authorized<B>(&self, request: ureq::RequestBuilder<B>) -> ureq::RequestBuilder<B> {
+        match &self.token {
+            Some(token) => request.header("authorization", format!("Bearer {token}")),
+            None => request,
+        }
     }
 
     fn json(&self, mut response: ureq::http::Response<ureq::Body>) -> anyhow::Result<Value> {

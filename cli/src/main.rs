@@ -6,6 +6,7 @@ mod fetch;
 mod service;
 mod simulate;
 mod submit;
+mod token;
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
@@ -41,6 +42,9 @@ enum Command {
         /// The scenario to print, as TOML.
         name: Option<String>,
     },
+    /// Make, list and revoke tokens.
+    #[command(subcommand)]
+    Token(token::TokenCommand),
     /// Print the OpenAPI document of the service.
     Openapi,
 }
@@ -59,6 +63,7 @@ fn main() -> anyhow::Result<()> {
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Scenario { name } => simulate::print_scenario(name.as_deref()),
+        Command::Token(command) => token::token(&command),
         Command::Openapi => {
             print(drillsweep_server::openapi_json());
             Ok(())

@@ -1,19 +1,23 @@
 //! The roles of the binary that keep running: server, worker, and both together.
 
 use std::net::SocketAddr;
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
-use drillsweep_server::{Config, DEFAULT_ADDRESS};
+use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::WorkerConfig;
 use rustix::process::{Signal, set_parent_process_death_signal};
+use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
+
+use crate::token;
 
 /// Added to the niceness of a worker: the server answers while all cores simulate.
 const WORKER_NICENESS: i32 = 10;
@@ -29,13 +33,35 @@ pub(crate) struct DataArguments {
     data: PathBuf,
 }
 
+/// Where the server listens, and what it allows.
+#[derive(Args, Clone)]
+struct ListenArguments {
+    /// Address to listen on; anything but this machine needs a token first (`drillsweep token create`).
+    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
+    listen: SocketAddr,
+    /// Address on which `/metrics` is served, without tokens; absent means not at all.
+    #[arg(long, env = "DRILLSWEEP_METRICS_LISTEN")]
+    metrics_listen: Option<SocketAddr>,
+    /// File with an administrator's token that was made elsewhere: 32 to 200 visible ASCII characters.
+    #[arg(long, env = "DRILLSWEEP_ADMIN_TOKEN_FILE")]
+    admin_token_file: Option<PathBuf>,
+    /// Requests that an owner may make a second, over longer times.
+    #[arg(long, default_value_t = OwnerLimits::default().requests_per_second)]
+    requests_per_second: NonZeroU32,
+    /// Requests that an owner may make at once after a rest.
+    #[arg(long, default_value_t = OwnerLimits::default().request_burst)]
+    request_burst: NonZeroU32,
+    /// Points of an owner that may wait or run.
+    #[arg(long, default_value_t = OwnerLimits::default().open_points)]
+    open_points: u64,
+}
+
 #[derive(Args)]
 pub(crate) struct UpArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Address to listen on; anything but this machine is open to everybody there.
-    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
-    listen: SocketAddr,
+    #[command(flatten)]
+    listen: ListenArguments,
     /// Number of worker processes; one a core unless said otherwise.
     #[arg(long)]
     workers: Option<usize>,
@@ -48,9 +74,8 @@ pub(crate) struct UpArguments {
 pub(crate) struct ServeArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Address to listen on; anything but this machine is open to everybody there.
-    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
-    listen: SocketAddr,
+    #[command(flatten)]
+    listen: ListenArguments,
 }
 
 #[derive(Args)]
@@ -69,7 +94,7 @@ pub(crate) struct WorkerArguments {
 }
 
 impl DataArguments {
-    fn store(&self, role: Role) -> StoreConfig {
+    pub(crate) fn store(&self, role: Role) -> StoreConfig {
         StoreConfig {
             database_path: self.data.join("drillsweep.sqlite"),
             blob_directory: self.data.join("blobs"),
@@ -87,7 +112,7 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
     };
     runtime()?.block_on(async {
         let stop = stop_on_signal()?;
-        let served = serve_until(&arguments.data, arguments.listen, stop.clone());
+        let served = serve_until(&arguments.data, &arguments.listen, stop.clone());
         let kept = keep_workers(arguments, workers, stop);
         let (served, kept) = tokio::join!(served, kept);
         served.and(kept)
@@ -96,7 +121,7 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
 
 /// The server alone.
 pub(crate) fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
-    runtime()?.block_on(async { serve_until(&arguments.data, arguments.listen, stop_on_signal()?).await })
+    runtime()?.block_on(async { serve_until(&arguments.data, &arguments.listen, stop_on_signal()?).await })
 }
 
 /// A worker.
@@ -151,16 +176,33 @@ async fn stopped(mut stop: watch::Receiver<bool>) {
 
 async fn serve_until(
     data: &DataArguments,
-    listen: SocketAddr,
+    arguments: &ListenArguments,
     stop: watch::Receiver<bool>,
 ) -> anyhow::Result<()> {
     let store = Store::open(&data.store(Role::Server)).await?;
-    let listener =
-        tokio::net::TcpListener::bind(listen).await.with_context(|| format!("cannot listen on {listen}"))?;
-    tracing::info!("listening on http://{}", listener.local_addr()?);
-    drillsweep_server::serve(listener, store.clone(), Config::default(), stopped(stop)).await?;
+    if let Some(path) = &arguments.admin_token_file {
+        token::register(&store, path).await?;
+    }
+    let metrics = match arguments.metrics_listen {
+        Some(address) => Some(bind(address).await?),
+        None => None,
+    };
+    let listeners = Listeners { api: bind(arguments.listen).await?, metrics };
+    let config = Config {
+        owner_limits: OwnerLimits {
+            requests_per_second: arguments.requests_per_second,
+            request_burst: arguments.request_burst,
+            open_points: arguments.open_points,
+        },
+        ..Config::default()
+    };
+    drillsweep_server::serve(listeners, store.clone(), config, stopped(stop)).await?;
     store.close().await;
     Ok(())
+}
+
+async fn bind(address: SocketAddr) -> anyhow::Result<TcpListener> {
+    TcpListener::bind(address).await.with_context(|| format!("cannot listen on {address}"))
 }
 
 /// Keeps a number of worker processes alive until told to stop.

@@ -40,6 +40,17 @@ impl Error {
         Error { retry_after: Some(1), ..error }
     }
 
+    /// The caller must say who they are.
+    pub(crate) fn unauthorized(detail: &str) -> Self {
+        Error::new(ProblemKind::Unauthorized, detail)
+    }
+
+    /// The caller has had what they may have; another try may succeed after `wait`.
+    pub(crate) fn too_many(kind: ProblemKind, detail: impl Into<String>, wait: std::time::Duration) -> Self {
+        let seconds = u32::try_from(wait.as_secs_f64().ceil() as u64).unwrap_or(u32::MAX).max(1);
+        Error { retry_after: Some(seconds), ..Error::new(kind, detail) }
+    }
+
     /// The problem, to be written out by [`crate::middleware::write_problems`].
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem
@@ -83,6 +94,9 @@ impl IntoResponse for Error {
         let mut response = status.into_response();
         if let Some(seconds) = self.retry_after {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        if status == StatusCode::UNAUTHORIZED {
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
         response.extensions_mut().insert(self);
         response

@@ -1,12 +1,26 @@
 //! Whether the service lives, and whether it can work.
 
+use std::time::Duration;
+
 use axum::Json;
 use axum::extract::State;
 use drillsweep_api::Health;
+use tokio::sync::Mutex;
+use tokio::time::{Instant, timeout};
 
 use crate::app::App;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::openapi::Problems;
+
+/// How long an answer holds: everybody may ask, and each try writes to the disk.
+const FRESH: Duration = Duration::from_secs(1);
+
+/// How long the store may take: a writer with a big sweep is given its time.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// When the store was last seen to work.
+#[derive(Default)]
+pub(crate) struct Readiness(Mutex<Option<Instant>>);
 
 /// Whether the process answers at all
 #[utoipa::path(
@@ -14,21 +28,34 @@ use crate::openapi::Problems;
     path = "/livez",
     tag = "service",
     operation_id = "is_alive",
+    security(()),
     responses((status = 200, description = "It does", body = Health), Problems)
 )]
 pub(crate) async fn alive() -> Json<Health> {
     Json(Health { status: "ok".to_owned() })
 }
 
-/// Whether the service can work: the database answers
+/// Whether the service can work
+///
+/// A scratch point is queued and claimed as a worker would, and taken back; a scratch blob is written, read and
+/// deleted.
 #[utoipa::path(
     get,
     path = "/readyz",
     tag = "service",
     operation_id = "is_ready",
+    security(()),
     responses((status = 200, description = "It can", body = Health), Problems)
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
-    app.store.now_ms().await?;
+    let mut seen = app.readiness.0.lock().await;
+    if seen.is_none_or(|instant| instant.elapsed() > FRESH) {
+        *seen = None;
+        match timeout(PATIENCE, app.store.probe()).await {
+            Ok(Ok(())) => *seen = Some(Instant::now()),
+            Ok(Err(error)) => return Err(Error::unavailable(&error)),
+            Err(_) => return Err(Error::unavailable("the store did not answer in time")),
+        }
+    }
     Ok(Json(Health { status: "ok".to_owned() }))
 }

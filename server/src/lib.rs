@@ -5,13 +5,16 @@
 
 mod app;
 mod artifact;
+mod auth;
 mod convert;
 mod cost;
 mod error;
 mod extract;
 mod format;
 mod health;
+mod limit;
 mod maintenance;
+mod metrics;
 mod middleware;
 mod openapi;
 mod points;
@@ -22,6 +25,7 @@ mod status;
 mod sweeps;
 mod work;
 
-pub use app::{Config, DEFAULT_ADDRESS, ServeError, serve};
+pub use app::{Config, DEFAULT_ADDRESS, Listeners, ServeError, serve};
+pub use limit::OwnerLimits;
 pub use openapi::{openapi, openapi_json};
 pub use router::router;

@@ -7,7 +7,7 @@ use axum::Router;
 use axum::body::Body;
 use axum::extract::{DefaultBodyLimit, Request};
 use axum::http::{HeaderName, HeaderValue, Response, header};
-use axum::middleware::{Next, from_fn};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use drillsweep_api::{LIMITS, PROBLEM_MEDIA_TYPE, ProblemKind};
 use tower::ServiceBuilder;
@@ -19,13 +19,15 @@ use tower_http::request_id::{MakeRequestId, PropagateRequestIdLayer, RequestId, 
 use tower_http::trace::TraceLayer;
 use tracing::Span;
 
+use crate::app::App;
 use crate::error::Error;
+use crate::{auth, metrics};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Wraps the routes: request ids, spans, problem documents, compression, refusal of other sites' pages,
-/// panics, body limit; in this order from the outside.
-pub(crate) fn wrap(routes: Router) -> Router {
+/// Wraps the routes: request ids, spans, metrics, compression, problem documents, panics, refusal of other sites'
+/// pages, tokens and rates, body limit; in this order from the outside.
+pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let compressible =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
     routes.layer(
@@ -33,10 +35,12 @@ pub(crate) fn wrap(routes: Router) -> Router {
             .layer(SetRequestIdLayer::new(REQUEST_ID, RequestIds))
             .layer(TraceLayer::new_for_http().make_span_with(span).on_request(()).on_response(log_response))
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
+            .layer(from_fn_with_state(app.clone(), metrics::measure))
             .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
             .layer(from_fn(write_problems))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
+            .layer(from_fn_with_state(app.clone(), auth::guard))
             .layer(DefaultBodyLimit::max(LIMITS.body_bytes)),
     )
 }

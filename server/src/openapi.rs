@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 use axum::http::header;
 use axum::response::IntoResponse;
 use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemDetails, Table};
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type};
-use utoipa::{IntoResponses, OpenApi, ToSchema};
+use utoipa::{IntoResponses, Modify, OpenApi, ToSchema};
 
 use crate::format::Format;
 use crate::router;
@@ -23,6 +24,8 @@ use crate::router;
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     components(schemas(ProblemDetails, Table)),
+    modifiers(&TokenSecurity),
+    security(("token" = []), ()),
     tags(
         (name = "sweeps", description = "Submit sweeps and single runs, and follow them"),
         (name = "points", description = "The points of a sweep and their results"),
@@ -31,6 +34,23 @@ use crate::router;
     )
 )]
 pub(crate) struct Document;
+
+/// Says what a token is; the alternative without one holds until the first token exists.
+struct TokenSecurity;
+
+impl Modify for TokenSecurity {
+    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+        let scheme = HttpBuilder::new()
+            .scheme(HttpAuthScheme::Bearer)
+            .description(Some(
+                "A token of `drillsweep token create`. Its scope is read, submit or admin. Until the first token \
+                 exists none is needed, and the service listens on its own machine only.",
+            ))
+            .build();
+        let components = document.components.get_or_insert_default();
+        components.add_security_scheme("token", SecurityScheme::Http(scheme));
+    }
+}
 
 /// What every route may answer instead of a result.
 pub(crate) struct Problems;
@@ -95,6 +115,7 @@ pub fn openapi_json() -> &'static str {
     path = "/openapi.json",
     tag = "service",
     operation_id = "get_openapi",
+    security(()),
     responses((status = 200, description = "The document", content_type = "application/json"), Problems)
 )]
 pub(crate) async fn show() -> impl IntoResponse {

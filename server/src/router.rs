@@ -14,11 +14,16 @@ use crate::{cost, health, middleware, openapi, points, results, scenarios, statu
 
 /// The service without the network. `stopping` ends long polls when it turns true.
 pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
-    let app = App { store, config: config.into(), stopping };
+    routes(&App::new(store, config, stopping))
+}
+
+pub(crate) fn routes(app: &App) -> Router {
     let (routes, _) = documented().split_for_parts();
-    let routes =
-        routes.fallback(no_such_route).method_not_allowed_fallback(method_not_allowed).with_state(app);
-    middleware::wrap(routes)
+    let routes = routes
+        .fallback(no_such_route)
+        .method_not_allowed_fallback(method_not_allowed)
+        .with_state(app.clone());
+    middleware::wrap(routes, app)
 }
 
 /// Routes and their OpenAPI document; a route cannot exist without its entry there.

@@ -1,5 +1,7 @@
 //! What the service says about itself.
 
+use std::time::Duration;
+
 use axum::Json;
 use axum::extract::State;
 use drillsweep_api::{LIMITS, Limits, Queue, Worker, WorkerList};
@@ -10,8 +12,8 @@ use crate::convert::timestamp;
 use crate::error::Result;
 use crate::openapi::Problems;
 
-/// Workers that have been silent for longer \[ms\] are not listed: five times the lease's renewal.
-const WORKER_SILENCE_MS: i64 = 100_000;
+/// Workers that have been silent for longer are not listed: five times the lease's renewal.
+pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);
 
 /// The worker processes
 #[utoipa::path(
@@ -33,7 +35,7 @@ pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> 
             seen: timestamp(record.last_seen)?,
         })
     };
-    let records = app.store.workers(WORKER_SILENCE_MS).await?;
+    let records = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?;
     Ok(Json(WorkerList { workers: records.into_iter().map(worker).collect::<Result<_>>()? }))
 }
 
@@ -62,6 +64,12 @@ pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     operation_id = "get_limits",
     responses((status = 200, description = "The limits", body = Limits), Problems)
 )]
-pub(crate) async fn limits() -> Json<Limits> {
-    Json(LIMITS)
+pub(crate) async fn limits(State(app): State<App>) -> Json<Limits> {
+    let owner = &app.config.owner_limits;
+    Json(Limits {
+        requests_per_second: owner.requests_per_second.get(),
+        request_burst: owner.request_burst.get(),
+        open_points_per_owner: owner.open_points,
+        ..LIMITS
+    })
 }

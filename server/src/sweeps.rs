@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use axum::Json;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
 use drillsweep_api::view::points;
 use drillsweep_api::{
     DryRun, Expansion, LIMITS, PlannedPoint, RunRequest, Sweep, SweepList, SweepPoint, SweepRequest, expand,
@@ -18,10 +18,12 @@ use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
 use crate::app::App;
+use crate::auth::Caller;
 use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{self, Path, Query, value};
 use crate::format::{self, Format};
+use crate::limit;
 use crate::openapi::{Problems, TableResponse};
 use crate::results::TableQuery;
 use crate::work::blocking;
@@ -65,11 +67,12 @@ pub(crate) struct SubmitQuery {
 )]
 pub(crate) async fn create(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Query(query): Query<SubmitQuery>,
     headers: HeaderMap,
     extract::Json { value: request, bytes }: extract::Json<SweepRequest>,
 ) -> Result<Response> {
-    submit(app, request, bytes, query.dry_run, &headers).await
+    submit(app, &caller, request, bytes, query.dry_run, &headers).await
 }
 
 /// Submit a single run
@@ -94,20 +97,23 @@ pub(crate) async fn create(
 )]
 pub(crate) async fn create_run(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Query(query): Query<SubmitQuery>,
     headers: HeaderMap,
     extract::Json { value: request, bytes }: extract::Json<RunRequest>,
 ) -> Result<Response> {
-    submit(app, request.into(), bytes, query.dry_run, &headers).await
+    submit(app, &caller, request.into(), bytes, query.dry_run, &headers).await
 }
 
 async fn submit(
     app: App,
-    request: SweepRequest,
+    caller: &Caller,
+    mut request: SweepRequest,
     body: Bytes,
     is_dry_run: bool,
     headers: &HeaderMap,
 ) -> Result<Response> {
+    request.owner = caller.submits_as(request.owner)?;
     let idempotency_key = idempotency_key(headers)?.map(|key| (key, *blake3::hash(&body).as_bytes()));
     // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
     let (expansion, new_sweep) = blocking(move || {
@@ -119,6 +125,7 @@ async fn submit(
     if is_dry_run {
         return Ok(Json(plan(&app, expansion).await?).into_response());
     }
+    limit::check_open_points(&app, &new_sweep.owner, new_sweep.points.len()).await?;
     let id = match app.store.submit_sweep(&new_sweep).await? {
         SubmitOutcome::Created => new_sweep.id,
         SubmitOutcome::Known(id) => id,

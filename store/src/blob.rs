@@ -59,6 +59,18 @@ impl BlobStore {
     pub async fn get_range(&self, id: BlobId, bytes: Range<u64>) -> Result<Bytes> {
         Ok(self.objects.get_range(&id.path(), bytes).await?)
     }
+
+    /// Writes, reads and deletes a scratch object: a full or read-only disk shows here.
+    pub(crate) async fn probe(&self, content: Bytes) -> Result<()> {
+        let path = ObjectPath::from(format!("probe/{}", blake3::hash(&content).to_hex()));
+        self.objects.put(&path, PutPayload::from(content.clone())).await?;
+        let read = self.objects.get(&path).await?.bytes().await?;
+        self.objects.delete(&path).await?;
+        if read != content {
+            return Err(StoreError::Corrupt("a scratch object came back changed".to_owned()));
+        }
+        Ok(())
+    }
 }
 
 impl BlobId {

@@ -46,6 +46,7 @@ pub enum Role {
 pub struct Store {
     pub(crate) pool: SqlitePool,
     pub(crate) clock_offset_ms: i64,
+    pub(crate) database_path: PathBuf,
     blobs: BlobStore,
 }
 
@@ -87,7 +88,8 @@ impl Store {
         sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
         drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;
-        Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, blobs })
+        let database_path = config.database_path.clone();
+        Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, database_path, blobs })
     }
 
     /// The object store.

@@ -31,6 +31,9 @@ pub enum StoreError {
     /// A stored value is not what this program writes.
     #[error("the database holds an unexpected value: {0}")]
     Corrupt(String),
+    /// The system has no random numbers.
+    #[error("random numbers: {0}")]
+    Random(String),
     /// An idempotency key was used for another request.
     #[error("the idempotency key was used for another request before")]
     IdempotencyConflict,

@@ -5,18 +5,22 @@
 //! write of a worker carries the attempt that it was given, so that a late worker changes nothing.
 
 mod blob;
+mod census;
 mod connection;
 mod error;
 mod event;
 mod point;
+mod probe;
 mod queue;
 mod state;
 mod submit;
 mod sweep;
 mod table;
+mod token;
 mod worker;
 
 pub use blob::{BlobId, BlobStore};
+pub use census::Census;
 pub use connection::{Role, Store, StoreConfig};
 pub use error::{Result, StoreError};
 pub use event::Event;
@@ -26,4 +30,5 @@ pub use state::{StateCounts, WorkKey, WorkState};
 pub use submit::{NewPoint, NewSweep, SubmitOutcome};
 pub use sweep::SweepRecord;
 pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};
+pub use token::{NewToken, TokenRecord, TokenScope, TokenSecret, TokensPresent};
 pub use worker::WorkerRecord;

@@ -1,5 +1,7 @@
 //! The queue: claiming work, keeping the lease, ending it.
 
+use sqlx::SqliteExecutor;
+
 use crate::blob::BlobId;
 use crate::connection::{Store, now};
 use crate::error::Result;
@@ -97,6 +99,17 @@ impl Store {
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
         self.reap_expired().await?;
+        self.claim_with(&self.pool, worker, physics_version, lease_ms).await
+    }
+
+    /// The same over a connection or in a transaction.
+    pub(crate) async fn claim_with<'c>(
+        &self,
+        executor: impl SqliteExecutor<'c>,
+        worker: &str,
+        physics_version: i64,
+        lease_ms: i64,
+    ) -> Result<Option<Claim>> {
         // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
         let rows: Vec<(Vec<u8>, i64, String)> = sqlx::query_as(concat!(
             "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
@@ -112,7 +125,7 @@ impl Store {
         .bind(worker)
         .bind(lease_ms)
         .bind(physics_version)
-        .fetch_all(&self.pool)
+        .fetch_all(executor)
         .await?;
         let Some((key, attempt, scenario_json)) = rows.into_iter().next() else { return Ok(None) };
         let lease = Lease { key: work_key(&key)?, attempt, worker: worker.to_owned() };
@@ -342,6 +355,20 @@ impl Store {
             }
         }
         Ok(depths)
+    }
+
+    /// How many work items that are not final an owner has.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn open_work(&self, owner: &str) -> Result<u64> {
+        let number: i64 = sqlx::query_scalar(
+            "SELECT count(*) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')",
+        )
+        .bind(owner)
+        .fetch_one(&self.pool)
+        .await?;
+        Ok(number.unsigned_abs())
     }
 
     /// Runs a statement that ends a lease. Its fifth parameter is the error.

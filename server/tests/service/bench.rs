@@ -53,6 +53,10 @@ impl Answer {
 
 impl Bench {
     pub(crate) async fn new() -> Self {
+        Bench::with(Config::default()).await
+    }
+
+    pub(crate) async fn with(config: Config) -> Self {
         let directory = TempDir::new().unwrap();
         let store = Store::open(&StoreConfig {
             database_path: directory.path().join("drillsweep.sqlite"),
@@ -63,7 +67,7 @@ impl Bench {
         .await
         .unwrap();
         let (stop, stopping) = watch::channel(false);
-        let config = Config { poll_interval: Duration::from_millis(10), ..Config::default() };
+        let config = Config { poll_interval: Duration::from_millis(10), ..config };
         Bench { routes: router(store.clone(), config, stopping), store, stop, _directory: directory }
     }
 

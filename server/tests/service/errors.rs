@@ -1,7 +1,7 @@
 //! What is answered to requests that cannot be served.
 
 use axum::body::Body;
-use axum::http::{Method, Request, StatusCode, header};
+use axum::http::{Method, Request, header};
 use drillsweep_api::LIMITS;
 use serde_json::json;
 
@@ -96,7 +96,7 @@ async fn a_failure_of_the_store_tells_the_client_nothing_of_it() {
     let problem = bench.get("/v1/sweeps").await.problem(500, "internal");
     let text = problem.to_string().to_lowercase();
     assert!(!text.contains("pool") && !text.contains("sql"), "{text}");
-    assert_eq!(bench.get("/readyz").await.status, StatusCode::INTERNAL_SERVER_ERROR);
+    bench.get("/readyz").await.problem(503, "unavailable");
     assert_eq!(bench.get("/livez").await.json(), json!({"status": "ok"}));
 }
 

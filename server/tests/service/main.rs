@@ -9,3 +9,4 @@ mod openapi;
 mod results;
 mod shutdown;
 mod submit;
+mod trust;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use drillsweep_server::{Config, serve};
+use drillsweep_server::{Config, Listeners, serve};
 use serde_json::json;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
@@ -20,12 +20,13 @@ async fn shutting_down_answers_open_long_polls_at_once() {
     let id = bench.submit(json!({"preset": "paper-200m"})).await;
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
+    let listeners = Listeners { api: listener, metrics: None };
     let (stop, stopped) = oneshot::channel::<()>();
     let shutdown = async {
         // Dropping the sender stops the service too.
         let _ = stopped.await;
     };
-    let service = tokio::spawn(serve(listener, bench.store.clone(), Config::default(), shutdown));
+    let service = tokio::spawn(serve(listeners, bench.store.clone(), Config::default(), shutdown));
 
     // One request answered on the connection shows that the service runs; the next one is then under way.
     let mut connection = TcpStream::connect(address).await.unwrap();

@@ -10,5 +10,7 @@ mod concurrency;
 mod counts;
 mod fairness;
 mod lease;
+mod probe;
 mod submit;
 mod table;
+mod token;

@@ -1,0 +1,195 @@
+//! Who asks, and what they may do: one policy over all routes, so that no route can forget it.
+//!
+//! Until the first token exists everybody on this machine may do everything, and the service listens nowhere else.
+//! From then on every request needs a valid token, but for [`OPEN`] routes; tokens that expire or are revoked never
+//! open the service again.
+
+use std::net::IpAddr;
+
+use axum::extract::{MatchedPath, RawPathParams, Request, State};
+use axum::http::{HeaderMap, Method, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::ProblemKind;
+use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
+
+use crate::app::App;
+use crate::error::{Error, Result};
+
+/// What everybody may ask for: health checks have no tokens, and the document is what a client begins with.
+const OPEN: [&str; 3] = ["/livez", "/readyz", "/openapi.json"];
+
+/// Who asks.
+#[derive(Debug, Clone)]
+pub(crate) enum Caller {
+    /// Somebody on this machine, while there are no tokens.
+    Local,
+    /// The bearer of a token.
+    Bearer(TokenRecord),
+}
+
+impl Caller {
+    /// In whose name a sweep is submitted: the token's owner, or for those who may choose, the one they name. None
+    /// means that the request does not say.
+    pub(crate) fn submits_as(&self, asked: Option<String>) -> Result<Option<String>> {
+        match (self, asked) {
+            (Caller::Local, asked) => Ok(asked),
+            (Caller::Bearer(token), None) => Ok(Some(token.owner.clone())),
+            (Caller::Bearer(token), Some(asked))
+                if token.scope == TokenScope::Admin || token.owner == asked =>
+            {
+                Ok(Some(asked))
+            }
+            (Caller::Bearer(token), Some(asked)) => {
+                let detail = format!(
+                    "owner: this token submits for {}, not for {asked}; leave the owner out, or use an admin token",
+                    token.owner
+                );
+                Err(Error::new(ProblemKind::Forbidden, detail))
+            }
+        }
+    }
+
+    /// Whose budget of requests a request is taken from.
+    fn budget(&self) -> &str {
+        match self {
+            Caller::Local => "",
+            Caller::Bearer(token) => &token.owner,
+        }
+    }
+}
+
+/// Lets a request through if its caller may make it and has not made too many.
+pub(crate) async fn guard(
+    State(app): State<App>,
+    matched: Option<MatchedPath>,
+    params: std::result::Result<RawPathParams, axum::extract::rejection::RawPathParamsRejection>,
+    mut request: Request,
+    next: Next,
+) -> Response {
+    let route = matched.as_ref().map_or("", MatchedPath::as_str);
+    if OPEN.contains(&route) {
+        return next.run(request).await;
+    }
+    let id = params.ok().and_then(|params| {
+        let id = params.iter().find(|(name, _)| *name == "id");
+        id.map(|(_, value)| value.to_owned())
+    });
+    match admit(&app, request.method(), request.headers(), route, id.as_deref()).await {
+        Ok(caller) => {
+            request.extensions_mut().insert(caller);
+            next.run(request).await
+        }
+        Err(error) => error.into_response(),
+    }
+}
+
+async fn admit(
+    app: &App,
+    method: &Method,
+    headers: &HeaderMap,
+    route: &str,
+    id: Option<&str>,
+) -> Result<Caller> {
+    let caller = identify(app, headers).await?;
+    app.limiter.admit(caller.budget())?;
+    if let Caller::Bearer(token) = &caller {
+        tracing::debug!(token.id, token.owner, "admitted");
+        permit(app, token, method, route, id).await?;
+    }
+    Ok(caller)
+}
+
+async fn identify(app: &App, headers: &HeaderMap) -> Result<Caller> {
+    let Some(value) = headers.get(header::AUTHORIZATION) else {
+        return match app.store.tokens_present().await? {
+            TokensPresent::None => local(headers),
+            TokensPresent::OnlyVoid | TokensPresent::Valid => Err(Error::unauthorized(
+                "a token is needed: send it as `Authorization: Bearer TOKEN`; `drillsweep token create` makes one",
+            )),
+        };
+    };
+    // The scheme is written in any case (RFC 9110 section 11.1).
+    let secret = value.to_str().ok().and_then(|value| value.split_once(' '));
+    let secret = secret.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
+    let token = match secret.and_then(|(_, text)| TokenSecret::parse(text.trim())) {
+        Some(secret) => app.store.valid_token(&secret).await?,
+        None => None,
+    };
+    let Some(token) = token else {
+        return Err(Error::unauthorized("the token is unknown, expired or revoked"));
+    };
+    if let Err(error) = app.store.touch_token(&token).await {
+        tracing::warn!(%error, token.id, "the use of a token could not be noted");
+    }
+    Ok(Caller::Bearer(token))
+}
+
+/// A name that leads here from elsewhere (DNS rebinding) must not stand in for this machine.
+fn local(headers: &HeaderMap) -> Result<Caller> {
+    let host = headers.get(header::HOST).and_then(|value| value.to_str().ok());
+    match host {
+        Some(host) if !names_this_machine(host) => Err(Error::new(
+            ProblemKind::CrossSite,
+            format!("without tokens the service answers to localhost only, not to {host}"),
+        )),
+        _ => Ok(Caller::Local),
+    }
+}
+
+fn names_this_machine(host: &str) -> bool {
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if port.bytes().all(|byte| byte.is_ascii_digit()) => name,
+        _ => host,
+    };
+    let address = name.trim_start_matches('[').trim_end_matches(']');
+    let name = name.to_ascii_lowercase();
+    name == "localhost"
+        || name.ends_with(".localhost")
+        || address.parse().is_ok_and(|address: IpAddr| address.is_loopback())
+}
+
+/// Reading takes any token; anything else one that submits, and on somebody else's sweep one that administers.
+async fn permit(
+    app: &App,
+    token: &TokenRecord,
+    method: &Method,
+    route: &str,
+    id: Option<&str>,
+) -> Result<()> {
+    let is_reading = matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS);
+    if is_reading || token.scope == TokenScope::Admin {
+        return Ok(());
+    }
+    if token.scope < TokenScope::Submit {
+        let detail = format!("this token is for reading; {method} takes one of scope submit or admin");
+        return Err(Error::new(ProblemKind::Forbidden, detail));
+    }
+    if let Some(id) = id.filter(|_| route.starts_with("/v1/sweeps/{id}"))
+        && let Some(sweep) = app.store.sweep(id).await?
+        && sweep.owner != token.owner
+    {
+        let detail = format!("the sweep is {}'s; only they or an admin token may change it", sweep.owner);
+        return Err(Error::new(ProblemKind::Forbidden, detail));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_of_this_machine_are_local() {
+        for host in
+            ["localhost", "LOCALHOST:7340", "127.0.0.1:80", "127.1.2.3", "[::1]:7340", "[::1]", "a.localhost"]
+        {
+            assert!(names_this_machine(host), "{host}");
+        }
+        for host in
+            ["example.com", "localhost.example.com", "192.168.0.1:7340", "0.0.0.0", "[::2]:1", "", ":80"]
+        {
+            assert!(!names_this_machine(host), "{host}");
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! What is counted for operators, as Prometheus text on a listener of its own.
+
+use std::sync::Mutex;
+use std::sync::atomic::AtomicU64;
+
+use axum::Router;
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{Method, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use drillsweep_store::Census;
+use prometheus_client::encoding::EncodeLabelSet;
+use prometheus_client::encoding::text::encode;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::family::Family;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::metrics::histogram::Histogram;
+use prometheus_client::registry::{Registry, Unit};
+
+use crate::app::App;
+use crate::error::{Error, Result};
+
+/// The media type of what [`encode`] writes.
+const TEXT: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+
+/// Upper ends \[s\] of the ranges in which requests are counted by their duration.
+const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.5, 2.0, 10.0];
+
+/// What is counted.
+pub(crate) struct Metrics {
+    registry: Mutex<Registry>,
+    requests: Family<RequestLabels, Histogram>,
+    pub(crate) expired_leases: Counter,
+    census: CensusGauges,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct RequestLabels {
+    method: &'static str,
+    route: String,
+    status: u16,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct StateLabel {
+    state: &'static str,
+}
+
+/// What the database knows, read when it is asked for.
+#[derive(Default)]
+struct CensusGauges {
+    work: Family<StateLabel, Gauge>,
+    points: Family<StateLabel, Gauge>,
+    sweeps: Gauge,
+    workers: Gauge,
+    oldest_queued: Gauge<f64, AtomicU64>,
+    database: Gauge,
+    write_ahead_log: Gauge,
+    artifacts: Gauge,
+}
+
+impl Metrics {
+    pub(crate) fn new() -> Self {
+        let mut registry = Registry::with_prefix("drillsweep");
+        let requests =
+            Family::<RequestLabels, Histogram>::new_with_constructor(|| Histogram::new(REQUEST_SECONDS));
+        let (expired_leases, census) = (Counter::default(), CensusGauges::default());
+        registry.register_with_unit(
+            "http_request_duration",
+            "Time from a request's headers to its answer's headers, by route",
+            Unit::Seconds,
+            requests.clone(),
+        );
+        registry.register(
+            "expired_leases",
+            "Leases of silent workers that this process has found run out",
+            expired_leases.clone(),
+        );
+        census.register(&mut registry);
+        Metrics { registry: Mutex::new(registry), requests, expired_leases, census }
+    }
+
+    fn text(&self, census: &Census) -> Result<String> {
+        let registry = self.registry.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        self.census.set(census);
+        let mut text = String::new();
+        encode(&mut text, &registry).map_err(|error| Error::internal(&error))?;
+        Ok(text)
+    }
+}
+
+impl CensusGauges {
+    fn register(&self, registry: &mut Registry) {
+        registry.register(
+            "work",
+            "Points to be computed, by state; points that share a result are one",
+            self.work.clone(),
+        );
+        registry.register("points", "Points of all sweeps, by state", self.points.clone());
+        registry.register("sweeps", "Sweeps that are stored", self.sweeps.clone());
+        registry.register("workers", "Workers heard of lately", self.workers.clone());
+        registry.register_with_unit(
+            "oldest_queued",
+            "Age of the point that has waited longest for a worker",
+            Unit::Seconds,
+            self.oldest_queued.clone(),
+        );
+        registry.register_with_unit("database", "Size of the database", Unit::Bytes, self.database.clone());
+        registry.register_with_unit(
+            "database_write_ahead_log",
+            "Size of the database's write-ahead log",
+            Unit::Bytes,
+            self.write_ahead_log.clone(),
+        );
+        registry.register_with_unit(
+            "artifacts",
+            "Size of the tables of all results, those that are shared counted each time",
+            Unit::Bytes,
+            self.artifacts.clone(),
+        );
+    }
+
+    fn set(&self, census: &Census) {
+        for (family, counts) in [(&self.work, &census.work), (&self.points, &census.points)] {
+            for (state, number) in counts {
+                family.get_or_create(&StateLabel { state }).set(*number);
+            }
+        }
+        self.sweeps.set(census.sweeps);
+        self.workers.set(census.workers);
+        self.oldest_queued.set(census.oldest_queued_ms as f64 * 1e-3);
+        self.database.set(census.database_bytes);
+        self.write_ahead_log.set(census.write_ahead_log_bytes);
+        self.artifacts.set(census.artifact_bytes);
+    }
+}
+
+/// Times every request; the route is that of the router, so that there are only as many as there are routes.
+pub(crate) async fn measure(
+    State(app): State<App>,
+    matched: Option<MatchedPath>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let start = std::time::Instant::now();
+    let method = method_name(request.method());
+    let response = next.run(request).await;
+    let route = matched.map_or_else(|| "none".to_owned(), |matched| matched.as_str().to_owned());
+    let labels = RequestLabels { method, route, status: response.status().as_u16() };
+    app.metrics.requests.get_or_create(&labels).observe(start.elapsed().as_secs_f64());
+    response
+}
+
+/// A client may make up methods; the metrics must not grow by them.
+fn method_name(method: &Method) -> &'static str {
+    match *method {
+        Method::GET => "GET",
+        Method::HEAD => "HEAD",
+        Method::POST => "POST",
+        Method::PATCH => "PATCH",
+        Method::PUT => "PUT",
+        Method::DELETE => "DELETE",
+        Method::OPTIONS => "OPTIONS",
+        _ => "other",
+    }
+}
+
+/// `/metrics`, for the listener of its own.
+pub(crate) fn router(app: App) -> Router {
+    Router::new().route("/metrics", get(show)).with_state(app)
+}
+
+async fn show(State(app): State<App>) -> Response {
+    let answer = async {
+        let census = app.store.census(crate::status::WORKER_SILENCE).await?;
+        app.metrics.text(&census)
+    };
+    match answer.await {
+        Ok(text) => ([(header::CONTENT_TYPE, TEXT)], text).into_response(),
+        Err(error) => error.into_response(),
+    }
+}

@@ -1,0 +1,179 @@
+//! Who may do what, how fast, and what operators see.
+
+use std::num::NonZeroU32;
+
+use axum::body::Body;
+use axum::http::{Method, Request, StatusCode, header};
+use drillsweep_server::{Config, Listeners, OwnerLimits, ServeError, serve};
+use drillsweep_store::{NewToken, TokenScope, TokenSecret};
+use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::oneshot;
+
+use crate::bench::{Answer, Bench, json_request};
+
+async fn token(bench: &Bench, owner: &str, scope: TokenScope) -> TokenSecret {
+    let secret = TokenSecret::generate().unwrap();
+    let token = NewToken { secret: &secret, owner, name: None, scope, lifetime_ms: None };
+    bench.store.create_token(&token).await.unwrap();
+    secret
+}
+
+async fn send(bench: &Bench, token: &TokenSecret, method: Method, path: &str, body: Value) -> Answer {
+    let mut request = json_request(method, path, body.to_string());
+    let value = format!("Bearer {}", token.expose()).parse().unwrap();
+    request.headers_mut().insert(header::AUTHORIZATION, value);
+    bench.send(request).await
+}
+
+async fn submit(bench: &Bench, token: &TokenSecret, body: Value) -> Answer {
+    send(bench, token, Method::POST, "/v1/sweeps", body).await
+}
+
+#[tokio::test]
+async fn once_a_token_exists_every_request_needs_one() {
+    let bench = Bench::new().await;
+    assert_eq!(bench.get("/v1/sweeps").await.status, StatusCode::OK);
+    let reader = token(&bench, "anne", TokenScope::Read).await;
+    for path in ["/v1/sweeps", "/v1/limits", "/v1/sweeps/x/table", "/nowhere"] {
+        let answer = bench.get(path).await;
+        answer.problem(401, "unauthorized");
+        assert_eq!(answer.headers[header::WWW_AUTHENTICATE], "Bearer");
+    }
+    for path in ["/livez", "/readyz", "/openapi.json"] {
+        assert_eq!(bench.get(path).await.status, StatusCode::OK, "{path}");
+    }
+    for value in ["Bearer", "Bearer ", "Basic YTpi", "bearer dsw_0000000000000000000000000000000000000000"] {
+        let request =
+            Request::get("/v1/sweeps").header(header::AUTHORIZATION, value).body(Body::empty()).unwrap();
+        bench.send(request).await.problem(401, "unauthorized");
+    }
+    assert_eq!(send(&bench, &reader, Method::GET, "/v1/sweeps", json!({})).await.status, StatusCode::OK);
+    bench.store.revoke_token(&reader.id()).await.unwrap();
+    send(&bench, &reader, Method::GET, "/v1/sweeps", json!({})).await.problem(401, "unauthorized");
+    // Without a valid token left, the service is closed, not open again.
+    bench.get("/v1/sweeps").await.problem(401, "unauthorized");
+}
+
+#[tokio::test]
+async fn a_token_allows_what_its_scope_says_on_whose_sweeps_it_says() {
+    let bench = Bench::new().await;
+    let anne = token(&bench, "anne", TokenScope::Submit).await;
+    let bob = token(&bench, "bob", TokenScope::Submit).await;
+    let reader = token(&bench, "bob", TokenScope::Read).await;
+    let admin = token(&bench, "root", TokenScope::Admin).await;
+    let body = json!({"preset": "paper-200m"});
+    submit(&bench, &reader, body.clone()).await.problem(403, "forbidden");
+    let sweep = submit(&bench, &anne, body.clone()).await.json();
+    assert_eq!(sweep["owner"], "anne");
+    let cancel = format!("/v1/sweeps/{}/cancel", sweep["id"].as_str().unwrap());
+    let show = format!("/v1/sweeps/{}", sweep["id"].as_str().unwrap());
+    assert_eq!(send(&bench, &reader, Method::GET, &show, json!({})).await.json()["owner"], "anne");
+    send(&bench, &bob, Method::POST, &cancel, json!({})).await.problem(403, "forbidden");
+    send(&bench, &reader, Method::POST, &cancel, json!({})).await.problem(403, "forbidden");
+    // An id in another spelling is the same id.
+    let digit = cancel.as_bytes()[11];
+    let spelt = cancel.replacen(digit as char, &format!("%{digit:02x}"), 1);
+    assert_ne!(spelt, cancel);
+    send(&bench, &bob, Method::POST, &spelt.replace("/v%31", "/v1"), json!({}))
+        .await
+        .problem(403, "forbidden");
+    assert_eq!(send(&bench, &anne, Method::POST, &cancel, json!({})).await.json()["state"], "cancelled");
+    assert_eq!(send(&bench, &admin, Method::POST, &cancel, json!({})).await.status, StatusCode::OK);
+
+    let for_bob = json!({"preset": "paper-200m", "owner": "bob"});
+    submit(&bench, &anne, for_bob.clone()).await.problem(403, "forbidden");
+    assert_eq!(submit(&bench, &admin, for_bob.clone()).await.json()["owner"], "bob");
+    assert_eq!(submit(&bench, &bob, for_bob).await.json()["owner"], "bob");
+}
+
+#[tokio::test]
+async fn without_tokens_names_from_elsewhere_are_refused() {
+    let bench = Bench::new().await;
+    let with_host =
+        |host: &str| Request::get("/v1/sweeps").header(header::HOST, host).body(Body::empty()).unwrap();
+    bench.send(with_host("rebound.example.com:7340")).await.problem(403, "cross-site");
+    assert_eq!(bench.send(with_host("127.0.0.1:7340")).await.status, StatusCode::OK);
+}
+
+#[tokio::test]
+async fn an_owner_who_asks_too_fast_is_told_when_to_come_back() {
+    let one = NonZeroU32::new(1).unwrap();
+    let limits =
+        OwnerLimits { requests_per_second: one, request_burst: NonZeroU32::new(3).unwrap(), open_points: 2 };
+    let bench = Bench::with(Config { owner_limits: limits, ..Config::default() }).await;
+    let anne = token(&bench, "anne", TokenScope::Read).await;
+    let bob = token(&bench, "bob", TokenScope::Admin).await;
+    let mut refused = None;
+    for _ in 0..5 {
+        let answer = send(&bench, &anne, Method::GET, "/v1/limits", json!({})).await;
+        if answer.status == StatusCode::TOO_MANY_REQUESTS {
+            refused = Some(answer);
+        }
+    }
+    let refused = refused.expect("five requests at once are more than three");
+    refused.problem(429, "too-many-requests");
+    assert_eq!(refused.headers[header::RETRY_AFTER], "1");
+    let limits = send(&bench, &bob, Method::GET, "/v1/limits", json!({})).await.json();
+    assert_eq!((&limits["request_burst"], &limits["open_points_per_owner"]), (&json!(3), &json!(2)));
+
+    let three = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02, 0.03]}}});
+    let refused = submit(&bench, &bob, three).await;
+    let problem = refused.problem(429, "quota-exceeded");
+    assert!(problem["detail"].as_str().unwrap().contains("may have 2"), "{problem}");
+    assert!(refused.headers.contains_key(header::RETRY_AFTER));
+    assert_eq!(submit(&bench, &bob, json!({"preset": "paper-200m"})).await.status, StatusCode::CREATED);
+}
+
+#[tokio::test]
+async fn the_service_does_not_listen_to_others_without_a_token() {
+    let bench = Bench::new().await;
+    let listeners = async || Listeners { api: TcpListener::bind("0.0.0.0:0").await.unwrap(), metrics: None };
+    let refused = serve(listeners().await, bench.store.clone(), Config::default(), async {}).await;
+    assert!(matches!(refused, Err(ServeError::OpenToOthers(_))), "{refused:?}");
+    let secret = token(&bench, "anne", TokenScope::Read).await;
+    serve(listeners().await, bench.store.clone(), Config::default(), async {}).await.unwrap();
+    bench.store.revoke_token(&secret.id()).await.unwrap();
+    let refused = serve(listeners().await, bench.store.clone(), Config::default(), async {}).await;
+    assert!(matches!(refused, Err(ServeError::OpenToOthers(_))), "{refused:?}");
+}
+
+#[tokio::test]
+async fn metrics_have_a_listener_of_their_own() {
+    let bench = Bench::new().await;
+    bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})).await;
+    bench.diverge().await;
+    let (api, metrics) =
+        (TcpListener::bind("127.0.0.1:0").await.unwrap(), TcpListener::bind("127.0.0.1:0").await.unwrap());
+    let (api_address, metrics_address) = (api.local_addr().unwrap(), metrics.local_addr().unwrap());
+    let (stop, stopped) = oneshot::channel::<()>();
+    let listeners = Listeners { api, metrics: Some(metrics) };
+    let shutdown = async {
+        let _ = stopped.await;
+    };
+    let service = tokio::spawn(serve(listeners, bench.store.clone(), Config::default(), shutdown));
+    let get = async |address, path: &str| {
+        let mut connection = TcpStream::connect(address).await.unwrap();
+        let request = format!("GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+        connection.write_all(request.as_bytes()).await.unwrap();
+        let mut answer = String::new();
+        connection.read_to_string(&mut answer).await.unwrap();
+        answer
+    };
+    assert!(get(api_address, "/metrics").await.starts_with("HTTP/1.1 404"));
+    get(api_address, "/v1/sweeps/made-up-id").await;
+    let text = get(metrics_address, "/metrics").await;
+    for line in [
+        "drillsweep_work{state=\"queued\"} 1",
+        "drillsweep_points{state=\"failed\"} 1",
+        "drillsweep_sweeps 1",
+        "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"/v1/sweeps/{id}\",status=\"404\"} 1",
+        "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"none\",status=\"404\"} 1",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line} in\n{text}");
+    }
+    assert!(!text.contains("made-up-id"));
+    stop.send(()).unwrap();
+    service.await.unwrap().unwrap();
+}

@@ -1,0 +1,85 @@
+//! Numbers of everything, for operators.
+
+use std::time::Duration;
+
+use crate::connection::{Store, now};
+use crate::error::Result;
+use crate::state::WorkState;
+
+/// How much there is of what.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Census {
+    /// Work items that are not final, by state.
+    pub work: Vec<(&'static str, i64)>,
+    /// Points of all sweeps, by state.
+    pub points: Vec<(&'static str, i64)>,
+    /// Sweeps.
+    pub sweeps: i64,
+    /// Workers heard of within the time asked for.
+    pub workers: i64,
+    /// Since when the oldest work item that is ready has been waiting \[ms\].
+    pub oldest_queued_ms: i64,
+    /// Size of the database.
+    pub database_bytes: i64,
+    /// Size of its write-ahead log.
+    pub write_ahead_log_bytes: i64,
+    /// Size of all artifacts, those that share a blob counted each time.
+    pub artifact_bytes: i64,
+}
+
+impl Store {
+    /// Counts everything; workers silent for longer than `silence` do not count. Its cost grows with the number of
+    /// open work items, sweeps and artifacts, not with that of points.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn census(&self, silence: Duration) -> Result<Census> {
+        let depths = self.queue_depths().await?;
+        type Sums = (i64, i64, i64, i64, i64, i64);
+        let (sweeps, queued, running, done, failed, cancelled): Sums = sqlx::query_as(
+            "SELECT count(*), coalesce(sum(points_queued), 0), coalesce(sum(points_running), 0),
+                    coalesce(sum(points_done), 0), coalesce(sum(points_failed), 0),
+                    coalesce(sum(points_cancelled), 0)
+             FROM sweep",
+        )
+        .fetch_one(&self.pool)
+        .await?;
+        let oldest_queued_ms: i64 = sqlx::query_scalar(concat!(
+            "SELECT coalesce(max(0, ",
+            now!(),
+            " - min(changed)), 0) FROM work WHERE state = 'queued'"
+        ))
+        .bind(self.clock_offset_ms)
+        .fetch_one(&self.pool)
+        .await?;
+        let artifact_bytes: i64 =
+            sqlx::query_scalar("SELECT coalesce(sum(bytes), 0) FROM artifact").fetch_one(&self.pool).await?;
+        let workers = self.workers(silence.as_millis() as i64).await?.len() as i64;
+        let size = |suffix: &str| {
+            let mut path = self.database_path.clone().into_os_string();
+            path.push(suffix);
+            // The log is not there before the first write and after a clean end.
+            std::fs::metadata(path).map_or(0, |metadata| metadata.len() as i64)
+        };
+        Ok(Census {
+            work: vec![
+                (WorkState::Waiting.as_str(), depths.waiting),
+                (WorkState::Queued.as_str(), depths.queued),
+                (WorkState::Leased.as_str(), depths.leased),
+            ],
+            points: vec![
+                ("queued", queued),
+                ("running", running),
+                ("succeeded", done),
+                ("failed", failed),
+                ("cancelled", cancelled),
+            ],
+            sweeps,
+            workers,
+            oldest_queued_ms,
+            database_bytes: size(""),
+            write_ahead_log_bytes: size("-wal"),
+            artifact_bytes,
+        })
+    }
+}

@@ -52,6 +52,8 @@ pub enum ProblemKind {
     IdempotencyKeyReused,
     /// The service cannot answer just now; try again.
     Unavailable,
+    /// The service's disk is full.
+    StorageFull,
     /// The service failed; its log has the reason under the request id.
     Internal,
 }
@@ -79,6 +81,7 @@ impl ProblemKind {
         ProblemKind::Conflict,
         ProblemKind::IdempotencyKeyReused,
         ProblemKind::Unavailable,
+        ProblemKind::StorageFull,
         ProblemKind::Internal,
     ];
 
@@ -128,6 +131,7 @@ impl ProblemKind {
                 ("idempotency-key-reused", "The idempotency key belongs to another request", 422)
             }
             ProblemKind::Unavailable => ("unavailable", "Not available just now", 503),
+            ProblemKind::StorageFull => ("storage-full", "No room on disk", 507),
             ProblemKind::Internal => ("internal", "Internal error", 500),
         }
     }

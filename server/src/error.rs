@@ -75,6 +75,10 @@ impl From<StoreError> for Error {
             StoreError::IdempotencyConflict => {
                 Error::new(ProblemKind::IdempotencyKeyReused, error.to_string())
             }
+            error if error.is_full() => {
+                tracing::error!(%error, "the disk is full");
+                Error::new(ProblemKind::StorageFull, "the service's disk is full; nothing was stored")
+            }
             error if error.is_busy() => Error::unavailable(&error),
             error => Error::internal(&error),
         }

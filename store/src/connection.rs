@@ -8,7 +8,7 @@ use std::time::Duration;
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{Sqlite, Transaction};
+use sqlx::{Connection as _, Sqlite, Transaction};
 
 use crate::blob::BlobStore;
 use crate::error::{Result, StoreError};
@@ -84,7 +84,13 @@ impl Store {
             Role::Worker => 2,
         };
         let opening = lock_opening(&config.database_path).await?;
-        let pool = SqlitePoolOptions::new().max_connections(connections).connect_with(options).await?;
+        // SQLite ends a transaction by itself when the disk is full. sqlx does not notice, its own rollback fails, and it
+        // would refuse every further transaction on that connection: such a one is closed instead of handed out.
+        let pool = SqlitePoolOptions::new()
+            .max_connections(connections)
+            .before_acquire(|connection, _| Box::pin(async move { Ok(!connection.is_in_transaction()) }))
+            .connect_with(options)
+            .await?;
         sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
         drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;

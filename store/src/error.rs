@@ -1,5 +1,8 @@
 //! What can go wrong in the store.
 
+use std::error::Error as _;
+use std::io::ErrorKind;
+
 use crate::table::TableError;
 
 /// The store's results.
@@ -40,6 +43,25 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// True where the disk has no room: the same call succeeds once it has.
+    pub fn is_full(&self) -> bool {
+        if let StoreError::Database(sqlx::Error::Database(error)) = self {
+            // SQLITE_FULL with its extended codes.
+            return error
+                .code()
+                .and_then(|code| code.parse::<i64>().ok())
+                .is_some_and(|code| code & 0xff == 13);
+        }
+        let mut cause = self.source();
+        while let Some(error) = cause {
+            if let Some(error) = error.downcast_ref::<std::io::Error>() {
+                return matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
+            }
+            cause = error.source();
+        }
+        false
+    }
+
     /// True where the same call may succeed a moment later: the database was busy.
     pub fn is_busy(&self) -> bool {
         match self {

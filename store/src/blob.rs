@@ -36,7 +36,7 @@ impl BlobStore {
     /// # Errors
     /// When the object store fails.
     pub async fn put(&self, bytes: Vec<u8>) -> Result<BlobId> {
-        let id = BlobId(blake3::hash(&bytes));
+        let id = BlobId::of(&bytes);
         let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
         match self.objects.put_opts(&id.path(), PutPayload::from(bytes), options).await {
             Ok(_) | Err(object_store::Error::AlreadyExists { .. }) => Ok(id),
@@ -74,6 +74,11 @@ impl BlobStore {
 }
 
 impl BlobId {
+    /// The name of a content.
+    pub(crate) fn of(bytes: &[u8]) -> Self {
+        BlobId(blake3::hash(bytes))
+    }
+
     /// Two levels of folders keep directories small.
     fn path(&self) -> ObjectPath {
         let hex = self.0.to_hex();

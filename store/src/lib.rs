@@ -6,6 +6,7 @@
 
 mod blob;
 mod census;
+mod check;
 mod connection;
 mod error;
 mod event;
@@ -21,6 +22,7 @@ mod worker;
 
 pub use blob::{BlobId, BlobStore};
 pub use census::Census;
+pub use check::CheckReport;
 pub use connection::{Role, Store, StoreConfig};
 pub use error::{Result, StoreError};
 pub use event::Event;

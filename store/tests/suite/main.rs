@@ -6,6 +6,7 @@
 mod bench;
 mod blobs;
 mod cancel;
+mod check;
 mod concurrency;
 mod counts;
 mod fairness;

@@ -1,8 +1,12 @@
 //! Talking to a server.
 
+use std::time::{Duration, Instant};
+
 use anyhow::{Context, bail};
 use clap::Args;
 use serde_json::Value;
+use ureq::http::{HeaderMap, Response};
+use ureq::{Body, RequestBuilder};
 
 /// The environment variable with the token; an argument would show in the list of processes.
 const TOKEN: &str = "DRILLSWEEP_TOKEN";
@@ -14,6 +18,12 @@ pub(crate) struct ServerArguments {
     #[arg(long, env = "DRILLSWEEP_SERVER", default_value = "http://127.0.0.1:7340")]
     pub(crate) server: String,
 }
+
+/// How long a command that watches puts up with a server that does not answer, as while it is started anew.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// How long it waits between two tries.
+const RETRY_PAUSE: Duration = Duration::from_secs(1);
 
 /// A client of one server.
 pub(crate) struct Client {
@@ -31,18 +41,61 @@ impl Client {
 
     /// Posts JSON and reads JSON.
     pub(crate) fn post(&self, path: &str, body: &Value) -> anyhow::Result<Value> {
+        self.post_with(path, body, &[])
+    }
+
+    /// The same with headers of its own.
+    pub(crate) fn post_with(
+        &self,
+        path: &str,
+        body: &Value,
+        headers: &[(&str, &str)],
+    ) -> anyhow::Result<Value> {
         let url = format!("{}{path}", self.server);
-        let response = self
-            .authorized(self.agent.post(&url))
-            .send_json(body)
-            .with_context(|| format!("no answer from {url}; is the server up?"))?;
-        self.json(response)
+        let mut request = self.authorized(self.agent.post(&url));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let response = request.send_json(body).with_context(|| no_answer(&url))?;
+        json(response)
     }
 
     /// Reads JSON.
     pub(crate) fn get(&self, path: &str) -> anyhow::Result<Value> {
-        let response = self.request(path)?;
-        self.json(response)
+        json(self.request(path)?)
+    }
+
+    /// Reads JSON, and tries again for a while where the server does not answer or is not available.
+    pub(crate) fn get_patiently(&self, path: &str) -> anyhow::Result<Value> {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let answer = self.request(path);
+            let is_worth_another_try = match &answer {
+                Ok(response) => matches!(response.status().as_u16(), 429 | 502..=504),
+                Err(_) => true,
+            };
+            if !is_worth_another_try || Instant::now() >= deadline {
+                return json(answer?);
+            }
+            std::thread::sleep(
+                answer.as_ref().ok().and_then(|r| retry_after(r.headers())).unwrap_or(RETRY_PAUSE),
+            );
+        }
+    }
+
+    /// All entries of a list that is served in pages.
+    pub(crate) fn pages(&self, path: &str, entries: &str) -> anyhow::Result<Vec<Value>> {
+        let mut all = Vec::new();
+        let mut cursor = String::new();
+        loop {
+            let separator = if path.contains('?') { '&' } else { '?' };
+            let page = self.get(&format!("{path}{separator}limit=500{cursor}"))?;
+            all.extend(page[entries].as_array().into_iter().flatten().cloned());
+            match page["next"].as_str() {
+                Some(next) => cursor = format!("&cursor={next}"),
+                None => return Ok(all),
+            }
+        }
     }
 
     /// Reads a file.
@@ -54,30 +107,38 @@ impl Client {
         Ok(response.body_mut().with_config().limit(u64::MAX).read_to_vec()?)
     }
 
-    fn request(&self, path: &str) -> anyhow::Result<ureq::http::Response<ureq::Body>> {
+    fn request(&self, path: &str) -> anyhow::Result<Response<Body>> {
         let url = format!("{}{path}", self.server);
-        self.authorized(self.agent.get(&url))
-            .call()
-            .with_context(|| format!("no answer from {url}; is the server up?"))
+        self.authorized(self.agent.get(&url)).call().with_context(|| no_answer(&url))
     }
 
-    fn authorized<B>(&self, request: ureq::RequestBuilder<B>) -> ureq::RequestBuilder<B> {
+    fn authorized<B>(&self, request: RequestBuilder<B>) -> RequestBuilder<B> {
         match &self.token {
             Some(token) => request.header("authorization", format!("Bearer {token}")),
             None => request,
         }
     }
+}
 
-    fn json(&self, mut response: ureq::http::Response<ureq::Body>) -> anyhow::Result<Value> {
-        if !response.status().is_success() {
-            bail!("{}", problem(&mut response));
-        }
-        Ok(response.body_mut().read_json()?)
+fn no_answer(url: &str) -> String {
+    format!("no answer from {url}; is the server up?")
+}
+
+fn json(mut response: Response<Body>) -> anyhow::Result<Value> {
+    if !response.status().is_success() {
+        bail!("{}", problem(&mut response));
     }
+    Ok(response.body_mut().with_config().limit(u64::MAX).read_json()?)
+}
+
+/// Seconds that the server asks to wait for, at most a minute.
+fn retry_after(headers: &HeaderMap) -> Option<Duration> {
+    let seconds: u64 = headers.get("retry-after")?.to_str().ok()?.parse().ok()?;
+    Some(Duration::from_secs(seconds.min(60)))
 }
 
 /// A problem document in lines for people.
-fn problem(response: &mut ureq::http::Response<ureq::Body>) -> String {
+fn problem(response: &mut Response<Body>) -> String {
     let status = response.status();
     let Ok(problem) = response.body_mut().read_json::<Value>() else {
         return format!("the server answered {status}");
@@ -88,7 +149,9 @@ fn problem(response: &mut ureq::http::Response<ureq::Body>) -> String {
         lines.push(text(&problem["detail"]));
     }
     for error in problem["errors"].as_array().into_iter().flatten() {
-        lines.push(format!("  {}: {}", text(&error["pointer"]), text(&error["detail"])));
+        let place = [&error["pointer"], &error["parameter"]].into_iter().find(|place| !place.is_null());
+        let place = place.map_or(String::new(), |place| format!("{}: ", text(place)));
+        lines.push(format!("  {place}{}", text(&error["detail"])));
     }
     lines.join("\n")
 }

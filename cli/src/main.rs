@@ -1,14 +1,20 @@
 //! The drillsweep command: server, worker and client in one binary.
 
+mod check;
 mod client;
 mod cost;
 mod fetch;
+mod health;
 mod service;
 mod simulate;
 mod submit;
+mod sweeps;
+mod text;
 mod token;
+mod watch;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use tracing_subscriber::EnvFilter;
 
 /// Parametric sweeps of nonlinear drillstring dynamics.
@@ -30,7 +36,17 @@ enum Command {
     /// Submit a sweep to a server.
     Submit(submit::SubmitArguments),
     /// Watch a sweep until it is complete.
-    Watch(submit::WatchArguments),
+    Watch(watch::WatchArguments),
+    /// List the newest sweeps.
+    List(sweeps::ListArguments),
+    /// Show a sweep with its points, or one point with its results.
+    Show(sweeps::ShowArguments),
+    /// Cancel a sweep: what waits at once, what runs within a heartbeat.
+    Cancel(sweeps::ChangeArguments),
+    /// Queue a sweep's failed and cancelled points again.
+    Retry(sweeps::ChangeArguments),
+    /// Show the queue and the workers.
+    Status(sweeps::StatusArguments),
     /// Bring a sweep's table and files.
     Fetch(fetch::FetchArguments),
     /// Simulate one point here, without a server, and print a summary.
@@ -41,12 +57,24 @@ enum Command {
     Scenario {
         /// The scenario to print, as TOML.
         name: Option<String>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
     },
     /// Make, list and revoke tokens.
     #[command(subcommand)]
     Token(token::TokenCommand),
+    /// Read a data directory in full and tell what is wrong with it, if anything.
+    Check(check::CheckArguments),
+    /// Tell by the exit status whether the server can work, or a worker on this machine; for supervisors.
+    Health(health::HealthArguments),
     /// Print the OpenAPI document of the service.
     Openapi,
+    /// Print what a shell needs to complete this command, for its start-up file.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
 }
 
 fn main() -> anyhow::Result<()> {
@@ -58,14 +86,25 @@ fn main() -> anyhow::Result<()> {
         Command::Serve(arguments) => service::serve(&arguments),
         Command::Worker(arguments) => service::worker(&arguments),
         Command::Submit(arguments) => submit::submit(&arguments),
-        Command::Watch(arguments) => submit::watch(&arguments),
+        Command::Watch(arguments) => watch::watch(&arguments),
+        Command::List(arguments) => sweeps::list(&arguments),
+        Command::Show(arguments) => sweeps::show(&arguments),
+        Command::Cancel(arguments) => sweeps::cancel(&arguments),
+        Command::Retry(arguments) => sweeps::retry(&arguments),
+        Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
-        Command::Scenario { name } => simulate::print_scenario(name.as_deref()),
         Command::Token(command) => token::token(&command),
+        Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Health(arguments) => health::health(&arguments),
         Command::Openapi => {
             print(drillsweep_server::openapi_json());
+            Ok(())
+        }
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Arguments::command(), "drillsweep", &mut std::io::stdout());
             Ok(())
         }
     }

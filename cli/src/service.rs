@@ -66,7 +66,7 @@ pub(crate) struct UpArguments {
     #[arg(long)]
     workers: Option<usize>,
     /// Seconds that a point stays with a silent worker.
-    #[arg(long, default_value_t = 60.0)]
+    #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
 }
 
@@ -83,7 +83,7 @@ pub(crate) struct WorkerArguments {
     #[command(flatten)]
     data: DataArguments,
     /// Seconds that a point stays with a silent worker.
-    #[arg(long, default_value_t = 60.0)]
+    #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
     /// End when there is nothing left to claim.
     #[arg(long)]

@@ -59,15 +59,21 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints a preset as TOML, or the list of presets.
-pub(crate) fn print_scenario(name: Option<&str>) -> anyhow::Result<()> {
-    match name {
-        None => {
+/// Prints a scenario as TOML or JSON, or the list of presets.
+pub(crate) fn print_scenario(name: Option<&str>, as_json: bool) -> anyhow::Result<()> {
+    match (name, as_json) {
+        (None, false) => {
             for (name, description) in PRESETS {
                 print(&format!("{name:24} {description}"));
             }
         }
-        Some(name) => print(&read_scenario(name)?.to_toml()),
+        (None, true) => {
+            let presets =
+                PRESETS.iter().map(|(name, description)| json!({"name": name, "description": description}));
+            print(&serde_json::to_string_pretty(&presets.collect::<Vec<_>>())?);
+        }
+        (Some(name), false) => print(&read_scenario(name)?.to_toml()),
+        (Some(name), true) => print(&read_scenario(name)?.to_json()),
     }
     Ok(())
 }

@@ -1,15 +1,15 @@
-//! Submitting a sweep and watching it.
+//! Submitting a sweep.
 
 use std::path::PathBuf;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, bail};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Map, Value, json};
 
 use crate::client::{Client, ServerArguments};
 use crate::print;
 use crate::simulate::parse_set;
+use crate::watch::{check, follow};
 
 #[derive(Args)]
 pub(crate) struct SubmitArguments {
@@ -26,26 +26,30 @@ pub(crate) struct SubmitArguments {
     /// Change a field of the scenario, such as `duration=5` or `operation.rotation_speed_rpm=90`.
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
     set: Vec<(String, Value)>,
+    /// Accuracy: draft, standard or reference.
+    #[arg(long)]
+    accuracy: Option<String>,
     /// A name for people.
     #[arg(long)]
     name: Option<String>,
     /// Whose share of the workers it counts against.
     #[arg(long, env = "DRILLSWEEP_OWNER")]
     owner: Option<String>,
+    /// Higher goes first among the sweeps of one owner: -10 to 10.
+    #[arg(long, allow_negative_numbers = true)]
+    priority: Option<i32>,
+    /// A text of your making: the same request under the same text is one sweep, however often it is sent.
+    #[arg(long)]
+    idempotency_key: Option<String>,
     /// Print what the request would become, and store nothing.
     #[arg(long)]
     dry_run: bool,
     /// Return at once instead of watching the sweep.
     #[arg(long)]
     detach: bool,
-}
-
-#[derive(Args)]
-pub(crate) struct WatchArguments {
-    #[command(flatten)]
-    server: ServerArguments,
-    /// The sweep's identifier.
-    sweep: String,
+    /// Print the sweep as JSON instead of its identifier: complete, or as stored with `--detach`.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Submits a sweep; watches it unless told otherwise; prints its identifier.
@@ -66,8 +70,13 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
         }
     }
     request.insert("axes".into(), Value::Object(axes));
-    if !arguments.set.is_empty() {
-        request.insert("set".into(), Value::Object(arguments.set.iter().cloned().collect()));
+    let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
+    let set: Map<String, Value> = arguments.set.iter().cloned().chain(accuracy).collect();
+    if !set.is_empty() {
+        request.insert("set".into(), Value::Object(set));
+    }
+    if let Some(priority) = arguments.priority {
+        request.insert("priority".into(), json!(priority));
     }
     for (name, text) in [("name", &arguments.name), ("owner", &arguments.owner)] {
         if let Some(text) = text {
@@ -79,43 +88,26 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
         print(&serde_json::to_string_pretty(&client.post("/v1/sweeps?dry_run=true", &request)?)?);
         return Ok(());
     }
-    let sweep = client.post("/v1/sweeps", &request)?;
-    let id = sweep["id"].as_str().context("the server's answer has no id")?.to_owned();
-    print(&id);
-    if arguments.detach { Ok(()) } else { follow(&client, &id) }
+    let key = arguments.idempotency_key.as_deref();
+    let headers: Vec<(&str, &str)> = key.map(|key| ("idempotency-key", key)).into_iter().collect();
+    let sweep = client.post_with("/v1/sweeps", &request, &headers)?;
+    warn(&sweep);
+    let id = sweep["id"].as_str().context("the server's answer has no id")?;
+    if !arguments.json {
+        print(id);
+    }
+    let sweep = if arguments.detach { sweep } else { follow(&client, id)? };
+    if arguments.json {
+        print(&serde_json::to_string_pretty(&sweep)?);
+    }
+    if arguments.detach { Ok(()) } else { check(&sweep) }
 }
 
-/// Watches a sweep until it is complete.
-pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
-    follow(&Client::new(&arguments.server), &arguments.sweep)
-}
-
-fn follow(client: &Client, id: &str) -> anyhow::Result<()> {
-    let bar = ProgressBar::new(1000);
-    bar.set_style(ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed}, {eta} left, {msg}")?);
-    loop {
-        let sweep = client.get(&format!("/v1/sweeps/{id}"))?;
-        let counts = &sweep["counts"];
-        let count = |name: &str| counts[name].as_u64().unwrap_or(0);
-        let progress = sweep["progress"].as_f64().unwrap_or(0.0);
-        bar.set_position((progress * 1000.0) as u64);
-        bar.set_message(format!(
-            "{} of {} points, {} running, {} failed",
-            count("succeeded"),
-            count("total"),
-            count("running"),
-            count("failed")
-        ));
-        if sweep["state"] != "running" {
-            bar.abandon();
-            ensure!(
-                count("failed") == 0,
-                "{} points failed; `drillsweep fetch {id}` has the reasons",
-                count("failed")
-            );
-            return Ok(());
-        }
-        std::thread::sleep(std::time::Duration::from_millis(500));
+/// What can be simulated but is probably not meant.
+fn warn(sweep: &Value) {
+    for warning in sweep["warnings"].as_array().into_iter().flatten() {
+        let text = |name: &str| warning[name].as_str().unwrap_or_default();
+        tracing::warn!("{}: {}", text("pointer"), text("detail"));
     }
 }
 

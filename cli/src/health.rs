@@ -1,0 +1,49 @@
+//! Health for supervisors: whether the server can work, whether a worker on this machine lives.
+
+use std::time::Duration;
+
+use anyhow::ensure;
+use clap::Args;
+use drillsweep_store::{Role, Store};
+
+use crate::client::{Client, ServerArguments};
+use crate::print;
+use crate::service::DataArguments;
+
+#[derive(Args)]
+pub(crate) struct HealthArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    #[command(flatten)]
+    data: DataArguments,
+    /// Ask for a worker on this machine instead of the server.
+    #[arg(long)]
+    worker: bool,
+    /// Seconds after which a silent worker counts as gone; workers give a sign of life every third of their lease.
+    #[arg(long, default_value_t = 60.0, requires = "worker")]
+    silence_seconds: f64,
+}
+
+/// Fails unless the server can work, or a worker of this machine has given a sign of life.
+pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
+    if !arguments.worker {
+        Client::new(&arguments.server).get("/readyz")?;
+        print("the server can work");
+        return Ok(());
+    }
+    let silence = Duration::try_from_secs_f64(arguments.silence_seconds)?;
+    let config = arguments.data.store(Role::Worker);
+    ensure!(config.database_path.exists(), "there is no {}", config.database_path.display());
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let workers = runtime.block_on(async {
+        let store = Store::open(&config).await?;
+        let workers = store.workers(i64::try_from(silence.as_millis())?).await?;
+        store.close().await;
+        anyhow::Ok(workers)
+    })?;
+    let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
+    let here = workers.iter().filter(|worker| worker.host == host).count();
+    ensure!(here > 0, "no worker on {host} has given a sign of life for {} s", arguments.silence_seconds);
+    print(&format!("{here} workers on {host}"));
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! The commands of the binary, run as people and scripts run them.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::{Value, json};
+
+use crate::{BINARY, listen};
+
+fn run(server: &str, arguments: &[&str]) -> Output {
+    Command::new(BINARY)
+        .args(arguments)
+        .env("DRILLSWEEP_SERVER", server)
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap()
+}
+
+/// Standard output of a command that must succeed.
+fn text(server: &str, arguments: &[&str]) -> String {
+    let output = run(server, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn json(server: &str, arguments: &[&str]) -> Value {
+    serde_json::from_str(&text(server, arguments)).unwrap()
+}
+
+const SHORT: [&str; 8] = [
+    "--accuracy",
+    "draft",
+    "--set",
+    "duration=0.2",
+    "--set",
+    "recording.spectrum_windows=[]",
+    "--set",
+    "recording.orbit_window=null",
+];
+
+#[test]
+fn sweep_is_submitted_watched_listed_shown_and_fetched() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "1"]);
+    let submit =
+        [&["submit", "paper-200m", "--flow-rate", "0.01:0.03:3", "--name", "three"][..], &SHORT].concat();
+    let sweep = json(&server, &[&submit[..], &["--json"]].concat());
+    assert_eq!(sweep["counts"]["succeeded"], 3, "{sweep}");
+    assert_eq!(sweep["request"]["set"]["accuracy"], "draft");
+    let id = sweep["id"].as_str().unwrap();
+    assert_eq!(json(&server, &["watch", id, "--json"])["state"], "completed");
+    assert_eq!(json(&server, &["list", "--json"])["sweeps"][0]["id"], id);
+    assert!(text(&server, &["list"]).lines().nth(1).unwrap().contains("three"));
+
+    let shown = text(&server, &["show", id]);
+    assert_eq!(shown.lines().count(), 1 + 1 + 3, "{shown}");
+    assert!(shown.lines().last().unwrap().contains("0.03"), "{shown}");
+    assert_eq!(json(&server, &["show", id, "--json"])["points"].as_array().unwrap().len(), 3);
+    let point = text(&server, &["show", id, "2"]);
+    assert!(
+        point.contains("flow_rate") && point.contains("m3/s") && point.contains("contact_count"),
+        "{point}"
+    );
+
+    let output = data.path().join("results");
+    let files = json(&server, &["fetch", id, "--output", output.to_str().unwrap(), "--json"]);
+    let files = files.as_array().unwrap();
+    assert!(files.iter().all(|file| std::path::Path::new(file.as_str().unwrap()).exists()));
+    assert_eq!(files.len(), 1 + 3 * 6, "a table, and a folder a point: {files:?}");
+
+    // The same key is the same sweep; no such sweep is an error.
+    let keyed = [&submit[..], &["--idempotency-key", "k", "--detach"]].concat();
+    assert_eq!(text(&server, &keyed), text(&server, &keyed));
+    assert!(!run(&server, &["show", "../../queue"]).status.success());
+}
+
+#[test]
+fn sweep_is_cancelled_and_retried_and_its_fate_is_the_exit_status() {
+    let data = tempfile::tempdir().unwrap();
+    let (_serve, server) = listen(data.path(), &["serve"]);
+    let submit = [&["submit", "paper-200m", "--flow-rate", "0.01,0.02", "--detach"][..], &SHORT].concat();
+    let id = text(&server, &submit);
+    let id = id.trim();
+    assert_eq!(json(&server, &["cancel", id, "--json"])["state"], "cancelled");
+    assert!(!run(&server, &["watch", id]).status.success(), "cancelled points have no result");
+    assert!(text(&server, &["retry", id]).contains("2 queued"));
+    let status = json(&server, &["status", "--json"]);
+    assert_eq!((&status["queue"]["queued"], &status["workers"]), (&json!(2), &json!([])));
+    // No worker lives here.
+    let data = data.path().to_str().unwrap();
+    assert!(run(&server, &["health"]).status.success());
+    assert!(!run(&server, &["health", "--worker", "--data", data]).status.success());
+    assert!(run(&server, &["worker", "--drain", "--data", data]).status.success());
+    assert!(text(&server, &["watch", id]).contains("2 succeeded"));
+    assert_eq!(json(&server, &["check", "--data", data, "--json"])["results"], 2);
+    assert!(!run(&server, &["check", "--data", "/nowhere"]).status.success());
+}
+
+#[test]
+fn completions_are_what_the_shell_understands() {
+    let script = text("", &["completions", "bash"]);
+    assert!(script.contains("submit") && script.contains("--mud-density"));
+    let mut bash = Command::new("bash").arg("-n").stdin(Stdio::piped()).spawn().unwrap();
+    bash.stdin.take().unwrap().write_all(script.as_bytes()).unwrap();
+    assert!(bash.wait().unwrap().success());
+    for shell in ["zsh", "fish"] {
+        assert!(text("", &["completions", shell]).contains("mud-density"));
+    }
+}
+
+#[test]
+fn scenarios_are_listed_and_printed_as_json() {
+    assert!(json("", &["scenario", "--json"]).as_array().unwrap().iter().any(|s| s["name"] == "paper-200m"));
+    assert_eq!(json("", &["scenario", "paper-200m", "--json"])["mud"]["density"], 1200.0);
+}

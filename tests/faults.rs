@@ -1,0 +1,422 @@
+//! Faults that a service meets in years of work, made to happen: kills, sleep, full disks, points that kill whoever
+//! simulates them, starved processors.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+use serde_json::{Value, json};
+
+use crate::{BINARY, PATIENCE, Process, completed, get, post, wait, worker};
+
+const WORKER_KILLS: usize = 20;
+const SERVER_KILLS: usize = 5;
+
+/// A process whose log is kept.
+struct Logged {
+    process: Process,
+    log: Arc<Mutex<String>>,
+}
+
+impl Logged {
+    fn start(command: &mut Command) -> Self {
+        let command = command.env("DRILLSWEEP_LOG", "info").env("NO_COLOR", "1");
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let lines = BufReader::new(child.stderr.take().unwrap());
+        let log = Arc::new(Mutex::new(String::new()));
+        let kept = log.clone();
+        std::thread::spawn(move || {
+            for line in lines.lines().map_while(Result::ok) {
+                let mut log = kept.lock().unwrap();
+                log.push_str(&line);
+                log.push('\n');
+            }
+        });
+        Logged { process: Process(child), log }
+    }
+
+    /// Waits until the log gives something.
+    fn wait_for<T>(&self, found: impl Fn(&str) -> Option<T>) -> T {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let log = self.log.lock().unwrap().clone();
+            if let Some(found) = found(&log) {
+                return found;
+            }
+            assert!(Instant::now() < deadline, "not logged in time:\n{log}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// The address on which it listens.
+    fn address(&self) -> String {
+        self.wait_for(|log| Some(log[log.find("http://")?..].split_whitespace().next()?.to_owned()))
+    }
+}
+
+impl Logged {
+    fn kill(&mut self) {
+        self.process.signal(Signal::KILL);
+        self.process.0.wait().unwrap();
+    }
+}
+
+impl Drop for Logged {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("{}", self.log.lock().unwrap());
+        }
+    }
+}
+
+fn command(data: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(BINARY);
+    command.args(arguments).arg("--data").arg(data);
+    command
+}
+
+/// A server on a port of its choice, or on the one that it had before.
+fn serve(data: &Path, address: Option<&str>) -> (Logged, String) {
+    let listen = address.map_or("127.0.0.1:0", |address| address.trim_start_matches("http://"));
+    let server = Logged::start(&mut command(data, &["serve", "--listen", listen]));
+    let address = server.address();
+    (server, address)
+}
+
+/// A request for runs of the paper's string over `seconds`.
+fn request(seconds: f64, flow_rates: usize, densities: usize) -> Value {
+    let values = |from: f64, by: f64, count| (0..count).map(|i| from + by * i as f64).collect::<Vec<_>>();
+    json!({
+        "preset": "paper-200m",
+        "set": {
+            "duration": seconds,
+            "accuracy": "draft",
+            "recording.spectrum_windows": [],
+            "recording.orbit_window": null,
+        },
+        "axes": {
+            "flow_rate": {"values": values(0.01, 0.01, flow_rates)},
+            "mud_density": {"values": values(1200.0, 100.0, densities)},
+        },
+    })
+}
+
+fn submit(server: &str, request: &Value) -> String {
+    post(&format!("{server}/v1/sweeps"), request)["id"].as_str().unwrap().to_owned()
+}
+
+fn points(server: &str, sweep: &str) -> Vec<Value> {
+    get(&format!("{server}/v1/sweeps/{sweep}/points?limit=500"))["points"].as_array().unwrap().clone()
+}
+
+fn bytes(url: &str) -> Vec<u8> {
+    ureq::get(url).call().unwrap().body_mut().read_to_vec().unwrap()
+}
+
+/// What `drillsweep check` finds: the numbers of results, and what is wrong.
+fn check(data: &Path) -> (u64, Vec<Value>) {
+    checked(&mut command(data, &["check", "--json"]))
+}
+
+fn checked(command: &mut Command) -> (u64, Vec<Value>) {
+    let output = command.stderr(Stdio::inherit()).output().unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    (report["results"].as_u64().unwrap(), report["problems"].as_array().unwrap().clone())
+}
+
+/// A worker whose points are known, so that it can be killed at one of them.
+fn known_worker(data: &Path) -> Logged {
+    Logged::start(&mut command(data, &["worker", "--lease-seconds", "2"]))
+}
+
+/// The attempt of the point that it claimed last.
+fn last_attempt(log: &str) -> Option<u64> {
+    let line = log.lines().rfind(|line| line.contains("point claimed"))?;
+    line.split("attempt=").nth(1)?.split_whitespace().next()?.parse().ok()
+}
+
+#[test]
+fn storm_of_kills_loses_nothing_and_changes_no_number() {
+    let request = request(3.0, 4, 4);
+    let (calm, stormy) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let undisturbed =
+        Logged::start(&mut command(calm.path(), &["up", "--workers", "2", "--listen", "127.0.0.1:0"]));
+    let calm_server = undisturbed.address();
+    let calm_sweep = submit(&calm_server, &request);
+    wait(&calm_server, &calm_sweep, completed);
+
+    let (mut server, address) = serve(stormy.path(), None);
+    let sweep = submit(&address, &request);
+    let mut workers = [known_worker(stormy.path()), known_worker(stormy.path())];
+    let mut repeated = Vec::new();
+    for kill in 0..WORKER_KILLS {
+        let doomed = &mut workers[kill % 2];
+        // A point is given up after three dead workers: none is made to lose more than two.
+        doomed.wait_for(|log| last_attempt(log).filter(|attempt| *attempt <= 2));
+        // At different stages of the work.
+        std::thread::sleep(Duration::from_millis(37 * kill as u64 % 300));
+        doomed.wait_for(|log| last_attempt(log).filter(|attempt| *attempt <= 2));
+        std::mem::replace(doomed, known_worker(stormy.path())).kill();
+        if (kill + 1) % (WORKER_KILLS / SERVER_KILLS) == 0 {
+            // Killed while it takes a submission, which is then sent again under the same key.
+            let key = format!("storm-{kill}");
+            let url = format!("{address}/v1/sweeps");
+            let send = {
+                let (url, key, request) = (url.clone(), key.clone(), request.clone());
+                move || ureq::post(&url).header("idempotency-key", &key).send_json(&request)
+            };
+            let sending = std::thread::spawn(send.clone());
+            server.kill();
+            let _lost_or_not = sending.join().unwrap();
+            server = serve(stormy.path(), Some(&address)).0;
+            let again: Value = send().unwrap().body_mut().read_json().unwrap();
+            repeated.push(again["id"].as_str().unwrap().to_owned());
+        }
+    }
+    let mut ended = wait(&address, &sweep, completed);
+    if ended["counts"]["failed"] != 0 {
+        // A worker that took up a point between the look and the kill may make it a third death.
+        for point in points(&address, &sweep).iter().filter(|point| point["state"] == "failed") {
+            assert_eq!(
+                (&point["error"]["class"], &point["attempts"]),
+                (&json!("crash"), &json!(3)),
+                "{point}"
+            );
+        }
+        post(&format!("{address}/v1/sweeps/{sweep}/retry"), &json!({}));
+        ended = wait(&address, &sweep, completed);
+    }
+    assert_eq!(ended["counts"]["succeeded"], 16, "{ended}");
+    let attempts: u64 =
+        points(&address, &sweep).iter().map(|point| point["attempts"].as_u64().unwrap()).sum();
+    assert!(attempts >= 16 + 10, "the kills did not hit: {attempts} attempts");
+
+    let sweeps = get(&format!("{address}/v1/sweeps"))["sweeps"].as_array().unwrap().len();
+    assert_eq!(sweeps, 1 + SERVER_KILLS, "one sweep a key");
+    for id in &repeated {
+        assert_eq!(wait(&address, id, completed)["counts"]["succeeded"], 16, "of the same work");
+    }
+    let table = |server: &str, sweep: &str| bytes(&format!("{server}/v1/sweeps/{sweep}/table?format=csv"));
+    assert_eq!(
+        table(&address, &sweep),
+        table(&calm_server, &calm_sweep),
+        "the same numbers to the last digit"
+    );
+    for n in 1..=16 {
+        for name in ["profile", "statics", "history", "contacts", "energy"] {
+            let of = |server: &str, sweep: &str| {
+                bytes(&format!("{server}/v1/sweeps/{sweep}/points/{n}/{name}?format=parquet"))
+            };
+            assert!(of(&address, &sweep) == of(&calm_server, &calm_sweep), "{name} of point {n} differs");
+        }
+    }
+    assert_eq!(check(stormy.path()), (16, vec![]), "every point is done once");
+}
+
+#[test]
+fn worker_that_slept_past_its_lease_changes_nothing_when_it_wakes() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, address) = serve(data.path(), None);
+    let sweep = submit(&address, &request(6.0, 1, 1));
+    let sleeper = known_worker(data.path());
+    sleeper.wait_for(last_attempt);
+    sleeper.process.signal(Signal::STOP);
+    let _heir = worker(data.path());
+    let ended = wait(&address, &sweep, completed);
+    assert_eq!(ended["counts"]["succeeded"], 1, "{ended}");
+    let result = get(&format!("{address}/v1/sweeps/{sweep}/points/1"));
+    assert_eq!(result["attempts"], 2, "{result}");
+
+    sleeper.process.signal(Signal::CONT);
+    // Its heartbeat learns of it, or its write does, whichever comes first.
+    sleeper
+        .wait_for(|log| log.contains("LeaseLost").then_some(()).or(log.contains("lease lost").then_some(())));
+    // It goes on with other work when it is the only one left.
+    drop(_heir);
+    let next = submit(&address, &request(0.5, 2, 1));
+    assert_eq!(wait(&address, &next, completed)["counts"]["succeeded"], 2);
+    assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}/points/1")), result, "the first result stands");
+    assert_eq!(check(data.path()), (3, vec![]));
+}
+
+#[test]
+fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
+    let data = tempfile::tempdir().unwrap();
+    // A worker may have 1.5 GB; ten million samples of three nodes need 1.9 GB at once, and the allocation aborts.
+    let limited = r#"ulimit -v 1500000; exec "$0" "$@""#;
+    let up = ["up", "--workers", "2", "--lease-seconds", "2", "--listen", "127.0.0.1:0"];
+    let mut command = Command::new("sh");
+    command.args(["-c", limited, BINARY]).args(up).arg("--data").arg(data.path());
+    let up = Logged::start(&mut command);
+    let address = up.address();
+    let poison = submit(&address, &request(10_000.0, 1, 1));
+    let harmless = submit(&address, &request(0.5, 2, 2));
+
+    let ended = wait(&address, &poison, completed);
+    assert_eq!(ended["counts"]["failed"], 1, "{ended}");
+    let point = &points(&address, &poison)[0];
+    assert_eq!((&point["error"]["class"], &point["attempts"]), (&json!("crash"), &json!(3)), "{point}");
+    assert!(up.log.lock().unwrap().contains("memory allocation"), "the workers died of something else");
+    assert_eq!(wait(&address, &harmless, completed)["counts"]["succeeded"], 4);
+    let after = submit(&address, &request(0.5, 1, 3));
+    assert_eq!(wait(&address, &after, completed)["counts"]["succeeded"], 3);
+}
+
+#[test]
+fn heartbeat_comes_within_five_seconds_while_all_cores_are_busy() {
+    /// A process that takes all the time it gets.
+    fn burn() -> Process {
+        Process(Command::new("sh").args(["-c", "while :; do :; done"]).spawn().unwrap())
+    }
+    let data = tempfile::tempdir().unwrap();
+    let (_server, address) = serve(data.path(), None);
+    let sweep = submit(&address, &request(600.0, 2, 1));
+    // Renewed every 2.5 s: a lease of 7.5 s runs out when a heartbeat is late by 5 s. The third worker finds nothing
+    // to do and takes over whatever runs out.
+    let arguments = ["worker", "--lease-seconds", "7.5"];
+    let workers: Vec<_> = (0..3).map(|_| Logged::start(&mut command(data.path(), &arguments))).collect();
+    let cores = std::thread::available_parallelism().unwrap().get();
+    let _burners: Vec<_> = (0..2 * cores).map(|_| burn()).collect();
+    let mut seen = [Vec::new(), Vec::new()];
+    let deadline = Instant::now() + PATIENCE;
+    while seen.iter().any(|progress| progress.len() < 6) {
+        for (point, seen) in points(&address, &sweep).iter().zip(&mut seen) {
+            let progress = point["progress"].as_f64().unwrap();
+            if seen.last() != Some(&progress) {
+                seen.push(progress);
+            }
+            assert!(point["attempts"].as_u64().unwrap() <= 1, "its lease ran out: {point}");
+        }
+        assert!(Instant::now() < deadline, "no heartbeats: {seen:?}");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    for worker in &workers {
+        assert!(!worker.log.lock().unwrap().contains("lease ran out"));
+    }
+}
+
+/// A small disk of its own for server and workers, in a mount namespace that ends with them.
+struct SmallDisk {
+    up: Logged,
+    /// The directory within the namespace.
+    mount_point: PathBuf,
+    /// The directory as seen from outside.
+    data: PathBuf,
+}
+
+impl SmallDisk {
+    /// `up` with one worker on a disk of so many MiB.
+    fn up(megabytes: u32, mount_point: &Path) -> Self {
+        let script = format!(r#"mount -t tmpfs -o size={megabytes}m tmpfs "$0" && exec "$@" --data "$0""#);
+        let mut command = Command::new("unshare");
+        command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).arg(mount_point).args([
+            BINARY,
+            "up",
+            "--workers",
+            "1",
+            "--lease-seconds",
+            "2",
+            "--listen",
+            "127.0.0.1:0",
+        ]);
+        let up = Logged::start(&mut command);
+        up.address();
+        let pid = up.process.0.id();
+        let inside = mount_point.strip_prefix("/").unwrap();
+        let data = Path::new("/proc").join(pid.to_string()).join("root").join(inside);
+        SmallDisk { up, mount_point: mount_point.to_owned(), data }
+    }
+
+    /// Fills the disk but for so many bytes; the file holds the room until it is removed.
+    fn fill_but(&self, room: usize) {
+        let block = vec![0; 64 << 10];
+        let mut filler = File::create(self.data.join("filler")).unwrap();
+        while filler.write_all(&block).is_ok() {}
+        // The last block did not fit as a whole: one byte at a time does until nothing fits.
+        while filler.write_all(&block[..1]).is_ok() {}
+        let full = filler.metadata().unwrap().len();
+        filler.set_len(full.saturating_sub(room as u64)).unwrap();
+    }
+
+    fn check(&self) -> (u64, Vec<Value>) {
+        let mut command = Command::new("nsenter");
+        command.args(["--user", "--mount", "--preserve-credentials", "--target"]);
+        command.arg(self.up.process.0.id().to_string()).args([BINARY, "check", "--json", "--data"]);
+        checked(command.arg(&self.mount_point))
+    }
+
+    fn make_room(&self) {
+        std::fs::remove_file(self.data.join("filler")).unwrap();
+    }
+}
+
+#[test]
+fn full_disk_is_told_and_nothing_is_lost_by_it() {
+    let mount_point = tempfile::tempdir().unwrap();
+    let disk = SmallDisk::up(48, mount_point.path());
+    let address = disk.up.address();
+    let first = submit(&address, &request(0.5, 2, 1));
+    wait(&address, &first, completed);
+    let before = bytes(&format!("{address}/v1/sweeps/{first}/table"));
+
+    // No room at all: a submission is refused and leaves nothing behind, what is there can be read.
+    disk.fill_but(0);
+    let long = request(20.0, 1, 1);
+    let refused = ureq::post(format!("{address}/v1/sweeps"))
+        .config()
+        .http_status_as_error(false)
+        .build()
+        .send_json(&long)
+        .unwrap();
+    let problem: Value = refused.into_body().read_json().unwrap();
+    assert_eq!(problem["status"], 507, "{problem}");
+    assert_eq!(problem["type"], "urn:drillsweep:problem:storage-full", "{problem}");
+    assert_eq!(get(&format!("{address}/v1/sweeps"))["sweeps"].as_array().unwrap().len(), 1);
+    assert_eq!(bytes(&format!("{address}/v1/sweeps/{first}/table")), before);
+
+    // Room for the database, but not for a result: the point is tried again later, and says why.
+    disk.fill_but(512 << 10);
+    let sweep = submit(&address, &long);
+    let deadline = Instant::now() + PATIENCE;
+    let waiting = loop {
+        let point = points(&address, &sweep).remove(0);
+        if !point["error"].is_null() {
+            break point;
+        }
+        assert!(Instant::now() < deadline, "{point}");
+        std::thread::sleep(Duration::from_millis(50));
+    };
+    assert_eq!(waiting["error"]["class"], "infrastructure", "{waiting}");
+    assert!(waiting["error"]["reason"].as_str().unwrap().contains("No space left"), "{waiting}");
+    assert!(waiting["state"] == "queued" || waiting["state"] == "running", "{waiting}");
+
+    disk.make_room();
+    assert_eq!(wait(&address, &sweep, completed)["counts"]["succeeded"], 1);
+    assert_eq!(bytes(&format!("{address}/v1/sweeps/{first}/table")), before);
+    assert_eq!(disk.check(), (3, vec![]));
+    assert_eq!(half_written(&disk.data.join("blobs")), Vec::<PathBuf>::new());
+}
+
+/// Files that a write left behind before it was done.
+fn half_written(directory: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(half_written(&path));
+        } else {
+            let mut content = Vec::new();
+            File::open(&path).unwrap().read_to_end(&mut content).unwrap();
+            let name = path.file_name().unwrap().to_string_lossy();
+            // A blob is named by 64 hexadecimal digits.
+            if name.len() != 64 || content.is_empty() {
+                found.push(path);
+            }
+        }
+    }
+    found
+}

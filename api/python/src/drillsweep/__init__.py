@@ -1,0 +1,58 @@
+"""Client of the drillsweep service: parametric sweeps of nonlinear drillstring dynamics.
+
+    from drillsweep import Client, Range
+
+    client = Client("http://127.0.0.1:7340")
+    sweep = client.submit("paper-200m", axes={"flow_rate": [0.01, 0.04], "mud_density": Range(1200, 2100, 4)})
+    table = sweep.wait().table().to_pandas()
+    orbit = sweep.point(1).orbit(depth=57.7, time=(40, 60))
+
+All quantities are in SI units; `Table.units` says which.
+"""
+
+from drillsweep.client import Client
+from drillsweep.design import Axis, Range
+from drillsweep.point import Point, PointError
+from drillsweep.problem import (
+    Conflict,
+    DrillsweepError,
+    FieldProblem,
+    Forbidden,
+    IdempotencyKeyReused,
+    InvalidRequest,
+    NoAnswer,
+    NoResult,
+    NotFound,
+    Problem,
+    RateLimited,
+    Unauthorized,
+    Unavailable,
+)
+from drillsweep.sweep import Counts, Plan, PlannedPoint, Sweep
+from drillsweep.table import Table
+
+__all__ = [
+    "Axis",
+    "Client",
+    "Conflict",
+    "Counts",
+    "DrillsweepError",
+    "FieldProblem",
+    "Forbidden",
+    "IdempotencyKeyReused",
+    "InvalidRequest",
+    "NoAnswer",
+    "NoResult",
+    "NotFound",
+    "Plan",
+    "PlannedPoint",
+    "Point",
+    "PointError",
+    "Problem",
+    "Range",
+    "RateLimited",
+    "Sweep",
+    "Table",
+    "Unauthorized",
+    "Unavailable",
+]

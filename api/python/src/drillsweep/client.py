@@ -1,0 +1,285 @@
+"""Talking to a server."""
+
+from __future__ import annotations
+
+import os
+import time
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+from urllib.parse import quote
+
+import httpx
+
+from drillsweep.design import axis_to_json
+from drillsweep.problem import NoAnswer, problem
+from drillsweep.sweep import Plan, Sweep
+
+DEFAULT_SERVER = "http://127.0.0.1:7340"
+
+_PAGE = 500
+_FIRST_PAUSE = 0.2
+_LONGEST_PAUSE = 5.0
+_TRY_AGAIN = frozenset({429, 502, 503, 504})
+
+
+class Client:
+    """A connection to one server, for one thread at a time."""
+
+    def __init__(
+        self,
+        server: str | None = None,
+        *,
+        token: str | None = None,
+        timeout: float = 60.0,
+        patience: float = 60.0,
+    ) -> None:
+        """Connects to nothing yet; the first request does.
+
+        Args:
+            server: Address; `DRILLSWEEP_SERVER`, or else port 7340 of this machine.
+            token: Token to show to the server; `DRILLSWEEP_TOKEN` unless given.
+            timeout: Seconds that one answer may take.
+            patience: Seconds for which requests are sent again to a server that has answered before but does not now
+                (being started anew, rate limit). Every request that this client sends can safely be sent again.
+        """
+        self.server = (server or os.environ.get("DRILLSWEEP_SERVER") or DEFAULT_SERVER).rstrip("/")
+        self.patience = patience
+        token = token or os.environ.get("DRILLSWEEP_TOKEN")
+        headers = {"authorization": f"Bearer {token}"} if token else {}
+        self._timeout = timeout
+        self._http = httpx.Client(base_url=self.server, headers=headers, timeout=timeout)
+        self._has_answered = False
+
+    def submit(
+        self,
+        preset: str | None = None,
+        *,
+        scenario: Mapping[str, Any] | None = None,
+        set: Mapping[str, Any] | None = None,
+        axes: Mapping[str, Any] | None = None,
+        name: str | None = None,
+        owner: str | None = None,
+        priority: int | None = None,
+        idempotency_key: str | None = None,
+        **fields: Any,
+    ) -> Sweep:
+        """Submits a sweep: the scenario at the points that the axes make.
+
+        Args:
+            preset: Name of a preset scenario; either this or `scenario`.
+            scenario: A scenario in full.
+            set: Changes to the scenario by path, such as `{"duration": 60, "operation.rotation_speed_rpm": 120}`.
+            axes: The swept parameters by name, each an `Axis`: a list or an array of values, or a `Range`.
+            name: A name for people.
+            owner: Whose share of the workers it counts against.
+            priority: Higher goes first among the sweeps of one owner, -10 to 10.
+            idempotency_key: The same request under the same key is one sweep, however often and from wherever it is
+                sent; absent means a new sweep each call.
+            fields: Any other field of the service's request.
+
+        Raises:
+            InvalidRequest: With everything that is wrong with it, by field.
+        """
+        body = _request(preset, scenario, set, axes, name, owner, priority, fields)
+        return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key))
+
+    def run(
+        self,
+        preset: str | None = None,
+        *,
+        scenario: Mapping[str, Any] | None = None,
+        set: Mapping[str, Any] | None = None,
+        name: str | None = None,
+        owner: str | None = None,
+        priority: int | None = None,
+        idempotency_key: str | None = None,
+        **fields: Any,
+    ) -> Sweep:
+        """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
+        body = _request(preset, scenario, set, None, name, owner, priority, fields)
+        return Sweep(self, self._submit("/v1/runs", body, idempotency_key))
+
+    def plan(
+        self,
+        preset: str | None = None,
+        *,
+        scenario: Mapping[str, Any] | None = None,
+        set: Mapping[str, Any] | None = None,
+        axes: Mapping[str, Any] | None = None,
+        **fields: Any,
+    ) -> Plan:
+        """What a sweep would become, without storing anything. Arguments are those of `submit`."""
+        body = _request(preset, scenario, set, axes, None, None, None, fields)
+        return Plan.from_json(self.post_json("/v1/sweeps", body, {"dry_run": "true"}))
+
+    def sweep(self, id: str) -> Sweep:
+        """A sweep that is there."""
+        return Sweep(self, self.get_json(f"/v1/sweeps/{_segment(id)}"))
+
+    def sweeps(self, *, owner: str | None = None, **filters: Any) -> Iterator[Sweep]:
+        """All sweeps, newest first; those of one owner, or that pass the service's other filters."""
+        for data in self.pages("/v1/sweeps", "sweeps", {"owner": owner, **filters}):
+            yield Sweep(self, data)
+
+    def scenarios(self) -> dict[str, str]:
+        """Names and descriptions of the preset scenarios."""
+        entries = self.get_json("/v1/scenarios")["scenarios"]
+        return {entry["name"]: entry["description"] for entry in entries}
+
+    def scenario(self, name: str) -> dict[str, Any]:
+        """A preset scenario in full."""
+        return dict(self.get_json(f"/v1/scenarios/{_segment(name)}")["scenario"])
+
+    def workers(self) -> list[dict[str, Any]]:
+        """The worker processes."""
+        return list(self.get_json("/v1/workers")["workers"])
+
+    def queue(self) -> dict[str, int]:
+        """How much waits and how much is under way."""
+        return dict(self.get_json("/v1/queue"))
+
+    def limits(self) -> dict[str, int]:
+        """The bounds of what the service accepts."""
+        return dict(self.get_json("/v1/limits"))
+
+    def get_json(
+        self, path: str, query: Mapping[str, Any] | None = None, *, read_timeout: float | None = None
+    ) -> dict[str, Any]:
+        """Asks for JSON; entries of the query that are None are left out."""
+        return dict(self._send("GET", path, query=query, read_timeout=read_timeout).json())
+
+    def post_json(
+        self,
+        path: str,
+        body: Mapping[str, Any],
+        query: Mapping[str, Any] | None = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> dict[str, Any]:
+        """Posts JSON and reads JSON."""
+        return dict(self._send("POST", path, query=query, body=body, headers=headers).json())
+
+    def pages(self, path: str, entries: str, query: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+        """The entries of a list that is served in pages."""
+        cursor: str | None = None
+        while True:
+            page = self.get_json(path, {**query, "limit": _PAGE, "cursor": cursor})
+            yield from page[entries]
+            cursor = page.get("next")
+            if cursor is None:
+                return
+
+    def save(self, path: str, file: str | Path, query: Mapping[str, Any]) -> Path:
+        """Writes what the service serves to a file, in the format of the file's ending."""
+        file = Path(file)
+        response = self._send("GET", path, query={**query, "format": file.suffix.removeprefix(".")})
+        file.write_bytes(response.content)
+        return file
+
+    def close(self) -> None:
+        """Closes the connections."""
+        self._http.close()
+
+    def __enter__(self) -> Client:
+        """The client itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Closes the connections."""
+        self.close()
+
+    def _submit(self, path: str, body: Mapping[str, Any], key: str | None) -> dict[str, Any]:
+        # With a key of its own every submission can be sent again when the answer got lost.
+        return self.post_json(path, body, headers={"idempotency-key": key or str(uuid.uuid4())})
+
+    def _send(
+        self,
+        method: str,
+        path: str,
+        *,
+        query: Mapping[str, Any] | None = None,
+        body: Mapping[str, Any] | None = None,
+        headers: Mapping[str, str] | None = None,
+        read_timeout: float | None = None,
+    ) -> httpx.Response:
+        parameters = {name: value for name, value in (query or {}).items() if value is not None}
+        timeout = httpx.Timeout(self._timeout, read=max(read_timeout or 0.0, self._timeout))
+        deadline = time.monotonic() + self.patience
+        pause = _FIRST_PAUSE
+        while True:
+            wait = pause
+            try:
+                response = self._http.request(
+                    method, path, params=parameters, json=body, headers=headers, timeout=timeout
+                )
+            except httpx.TransportError as error:
+                if not self._has_answered or time.monotonic() + wait > deadline:
+                    raise NoAnswer(f"no answer from {self.server}: {error}; is the server up?") from error
+            else:
+                self._has_answered = True
+                if response.is_success:
+                    return response
+                retry_after = _seconds(response.headers.get("retry-after"))
+                wait = wait if retry_after is None else retry_after
+                if response.status_code not in _TRY_AGAIN or time.monotonic() + wait > deadline:
+                    raise problem(response.status_code, _problem_document(response), retry_after)
+            time.sleep(wait)
+            pause = min(2.0 * pause, _LONGEST_PAUSE)
+
+
+def _request(
+    preset: str | None,
+    scenario: Mapping[str, Any] | None,
+    changes: Mapping[str, Any] | None,
+    axes: Mapping[str, Any] | None,
+    name: str | None,
+    owner: str | None,
+    priority: int | None,
+    fields: Mapping[str, Any],
+) -> dict[str, Any]:
+    body: dict[str, Any] = {
+        "preset": preset,
+        "scenario": scenario,
+        "set": None if changes is None else {path: _plain(value) for path, value in changes.items()},
+        "axes": None if axes is None else {axis: axis_to_json(values) for axis, values in axes.items()},
+        "name": name,
+        "owner": owner,
+        "priority": priority,
+        **fields,
+    }
+    return {field: value for field, value in body.items() if value is not None}
+
+
+def _plain(value: Any) -> Any:
+    """A value of numpy's as Python's own, which JSON knows."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {name: _plain(inner) for name, inner in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(inner) for inner in value]
+    return value
+
+
+def _problem_document(response: httpx.Response) -> dict[str, Any]:
+    try:
+        data = response.json()
+    except ValueError:
+        return {}
+    return data if isinstance(data, dict) else {}
+
+
+def _seconds(text: str | None) -> float | None:
+    try:
+        return None if text is None else max(float(text), 0.0)
+    except ValueError:
+        return None
+
+
+def _segment(text: str) -> str:
+    """A text as one segment of a path."""
+    return quote(text, safe="")

@@ -1,0 +1,113 @@
+"""Pictures of results with matplotlib: `pip install 'drillsweep[plot]'`.
+
+Every function draws into `axes`, or into new ones, and returns them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from drillsweep.optional import require
+from drillsweep.point import Point, TimeWindow
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MILLIMETRES = 1e3
+
+
+def orbit(
+    point: Point,
+    *,
+    node: int | None = None,
+    depth: float | None = None,
+    time: TimeWindow = (None, None),
+    axes: Axes | None = None,
+) -> Axes:
+    """The orbit of a node as seen looking downhole, the low side down, with the circle that the wall leaves to it.
+
+    The circle's radius is the node's clearance: a node on it touches the wall. Forward whirl, with the rotation of
+    the string, goes clockwise. In a vertical hole, which has no low side, the frame's first axis points down.
+    """
+    np = require("numpy", "plot")
+    table = point.orbit(node=node, depth=depth, time=time)
+    number = int(table.attributes["node"])
+    statics = point.statics()
+    row = statics.columns["node"].index(number)
+    clearance = float(statics.columns["clearance"][row])
+    low_side = float(statics.columns["low_side_angle"][row])
+    # Along the low side, and a quarter turn on from it in the sense of rotation (from e1 towards e2).
+    down = table["u"] * np.cos(low_side) + table["v"] * np.sin(low_side)
+    across = table["v"] * np.cos(low_side) - table["u"] * np.sin(low_side)
+    axes = axes or _new_axes()
+    # Clockwise on the picture: from the bottom to the left.
+    axes.plot(-across * _MILLIMETRES, -down * _MILLIMETRES, linewidth=0.6)
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    radius = clearance * _MILLIMETRES
+    axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="black", linewidth=1.0)
+    axes.set_aspect("equal")
+    axes.set_xlabel("across the hole [mm]")
+    axes.set_ylabel("from the low side up [mm]")
+    axes.set_title(f"Orbit of node {number} at {table.attributes['measured_depth']:.2f} m")
+    return axes
+
+
+def spectrum(
+    point: Point,
+    *,
+    node: int | None = None,
+    depth: float | None = None,
+    time: TimeWindow = (None, None),
+    window: str | None = None,
+    range_hz: float | None = None,
+    peaks: int = 5,
+    axes: Axes | None = None,
+) -> Axes:
+    """The full spectrum of a node's orbit, its highest lines labelled; backward whirl is left of zero."""
+    table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks)
+    axes = axes or _new_axes()
+    axes.plot(table["frequency"], table["amplitude"] * _MILLIMETRES, linewidth=0.8)
+    for peak in table.attributes["peaks"]:
+        frequency, amplitude = peak["frequency"], peak["amplitude"] * _MILLIMETRES
+        place: dict[str, Any] = {"textcoords": "offset points", "xytext": (0, 3), "ha": "center", "fontsize": "small"}
+        axes.annotate(f"{frequency:+.2f} Hz", (frequency, amplitude), **place)
+    axes.axvline(0.0, color="black", linewidth=0.5)
+    axes.set_xlabel("frequency [Hz], backward - and forward + whirl")
+    axes.set_ylabel("amplitude [mm]")
+    axes.set_title(f"Full spectrum of node {table.attributes['node']} at {table.attributes['measured_depth']:.2f} m")
+    return axes
+
+
+def profile(
+    points: Point | Iterable[Point],
+    column: str = "friction_coefficient",
+    *,
+    axes: Axes | None = None,
+) -> Axes:
+    """A column of the profile over measured depth, downwards, C_f unless told otherwise; one line a point."""
+    axes = axes or _new_axes()
+    unit = ""
+    for point in [points] if isinstance(points, Point) else points:
+        table = point.profile()
+        np = require("numpy", "plot")
+        # Values belong to elements: steps over the elements' ends.
+        depth = np.stack([table["measured_depth_top"], table["measured_depth_bottom"]], axis=1).ravel()
+        axes.plot(table[column].repeat(2), depth, linewidth=0.9, label=_label(point.parameters))
+        unit = table.units.get(column, "")
+    axes.invert_yaxis()
+    name = "C_f" if column == "friction_coefficient" else column.replace("_", " ")
+    axes.set_xlabel(f"{name} [{unit}]" if unit not in ("", "1") else name)
+    axes.set_ylabel("measured depth [m]")
+    if len(axes.lines) > 1:
+        axes.legend(fontsize="small")
+    return axes
+
+
+def _label(parameters: dict[str, float]) -> str:
+    return ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in parameters.items())
+
+
+def _new_axes() -> Any:
+    pyplot = require("matplotlib.pyplot", "plot")
+    return pyplot.subplots(layout="constrained")[1]

@@ -1,0 +1,210 @@
+"""One point of a sweep and its results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from drillsweep.table import Table
+
+if TYPE_CHECKING:
+    from drillsweep.client import Client
+
+TimeWindow = tuple[float | None, float | None]
+"""Start (included) and end (not included) of a window [s]; None is open."""
+
+
+@dataclass(frozen=True)
+class PointError:
+    """Why a point has no result."""
+
+    kind: str
+    """The class of failure: physical, infrastructure, crash, timeout or cancelled."""
+    reason: str
+    """What happened, in words."""
+    time: float | None = None
+    """Simulated time at which it happened [s]."""
+    node: int | None = None
+    """Node at which it happened, 1 at the top."""
+
+
+class Point:
+    """One point of a sweep: where it stands and what came of it."""
+
+    def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
+        """A point as the service showed it, in a list or in full."""
+        self._client = client
+        self._data = dict(data)
+        self._statics: Table | None = None
+
+    @property
+    def ordinal(self) -> int:
+        """Number in its sweep, from 1."""
+        return int(self._data["ordinal"])
+
+    @property
+    def state(self) -> str:
+        """One of `queued`, `running`, `succeeded`, `failed`, `cancelled`."""
+        return str(self._data["state"])
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The swept parameters, by axis."""
+        return dict(self._data["parameters"])
+
+    @property
+    def progress(self) -> float:
+        """Simulated time over duration, 0 to 1."""
+        return float(self._data["progress"])
+
+    @property
+    def attempts(self) -> int:
+        """How often a worker has started it."""
+        return int(self._data["attempts"])
+
+    @property
+    def error(self) -> PointError | None:
+        """Why it failed, if it did."""
+        error = self._data.get("error")
+        if error is None:
+            return None
+        return PointError(error["class"], error["reason"], error.get("time"), error.get("node"))
+
+    @property
+    def key(self) -> str:
+        """Content hash of scenario and physics version: equal keys, equal results."""
+        return str(self._detail("key"))
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """The scenario as simulated: preset, changes and axes applied."""
+        return dict(self._detail("scenario"))
+
+    @property
+    def summary(self) -> dict[str, Any] | None:
+        """The scalar results, as in the sweep's table; None where there is no result."""
+        return self._detail("summary")  # type: ignore[no-any-return]
+
+    @property
+    def provenance(self) -> dict[str, Any] | None:
+        """Which code computed it, where, and at what cost; None where there is no result."""
+        return self._detail("provenance")  # type: ignore[no-any-return]
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables that the run produced."""
+        return list(self._detail("tables"))
+
+    @property
+    def path(self) -> str:
+        """Its path on the server."""
+        return str(self._data["links"]["self"])
+
+    def refresh(self) -> Point:
+        """Reads its state anew."""
+        self._data = self._client.get_json(self.path)
+        return self
+
+    def profile(self) -> Table:
+        """Geometry, hydraulics and forces of every element at the equilibrium, from the top down.
+
+        Among the columns: `measured_depth_top`, `eccentricity`, `friction_coefficient` (C_f), `apparent_viscosity`,
+        `regime`, `annulus_pressure`, `bore_pressure`, `effective_tension`, `torque`.
+        """
+        return self.view("profile")
+
+    def statics(self) -> Table:
+        """The static equilibrium, node by node."""
+        if self._statics is None:
+            self._statics = self.view("statics")
+        return self._statics
+
+    def history(
+        self,
+        *,
+        node: int | None = None,
+        depth: float | None = None,
+        time: TimeWindow = (None, None),
+        max_points: int | None = None,
+    ) -> Table:
+        """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `theta_z_rate_N` for node N."""
+        return self.view("history", **_node_window(node, depth, time), max_points=max_points)
+
+    def orbit(
+        self,
+        *,
+        node: int | None = None,
+        depth: float | None = None,
+        time: TimeWindow = (None, None),
+        max_points: int | None = None,
+    ) -> Table:
+        """The path of a recorded node across the hole: `time`, `u`, `v`, `radius`.
+
+        Args:
+            node: A recorded node, 1 at the top; either this or `depth`.
+            depth: Measured depth [m]; the nearest recorded node is taken.
+            time: Window [s].
+            max_points: At most so many points; the extremes stay.
+        """
+        return self.view("orbit", **_node_window(node, depth, time), max_points=max_points)
+
+    def spectrum(
+        self,
+        *,
+        node: int | None = None,
+        depth: float | None = None,
+        time: TimeWindow = (None, None),
+        window: str | None = None,
+        range_hz: float | None = None,
+        peaks: int | None = None,
+    ) -> Table:
+        """The full spectrum of a node's orbit: `frequency` (positive is forward whirl), `amplitude`, `peak_to_peak`.
+
+        The highest lines are in `attributes["peaks"]`.
+
+        Args:
+            node: A recorded node, 1 at the top; either this or `depth`.
+            depth: Measured depth [m]; the nearest recorded node is taken.
+            time: Window [s].
+            window: Weighting of the samples, such as `hann`.
+            range_hz: Frequencies from minus to plus this [Hz].
+            peaks: At most so many of the highest peaks are listed.
+        """
+        query = {"window": window, "range_hz": range_hz, "peaks": peaks}
+        return self.view("spectrum", **_node_window(node, depth, time), **query)
+
+    def contacts(self) -> Table:
+        """Contacts of every node with the hole over the run."""
+        return self.view("contacts")
+
+    def energy(self) -> Table:
+        """The energy ledger over the run."""
+        return self.view("energy")
+
+    def cost(self) -> dict[str, Any]:
+        """What accuracy costs, where the scenario has a `cost_study`."""
+        return self._client.get_json(f"{self.path}/cost")
+
+    def view(self, name: str, **query: Any) -> Table:
+        """Any table that the service has of the point; `query` is the service's own."""
+        return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))
+
+    def save(self, name: str, file: str | Path, **query: Any) -> Path:
+        """Writes a table to a file, in the format of its ending: .csv, .json, .parquet or what else the service has."""
+        return self._client.save(f"{self.path}/{name}", file, query)
+
+    def _detail(self, name: str) -> Any:
+        if "scenario" not in self._data:
+            self.refresh()
+        return self._data.get(name)
+
+    def __repr__(self) -> str:
+        """Number, state and parameters."""
+        parameters = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
+        return f"Point({self.ordinal}, {self.state}{parameters})"
+
+
+def _node_window(node: int | None, depth: float | None, time: TimeWindow) -> dict[str, Any]:
+    return {"node": node, "depth": depth, "from": time[0], "to": time[1]}

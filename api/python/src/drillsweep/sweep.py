@@ -1,0 +1,227 @@
+"""A sweep: following it, its points, its table."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from drillsweep.point import Point
+from drillsweep.problem import FieldProblem
+from drillsweep.progress import ProgressBar, is_watched
+from drillsweep.table import Table
+
+if TYPE_CHECKING:
+    from drillsweep.client import Client
+
+_LONG_POLL = 30.0
+"""Seconds for which the service holds an answer back until something changes."""
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Numbers of a sweep's points by state."""
+
+    total: int
+    queued: int
+    running: int
+    succeeded: int
+    failed: int
+    cancelled: int
+
+
+@dataclass(frozen=True)
+class PlannedPoint:
+    """A point that a request would become."""
+
+    ordinal: int
+    parameters: dict[str, float]
+    key: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a request would become, without storing anything."""
+
+    total: int
+    """Number of points."""
+    known: int
+    """Points whose result is already there."""
+    points: tuple[PlannedPoint, ...]
+    """The points, in order."""
+    warnings: tuple[FieldProblem, ...]
+    """What can be simulated but is probably not meant."""
+    data: dict[str, Any]
+    """The service's whole answer."""
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Plan:
+        """Reads the answer to a dry run."""
+        points = (PlannedPoint(p["ordinal"], dict(p["parameters"]), p["key"]) for p in data.get("points", ()))
+        warnings = (FieldProblem.from_json(warning) for warning in data.get("warnings", ()))
+        return cls(int(data["total"]), int(data["known"]), tuple(points), tuple(warnings), dict(data))
+
+
+class Sweep:
+    """A sweep on the server. What it says of itself is as of its last answer; `refresh` and `wait` ask anew."""
+
+    def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
+        """A sweep as the service showed it."""
+        self._client = client
+        self._data = dict(data)
+
+    @property
+    def id(self) -> str:
+        """Identifier."""
+        return str(self._data["id"])
+
+    @property
+    def name(self) -> str | None:
+        """The name given to it."""
+        return self._data.get("name")
+
+    @property
+    def owner(self) -> str:
+        """Whose share of the workers it counts against."""
+        return str(self._data["owner"])
+
+    @property
+    def state(self) -> str:
+        """Where it stands as a whole, such as `running`, `completed` or `cancelled`."""
+        return str(self._data["state"])
+
+    @property
+    def counts(self) -> Counts:
+        """Its points by state."""
+        counts = self._data["counts"]
+        return Counts(**{name: int(counts[name]) for name in Counts.__dataclass_fields__})
+
+    @property
+    def progress(self) -> float:
+        """Done part of the work, 0 to 1."""
+        return float(self._data["progress"])
+
+    @property
+    def created(self) -> datetime:
+        """When it was submitted."""
+        return _time(self._data["created"])
+
+    @property
+    def finished(self) -> datetime | None:
+        """When its last point became final; None while there are others."""
+        text = self._data.get("finished")
+        return None if text is None else _time(text)
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether every point is final."""
+        return self._data.get("finished") is not None
+
+    @property
+    def warnings(self) -> tuple[FieldProblem, ...]:
+        """What can be simulated but is probably not meant; told at submission only."""
+        return tuple(FieldProblem.from_json(warning) for warning in self._data.get("warnings", ()))
+
+    @property
+    def request(self) -> dict[str, Any]:
+        """What was asked for."""
+        if "request" not in self._data:
+            self.refresh()
+        return dict(self._data["request"])
+
+    @property
+    def path(self) -> str:
+        """Its path on the server."""
+        return str(self._data["links"]["self"])
+
+    def refresh(self) -> Sweep:
+        """Asks the server where it stands."""
+        self._data = self._client.get_json(self.path)
+        return self
+
+    def wait(
+        self,
+        timeout: float | None = None,
+        progress: bool | Callable[[Sweep], None] | None = None,
+    ) -> Sweep:
+        """Waits until every point is final, and returns the sweep.
+
+        A server that is away for a while, as when it is started anew, is waited for (`Client.patience`). Failed points
+        do not raise: `counts.failed` and `failures` tell.
+
+        Args:
+            timeout: Longest wait [s]; None is without end.
+            progress: True shows a bar, False none, a function is called after every change; None shows a bar to those
+                who see one, on a terminal or in a notebook.
+
+        Raises:
+            TimeoutError: When `timeout` is over.
+        """
+        deadline = None if timeout is None else time.monotonic() + timeout
+        bar = ProgressBar() if progress is True or (progress is None and is_watched(sys.stderr)) else None
+        show = bar.show if bar else progress if callable(progress) else _nothing
+        try:
+            self.refresh()
+            show(self)
+            while not self.is_finished:
+                wait = _LONG_POLL if deadline is None else min(_LONG_POLL, deadline - time.monotonic())
+                if wait <= 0.0:
+                    raise TimeoutError(f"sweep {self.id} is not complete after {timeout:g} s")
+                self._data = self._client.get_json(self.path, {"wait": f"{wait:.3f}s"}, read_timeout=wait + 30.0)
+                show(self)
+        finally:
+            if bar:
+                bar.close()
+        return self
+
+    def point(self, ordinal: int) -> Point:
+        """One point, in full; the first is 1."""
+        return Point(self._client, self._client.get_json(f"{self.path}/points/{ordinal}"))
+
+    def points(self, state: str | None = None) -> Iterator[Point]:
+        """Its points in order, those in one state or all."""
+        for data in self._client.pages(f"{self.path}/points", "points", {"state": state}):
+            yield Point(self._client, data)
+
+    def failures(self) -> list[Point]:
+        """The points that failed; `Point.error` says why."""
+        return list(self.points("failed"))
+
+    def table(self) -> Table:
+        """One row a point: its parameters and the scalars of its result."""
+        return Table.from_json(self._client.get_json(f"{self.path}/table"))
+
+    def save_table(self, file: str | Path) -> Path:
+        """Writes the table to a file, in the format of its ending: .csv, .json, .parquet."""
+        return self._client.save(f"{self.path}/table", file, {})
+
+    def cancel(self) -> Sweep:
+        """Cancels it: points that wait at once, points under way within a heartbeat of their worker."""
+        return self._change("cancel")
+
+    def retry(self) -> Sweep:
+        """Queues its failed and cancelled points again."""
+        return self._change("retry")
+
+    def _change(self, verb: str) -> Sweep:
+        self._data = self._client.post_json(f"{self.path}/{verb}", {})
+        return self
+
+    def __repr__(self) -> str:
+        """Identifier, state and counts."""
+        counts = self.counts
+        return f"Sweep({self.id}, {self.state}, {counts.succeeded} of {counts.total} points)"
+
+
+def _nothing(_: Sweep) -> None:
+    pass
+
+
+def _time(text: str) -> datetime:
+    # Python 3.10 reads neither `Z` nor other than 3 or 6 digits of a second.
+    moment, _, fraction = text.removesuffix("Z").partition(".")
+    return datetime.fromisoformat(f"{moment}.{(fraction or '0')[:6].ljust(6, '0')}+00:00")

@@ -1,0 +1,96 @@
+"""Results of a point against what numpy makes of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import polars
+import pytest
+
+from drillsweep import InvalidRequest, Sweep, plot
+
+
+def test_orbit_and_summary_follow_from_the_recorded_motion(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    history = point.history(node=49, time=(0.1, 0.5))
+    orbit = point.orbit(node=49, time=(0.1, 0.5))
+    assert orbit.rows == 400, "a half-open window at 1 kHz"
+    np.testing.assert_array_equal(orbit["u"], history["u_49"])
+    np.testing.assert_array_equal(orbit["radius"], np.hypot(history["u_49"], history["v_49"]))
+    motion = orbit["u"] + 1j * orbit["v"]
+    size = np.sqrt(np.mean(np.abs(motion - motion.mean()) ** 2))
+    assert point.summary is not None
+    # Samples are kept in single precision.
+    assert point.summary["orbit_radius_rms_49"] == pytest.approx(size, rel=1e-3)
+    assert orbit.units == {"time": "s", "u": "m", "v": "m", "radius": "m"}
+
+
+def test_full_spectrum_is_the_transform_of_the_orbit(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    orbit = point.orbit(node=49, time=(0.1, 0.5))
+    spectrum = point.spectrum(node=49, time=(0.1, 0.5), window="rectangular", range_hz=20)
+    motion = orbit["u"] + 1j * orbit["v"]
+    frequency = np.fft.fftfreq(motion.size, 1e-3)
+    amplitude = np.abs(np.fft.fft(motion)) / motion.size
+    for f, a in zip(spectrum["frequency"], spectrum["amplitude"], strict=True):
+        if abs(f) > 1e-9:
+            assert a == pytest.approx(amplitude[np.argmin(np.abs(frequency - f))], rel=1e-6), f
+    for peak in spectrum.attributes["peaks"]:
+        if abs(peak["frequency"]) > spectrum.attributes["resolution"]:
+            assert peak["whirl"] == ("forward" if peak["frequency"] > 0.0 else "backward")
+
+
+def test_tables_come_as_arrays(sweep: Sweep) -> None:
+    point = sweep.point(2)
+    profile = point.profile()
+    assert profile["friction_coefficient"].dtype == np.float64
+    assert profile["element"].dtype == np.int64
+    assert set(profile["regime"]) <= {"laminar", "transitional", "turbulent"}
+    assert profile.to_polars().shape == (profile.rows, len(profile))
+    contacts = point.contacts()
+    touched = contacts["contact_count"] > 0
+    assert touched.any()
+    assert np.all(contacts["largest_radius"][touched] > contacts["clearance"][touched])
+    energy = point.energy()
+    # What came in, less what was dissipated, is there, but for the residual.
+    there = energy["kinetic"] + energy["stored"]
+    received = energy["work_unbalance"] + energy["work_rotation"] + energy["work_flow"]
+    kinds = ("structure", "fluid", "friction", "contact")
+    dissipated = sum(energy[f"dissipated_{kind}"] for kind in kinds)
+    np.testing.assert_allclose(there - there[0] - received + dissipated, energy["residual"], rtol=1e-9, atol=1e-6)
+    assert len(point.tables) >= 5
+    assert point.provenance is not None
+    assert point.provenance["steps"] > 0
+
+
+def test_files_hold_what_the_arrays_hold(sweep: Sweep, tmp_path: Path) -> None:
+    point = sweep.point(1)
+    frame = polars.read_parquet(point.save("orbit", tmp_path / "orbit.parquet", node=49))
+    np.testing.assert_array_equal(frame["u"].to_numpy(), point.orbit(node=49)["u"])
+    with pytest.raises(InvalidRequest, match="format"):
+        point.save("orbit", tmp_path / "orbit.xlsx", node=49)
+
+
+def test_orbit_is_drawn_low_side_down_in_the_holes_circle(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    axes = plot.orbit(point, node=49)
+    orbit, circle = axes.lines
+    statics = point.statics()
+    row = list(statics["node"]).index(49)
+    x, y = circle.get_data()
+    np.testing.assert_allclose(np.hypot(x, y), 1e3 * statics["clearance"][row])
+    # The string lies on the low side of this inclined hole, at rest and in motion.
+    x, y = np.asarray(orbit.get_xdata()), np.asarray(orbit.get_ydata())
+    assert y.mean() < 0.0
+    assert abs(x.mean()) < abs(y.mean())
+    np.testing.assert_allclose(np.hypot(x, y), 1e3 * point.orbit(node=49)["radius"])
+
+
+def test_spectrum_and_profile_are_drawn(sweep: Sweep) -> None:
+    axes = plot.spectrum(sweep.point(1), node=49, range_hz=20, peaks=3)
+    assert len(axes.texts) == 3
+    axes = plot.profile(sweep.points())
+    assert len(axes.lines) == 4
+    bottom, top = axes.get_ylim()
+    assert bottom > top, "depth goes down"

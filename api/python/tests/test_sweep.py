@@ -1,0 +1,164 @@
+"""Submitting, waiting, the table."""
+
+from __future__ import annotations
+
+import io
+import re
+import socket
+import threading
+from pathlib import Path
+
+import pandas
+import polars
+import pytest
+
+from drillsweep import (
+    Client,
+    IdempotencyKeyReused,
+    InvalidRequest,
+    NoAnswer,
+    NoResult,
+    NotFound,
+    Range,
+    Sweep,
+)
+from drillsweep.progress import ProgressBar
+from service import SHORT, Service
+
+
+def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> None:
+    assert sweep.state == "completed"
+    assert (sweep.counts.total, sweep.counts.succeeded) == (4, 4)
+    table = sweep.table()
+    frame = table.to_pandas()
+    assert frame["flow_rate"].tolist() == [0.01, 0.01, 0.04, 0.04], "the first axis varies slowest"
+    assert frame["mud_density"].tolist() == [1200.0, 1800.0, 1200.0, 1800.0]
+    assert frame.attrs["units"]["mud_density"] == "kg/m3"
+    # The paper's section 4.4: C_f falls with flow rate.
+    assert frame["friction_coefficient_max"][2] < frame["friction_coefficient_max"][0]
+    # The service's own CSV and Parquet, read by others, hold the same numbers.
+    csv = pandas.read_csv(sweep.save_table(tmp_path / "table.csv"))
+    parquet = polars.read_parquet(sweep.save_table(tmp_path / "table.parquet"))
+    for other in (csv["orbit_radius_rms_49"].tolist(), parquet["orbit_radius_rms_49"].to_list()):
+        assert other == frame["orbit_radius_rms_49"].tolist() == table.to_polars()["orbit_radius_rms_49"].to_list()
+
+
+def test_progress_is_told_and_drawn(client: Client) -> None:
+    seen: list[float] = []
+    stream = io.StringIO()
+    bar = ProgressBar(stream)
+
+    def show(sweep: Sweep) -> None:
+        seen.append(sweep.progress)
+        bar.show(sweep)
+
+    # Another density than that of the other tests, so that there is something to compute.
+    run = client.run("paper-200m", set={**SHORT, "mud.density": 1300}).wait(timeout=120.0, progress=show)
+    bar.close()
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    assert run.is_finished
+    assert run.finished is not None
+    assert run.finished > run.created
+    assert re.search(r"\[#{30}\] 100% 1 of 1 points, 0 running, \d:\d\d\n$", stream.getvalue())
+
+
+def test_wait_gives_up_in_time_and_a_sweep_can_be_cancelled_and_retried(client: Client) -> None:
+    long = client.run("paper-200m", set={"duration": 3600, "recording.spectrum_windows": []})
+    with pytest.raises(TimeoutError, match=long.id):
+        long.wait(timeout=0.3, progress=False)
+    with pytest.raises(NoResult) as no_result:
+        long.point(1).profile()
+    assert no_result.value.point_state in ("queued", "running")
+    assert long.cancel().state == "cancelled"
+    assert long.wait(timeout=60.0).counts.cancelled == 1
+    assert long.retry().counts.cancelled == 0
+    long.cancel()
+
+
+def test_everything_wrong_with_a_request_is_told_by_field(client: Client) -> None:
+    with pytest.raises(InvalidRequest) as invalid:
+        client.submit("paper-200m", axes={"flow_rate": [0.01, -1], "mud_density": Range(1200, 2100, 1)})
+    problem = invalid.value
+    assert problem.status == 422
+    assert {error.pointer for error in problem.errors} >= {"/axes/mud_density/count"}
+    with pytest.raises(InvalidRequest) as invalid:
+        client.submit("paper-200m", axes={"flow_rate": [0.01, -1]}, set={"operation.bit_weight": 3})
+    assert invalid.value.errors
+    assert all(error.pointer and error.detail for error in invalid.value.errors)
+    assert str(invalid.value.errors[0]) in str(invalid.value) or len(invalid.value.errors) == 1
+    with pytest.raises(InvalidRequest) as parameter:
+        list(client.sweeps(colour="red"))
+    assert parameter.value.errors[0].parameter == "colour"
+
+
+def test_what_is_not_there_is_told(client: Client, sweep: Sweep) -> None:
+    with pytest.raises(NotFound):
+        client.sweep("../../etc/passwd")
+    with pytest.raises(NotFound):
+        sweep.point(5)
+    with pytest.raises(NotFound):
+        sweep.point(1).cost()
+
+
+def test_failed_point_says_why(client: Client) -> None:
+    # Without its wall the string is buckled by the weight on bit.
+    run = client.run("paper-200m", set={**SHORT, "effects.contact": "off"}).wait(timeout=120.0)
+    (point,) = run.failures()
+    assert point.error is not None
+    assert point.error.kind == "physical"
+    assert "no equilibrium" in point.error.reason
+    assert point.error.node is not None
+    assert point.summary is None
+
+
+def test_a_plan_stores_nothing(client: Client, sweep: Sweep) -> None:
+    before = len(list(client.sweeps()))
+    plan = client.plan("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.02], "mud_density": [1200]})
+    assert (plan.total, plan.known) == (2, 1)
+    assert plan.points[0].key == sweep.point(1).key
+    assert len(list(client.sweeps())) == before
+
+
+def test_same_request_under_one_key_is_one_sweep(client: Client) -> None:
+    def submit(density: float) -> Sweep:
+        return client.run("paper-200m", set={**SHORT, "mud.density": density}, idempotency_key="once")
+
+    assert submit(1200).id == submit(1200).id
+    with pytest.raises(IdempotencyKeyReused):
+        submit(1201)
+    assert client.run("paper-200m", set=SHORT).id != client.run("paper-200m", set=SHORT).id
+
+
+def test_service_tells_about_itself(client: Client) -> None:
+    assert "paper-200m" in client.scenarios()
+    assert client.scenario("paper-200m")["mud"]["flow_rate"] == 0.01
+    assert client.limits()["points_per_sweep"] >= 10_000
+    assert set(client.queue()) >= {"queued", "running"}
+    assert len(client.workers()) == 2
+
+
+def test_waiting_outlives_a_server_that_is_killed_and_started_anew(tmp_path: Path) -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{probe.getsockname()[1]}"
+    serve = ["serve", "--listen", address, "--data", str(tmp_path)]
+    first = Service(*serve)
+    with Client(first.server, patience=60.0) as client:
+        sweep = client.run("paper-200m", set=SHORT)
+        states: list[str] = []
+        waiting = threading.Thread(target=lambda: states.append(sweep.wait(timeout=120.0, progress=False).state))
+        waiting.start()
+        first.kill()
+        up = Service("up", "--workers", "1", *serve[1:])
+        waiting.join(120.0)
+        assert states == ["completed"]
+        up.stop()
+
+
+def test_absent_server_is_told_at_once() -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+        with Client(f"http://127.0.0.1:{port}") as client, pytest.raises(NoAnswer, match="is the server up"):
+            client.queue()

@@ -1,0 +1,60 @@
+"""The examples, run as they stand but for the length of the runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service import REPOSITORY, Service
+
+SHORTER = {
+    '"duration": 60': '"duration": 0.5, "accuracy": "draft", "recording.spectrum_windows": [], '
+    '"recording.orbit_window.from": 0.1, "recording.orbit_window.to": 0.5',
+    "time=(40, 60)": "time=(0.1, 0.5)",
+    "time=(50, 60)": "time=(0.1, 0.5)",
+    "from=50&to=60": "from=0.1&to=0.5",
+}
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    data = tmp_path_factory.mktemp("data")
+    service = Service("up", "--workers", "2", "--listen", "127.0.0.1:0", "--data", str(data))
+    yield service.server
+    service.stop()
+
+
+def run(name: str, interpreter: str, server: str, directory: Path) -> str:
+    text = (REPOSITORY / "examples" / name).read_text()
+    for long, short in SHORTER.items():
+        text = text.replace(long, short)
+    script = directory / name
+    script.write_text(text)
+    environment = {**os.environ, "DRILLSWEEP_SERVER": server, "MPLBACKEND": "Agg"}
+    done = subprocess.run(
+        [interpreter, script], cwd=directory, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_python_and_curl_give_the_same_table(server: str, tmp_path: Path) -> None:
+    of_python = [line.split() for line in run("sweep.py", sys.executable, server, tmp_path).splitlines()[1:]]
+    assert (tmp_path / "sweep.png").read_bytes().startswith(b"\x89PNG")
+    lines = run("sweep.sh", "bash", server, tmp_path).splitlines()
+    of_curl = [line.split("\t") for line in lines if "\t" in line]
+    assert len(of_curl) == 12
+    for python, curl in zip(of_python, of_curl, strict=True):
+        assert [float(value) for value in python] == pytest.approx([float(value) for value in curl], rel=1e-3, abs=1e-6)
+    peaks = [json.loads(line) for line in lines if line.startswith("{")]
+    assert peaks[0]["amplitude"] == max(peak["amplitude"] for peak in peaks)
+
+
+def test_the_readme_shows_the_example_as_it_is() -> None:
+    assert (REPOSITORY / "examples" / "sweep.py").read_text() in (REPOSITORY / "README.md").read_text()

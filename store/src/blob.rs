@@ -44,12 +44,16 @@ impl BlobStore {
         }
     }
 
-    /// Reads a whole blob.
+    /// Reads a whole blob. What a disk has damaged is not passed on.
     ///
     /// # Errors
-    /// When it is not there, or the object store fails.
+    /// When it is not there or is not what was written, or the object store fails.
     pub async fn get(&self, id: BlobId) -> Result<Bytes> {
-        Ok(self.objects.get(&id.path()).await?.bytes().await?)
+        let content = self.objects.get(&id.path()).await?.bytes().await?;
+        if BlobId::of(&content) != id {
+            return Err(StoreError::Corrupt(format!("blob {id}, whose content is not what its name says")));
+        }
+        Ok(content)
     }
 
     /// Reads a range of a blob's bytes, cut off at its end.

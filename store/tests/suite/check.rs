@@ -1,6 +1,6 @@
 //! The check of the whole store: silent where all is well, and naming what was damaged.
 
-use drillsweep_store::Role;
+use drillsweep_store::{Role, StoreError};
 
 use crate::bench::{Bench, claim, finish, submit, sweep};
 
@@ -32,5 +32,7 @@ async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named() {
     let of = |blob: &String| problems.iter().find(|problem| problem.contains(blob.as_str())).unwrap();
     assert!(of(&blobs[0]).contains("not found"), "{problems:?}");
     assert!(of(&blobs[1]).contains("not what its name says"), "{problems:?}");
-    assert!(of(&blobs[2]).contains("16 bytes instead of 32"), "{problems:?}");
+    assert!(of(&blobs[2]).contains("not what its name says"), "{problems:?}");
+    // Nor is it handed out.
+    assert!(matches!(store.blobs().get(blobs[1].parse().unwrap()).await, Err(StoreError::Corrupt(_))));
 }

@@ -2,7 +2,7 @@
 //! simulates them, starved processors.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -401,22 +401,40 @@ fn full_disk_is_told_and_nothing_is_lost_by_it() {
     assert_eq!(half_written(&disk.data.join("blobs")), Vec::<PathBuf>::new());
 }
 
+#[test]
+fn damaged_result_is_told_and_not_served() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, address) = serve(data.path(), None);
+    let _worker = worker(data.path());
+    let sweep = submit(&address, &request(0.2, 1, 1));
+    wait(&address, &sweep, completed);
+    for path in files(&data.path().join("blobs")) {
+        let mut content = std::fs::read(&path).unwrap();
+        let middle = content.len() / 2;
+        content[middle] ^= 1;
+        std::fs::write(&path, content).unwrap();
+    }
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    for query in ["profile", "history?format=parquet", "orbit?node=49", "spectrum?node=49"] {
+        let mut answer = agent.get(format!("{address}/v1/sweeps/{sweep}/points/1/{query}")).call().unwrap();
+        assert_eq!(answer.status(), 500, "{query}");
+        let problem: Value = answer.body_mut().read_json().unwrap();
+        assert_eq!(problem["type"], "urn:drillsweep:problem:internal", "{problem}");
+    }
+    assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["state"], "completed");
+    assert_eq!(check(data.path()).1.len(), 5, "the tables of the point");
+}
+
+/// All files below a directory.
+fn files(directory: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
+
 /// Files that a write left behind before it was done.
 fn half_written(directory: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(half_written(&path));
-        } else {
-            let mut content = Vec::new();
-            File::open(&path).unwrap().read_to_end(&mut content).unwrap();
-            let name = path.file_name().unwrap().to_string_lossy();
-            // A blob is named by 64 hexadecimal digits.
-            if name.len() != 64 || content.is_empty() {
-                found.push(path);
-            }
-        }
-    }
-    found
+    // A blob is named by 64 hexadecimal digits.
+    let is_whole =
+        |path: &PathBuf| path.file_name().unwrap().len() == 64 && path.metadata().unwrap().len() > 0;
+    files(directory).into_iter().filter(|path| !is_whole(path)).collect()
 }

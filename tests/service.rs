@@ -4,6 +4,7 @@
 
 mod commands;
 mod faults;
+mod hostile;
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -64,14 +64,22 @@ def spectrum(
     peaks: int = 5,
     axes: Axes | None = None,
 ) -> Axes:
-    """The full spectrum of a node's orbit, its highest lines labelled; backward whirl is left of zero."""
-    table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks)
+    """The full spectrum of a node's orbit, its highest lines labelled; backward whirl is left of zero.
+
+    The line at zero, the mean position, is left out: it would dwarf the others.
+    """
+    np = require("numpy", "plot")
+    table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
+    # As wide as the line that any window makes of a mean.
+    is_mean = np.abs(table["frequency"]) < 2.5 * table.attributes["resolution"]
+    amplitude = np.where(is_mean, np.nan, table["amplitude"]) * _MILLIMETRES
     axes = axes or _new_axes()
-    axes.plot(table["frequency"], table["amplitude"] * _MILLIMETRES, linewidth=0.8)
-    for peak in table.attributes["peaks"]:
-        frequency, amplitude = peak["frequency"], peak["amplitude"] * _MILLIMETRES
-        place: dict[str, Any] = {"textcoords": "offset points", "xytext": (0, 3), "ha": "center", "fontsize": "small"}
-        axes.annotate(f"{frequency:+.2f} Hz", (frequency, amplitude), **place)
+    axes.plot(table["frequency"], amplitude, linewidth=0.8)
+    lines = [peak for peak in table.attributes["peaks"] if peak["whirl"] != "offset"]
+    for line in lines[:peaks]:
+        side = "right" if line["frequency"] < 0.0 else "left"
+        place: dict[str, Any] = {"textcoords": "offset points", "xytext": (0, 3), "ha": side, "fontsize": "small"}
+        axes.annotate(f"{line['frequency']:+.2f} Hz", (line["frequency"], line["amplitude"] * _MILLIMETRES), **place)
     axes.axvline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("frequency [Hz], backward - and forward + whirl")
     axes.set_ylabel("amplitude [mm]")
@@ -88,19 +96,22 @@ def profile(
     """A column of the profile over measured depth, downwards, C_f unless told otherwise; one line a point."""
     axes = axes or _new_axes()
     unit = ""
-    for point in [points] if isinstance(points, Point) else points:
+    shown = [points] if isinstance(points, Point) else list(points)
+    colours = require("matplotlib", "plot").colormaps["viridis"]
+    np = require("numpy", "plot")
+    for number, point in enumerate(shown):
         table = point.profile()
-        np = require("numpy", "plot")
         # Values belong to elements: steps over the elements' ends.
         depth = np.stack([table["measured_depth_top"], table["measured_depth_bottom"]], axis=1).ravel()
-        axes.plot(table[column].repeat(2), depth, linewidth=0.9, label=_label(point.parameters))
+        colour = colours(0.9 * number / max(len(shown) - 1, 1))
+        axes.plot(table[column].repeat(2), depth, linewidth=0.9, color=colour, label=_label(point.parameters))
         unit = table.units.get(column, "")
     axes.invert_yaxis()
     name = "C_f" if column == "friction_coefficient" else column.replace("_", " ")
     axes.set_xlabel(f"{name} [{unit}]" if unit not in ("", "1") else name)
     axes.set_ylabel("measured depth [m]")
     if len(axes.lines) > 1:
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
 
 

@@ -8,6 +8,7 @@
 
 pub mod axis;
 pub mod cost;
+pub mod dry_run;
 pub mod expand;
 pub mod picture;
 pub mod point;
@@ -21,6 +22,7 @@ pub mod units;
 pub mod view;
 
 pub use axis::{Axis, Scale};
+pub use dry_run::{DryRun, PlannedPoint};
 pub use expand::{Expansion, PointKey, SweepPoint, expand, key_text};
 pub use point::{FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow, PointState};
 pub use preset::{preset_detail, presets};
@@ -29,7 +31,7 @@ pub use request::{AxisName, Design, RunRequest, SweepRequest};
 pub use service::{
     Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
 };
-pub use sweep::{DryRun, PlannedPoint, PointCounts, Sweep, SweepLinks, SweepList, SweepState};
+pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState};
 pub use table::{Column, Table};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

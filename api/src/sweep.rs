@@ -1,6 +1,5 @@
 //! A sweep as the service shows it.
 
-use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -108,29 +107,4 @@ pub struct SweepList {
     /// Cursor of the next page; absent on the last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next: Option<String>,
-}
-
-/// What a request would become, without storing anything.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct DryRun {
-    /// Number of points.
-    pub total: u64,
-    /// Points whose result is already there and would not be computed again.
-    pub known: u64,
-    /// The points, by ordinal.
-    pub points: Vec<PlannedPoint>,
-    /// What can be simulated but is probably not meant.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<FieldProblem>,
-}
-
-/// A point that a request would become.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct PlannedPoint {
-    /// Number of the point, from 1, the first axis varying slowest.
-    pub ordinal: u32,
-    /// Its parameters, by axis name.
-    pub parameters: IndexMap<String, f64>,
-    /// Content hash of scenario and physics version.
-    pub key: String,
 }

@@ -5,6 +5,7 @@ mod client;
 mod cost;
 mod fetch;
 mod health;
+mod plan;
 mod service;
 mod simulate;
 mod submit;
@@ -51,6 +52,8 @@ enum Command {
     Fetch(fetch::FetchArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
+    /// Tell what a scenario will take, without running it: effects and why, steps and time at each accuracy.
+    Plan(plan::PlanArguments),
     /// Measure what accuracy costs: methods, steps and meshes against a converged run.
     Cost(cost::CostArguments),
     /// List the scenarios that ship with the program, or print one.
@@ -94,6 +97,7 @@ fn main() -> anyhow::Result<()> {
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

@@ -9,8 +9,7 @@ use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use drillsweep_api::view::points;
 use drillsweep_api::{
-    DryRun, Expansion, LIMITS, PlannedPoint, RunRequest, Sweep, SweepList, SweepPoint, SweepRequest, expand,
-    key_text,
+    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, expand,
 };
 use drillsweep_store::SubmitOutcome;
 use serde::Deserialize;
@@ -26,6 +25,7 @@ use crate::format::{self, Format};
 use crate::limit;
 use crate::openapi::{Problems, TableResponse};
 use crate::results::TableQuery;
+use crate::status::WORKER_SILENCE;
 use crate::work::blocking;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
@@ -138,17 +138,9 @@ async fn submit(
 async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
     let keys: Vec<_> = expansion.points.iter().map(|point| point.key).collect();
     let known = app.store.known_results(&keys).await?;
-    let planned = |point: SweepPoint| PlannedPoint {
-        ordinal: point.ordinal,
-        parameters: point.parameters,
-        key: key_text(&point.key),
-    };
-    Ok(DryRun {
-        total: keys.len() as u64,
-        known,
-        points: expansion.points.into_iter().map(planned).collect(),
-        warnings: expansion.warnings,
-    })
+    let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
+    let workers = app.store.workers(WORKER_SILENCE).await?.len();
+    blocking(move || Ok(DryRun::new(expansion, known, speed.as_deref(), workers))).await
 }
 
 /// The key under which a submission may be repeated: a text of visible ASCII.

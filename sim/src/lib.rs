@@ -14,6 +14,7 @@ pub mod ensemble;
 pub mod linalg;
 pub mod model;
 pub mod mud;
+pub mod plan;
 pub mod scenario;
 pub mod signal;
 pub mod statics;

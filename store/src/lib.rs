@@ -10,6 +10,7 @@ mod check;
 mod connection;
 mod error;
 mod event;
+mod machine;
 mod point;
 mod probe;
 mod queue;

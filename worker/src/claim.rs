@@ -12,6 +12,7 @@ use drillsweep_store::{
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
+use crate::calibration::calibrate;
 use crate::compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 
@@ -52,6 +53,28 @@ pub enum WorkerError {
     Heartbeat(#[from] std::io::Error),
 }
 
+/// Measures the machine, unless that was done; plans do without where it fails.
+async fn keep_speed(store: &Store, host: &str) {
+    let measure = async {
+        if store.machine_speed(i64::from(PHYSICS_VERSION)).await?.is_some() {
+            return Ok(());
+        }
+        let speed = tokio::task::spawn_blocking(calibrate).await;
+        match speed {
+            Ok(Ok(speed)) => {
+                store.keep_machine_speed(host, i64::from(PHYSICS_VERSION), &json!(speed).to_string()).await
+            }
+            failed => {
+                tracing::warn!(?failed, "the machine's speed is not known");
+                Ok(())
+            }
+        }
+    };
+    if let Err(error) = measure.await {
+        tracing::warn!(%error, "the machine's speed is not kept");
+    }
+}
+
 /// How one point ended.
 enum Ended {
     Computed(Result<Box<Computed>, ComputeError>),
@@ -77,6 +100,7 @@ pub async fn run(config: WorkerConfig, mut stop: watch::Receiver<bool>) -> Resul
         started: 0,
         last_seen: 0,
     };
+    keep_speed(&store, &record.host).await;
     let heartbeat = Heartbeat::start(config.store.clone(), record, config.lease)?;
     tracing::info!(worker = %id, "worker ready");
     while !*stop.borrow() {

@@ -5,12 +5,14 @@
 //! runtime does input and output only; [`compute`] is plain code on a thread that may be cancelled through the
 //! simulation's own control handle.
 
+mod calibration;
 mod claim;
 mod compute;
 mod cost;
 mod lease;
 mod tables;
 
+pub use calibration::calibrate;
 pub use claim::{WorkerConfig, WorkerError, run};
 pub use compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
 pub use cost::{cost_study, study_time};

@@ -87,9 +87,7 @@ impl Model {
                 let momentum = FlowMomentum::new(mud, beam.section(), self.scenario.well.hole_diameter);
                 let lateral = to_nodes(&beam.lateral_mass());
                 if effects.fluid_added_mass {
-                    let added =
-                        momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass;
-                    add_element_matrix(&mut mass, e, &(lateral * added));
+                    add_element_matrix(&mut mass, e, &(lateral * self.added_mass(e)));
                 }
                 if let Some(flow) = equilibrium.flows.get(e).filter(|_| effects.fluid_damping) {
                     let c = lateral * (flow.friction_damping + flow.rotation_damping);
@@ -129,6 +127,16 @@ impl Model {
             rotation_speed: self.rotation_speed,
             held,
         }
+    }
+
+    /// Mass of mud that moves sideways with an element, inside and outside \[kg/m\]; zero where that effect is off.
+    pub fn added_mass(&self, element: usize) -> f64 {
+        let Some(mud) = self.scenario.mud.as_ref().filter(|_| self.effects.fluid_added_mass) else {
+            return 0.0;
+        };
+        let section = self.elements[element].beam.section();
+        let momentum = FlowMomentum::new(mud, section, self.scenario.well.hole_diameter);
+        momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass
     }
 
     /// Constant nodal loads, with the mud's drag \[N/m\] on every element (empty where there is none).

@@ -279,7 +279,7 @@ impl<'m, const D: usize> Run<'m, D> {
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
         let stepping = scenario.accuracy.time_stepping();
-        let subdivisions = stability::subdivisions(model, system, stepping.integrator, stepping.step);
+        let subdivisions = stability::subdivisions(model, stepping.integrator, stepping.step);
         let rk4_limit = match stepping.integrator {
             Integrator::Rk4 => stability::rk4_limit(model, system)?,
             _ => f64::INFINITY,
@@ -291,8 +291,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let ledger = Ledger::new(model, &system, initial);
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
-        let steps_per_sample =
-            (interval / stepping.step * (1.0 - 1e-9)).ceil().max(1.0) as u64 * u64::from(subdivisions);
+        let steps_per_sample = steps_per_interval(interval, stepping.step) * u64::from(subdivisions);
         let step = interval / steps_per_sample as f64;
         let hole_radius = 0.5 * scenario.well.hole_diameter;
         let stepper = match stepping.integrator {
@@ -528,6 +527,22 @@ impl<const D: usize> State<D> {
             adaptive_step,
         }
     }
+}
+
+/// Steps of a run of the model's scenario with a stepping of its choice; none where the step adapts itself.
+pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
+    if stepping.tolerance.is_some() {
+        return None;
+    }
+    let recording = &model.scenario.recording;
+    let samples = (model.scenario.duration * recording.rate_hz).round() as u64;
+    let subdivisions = stability::subdivisions(model, stepping.integrator, stepping.step);
+    Some(samples * steps_per_interval(1.0 / recording.rate_hz, stepping.step) * u64::from(subdivisions))
+}
+
+/// Equal steps, none longer than `step`, that fill `interval` \[s\].
+fn steps_per_interval(interval: f64, step: f64) -> u64 {
+    (interval / step * (1.0 - 1e-9)).ceil().max(1.0) as u64
 }
 
 /// The largest stable step of RK4 \[s\] for a model about its equilibrium.

@@ -6,7 +6,7 @@ use super::energy::Ledger;
 use super::error::ErrorSum;
 use super::forces::{ContactForces, Forces, NodeContact};
 use super::implicit::{flat, flat_mut, held_list};
-use super::{Books, State};
+use super::{Books, State, steps_per_interval};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -71,9 +71,9 @@ impl<const D: usize> Rk4<D> {
         Books { ledger, errors }: Books<'_, D>,
     ) -> Result<(), StepCollapsed> {
         let Some(tolerance) = self.tolerance else {
-            let count = (interval / self.largest_step * (1.0 - 1e-12)).ceil().max(1.0);
-            let h = interval / count;
-            for i in 0..count as u64 {
+            let count = steps_per_interval(interval, self.largest_step);
+            let h = interval / count as f64;
+            for i in 0..count {
                 self.step(system, forces, time + i as f64 * h, h, state, Some(ledger));
                 self.add_error(h, state, errors);
             }

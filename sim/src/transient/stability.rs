@@ -3,8 +3,9 @@
 use super::esdirk;
 use super::implicit::{flat, flat_mut};
 use super::rk4::mass_factor;
+use crate::beam::ElementVector;
 use crate::linalg::{BlockTridiagonal, SingularBlock};
-use crate::model::{DynamicSystem, Model};
+use crate::model::{DynamicSystem, Model, add_element_vector};
 use crate::scenario::Integrator;
 
 /// End of RK4's stability interval on the imaginary axis, 2 sqrt 2, with a margin for damping.
@@ -16,23 +17,23 @@ const POWER_ITERATIONS: usize = 300;
 
 /// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass for its share of the law: two contact sweeps stay stable below one
 /// (performance.md section 3). `step` is that of one implicit solve.
-pub(super) fn sweep_number(model: &Model, system: &DynamicSystem, step: f64) -> f64 {
+fn sweep_number(model: &Model, step: f64) -> f64 {
     if !model.effects.contact {
         return 0.0;
     }
     let contact = &model.scenario.contact;
-    (step * contact.damping + step * step * contact.stiffness) * largest_share_by_mass(model, system)
+    (step * contact.damping + step * step * contact.stiffness) * largest_share_by_mass(model)
 }
 
 /// The smallest number of equal parts into which `step` must be cut for two contact sweeps to be stable.
-pub(super) fn subdivisions(model: &Model, system: &DynamicSystem, integrator: Integrator, step: f64) -> u32 {
+pub(super) fn subdivisions(model: &Model, integrator: Integrator, step: f64) -> u32 {
     let fraction = match integrator {
         Integrator::GeneralizedAlpha => 1.0,
         Integrator::Esdirk4 => esdirk::DIAGONAL,
         Integrator::Rk4 => return 1,
     };
     let mut parts = 1;
-    while sweep_number(model, system, fraction * step / f64::from(parts)) >= 1.0 {
+    while sweep_number(model, fraction * step / f64::from(parts)) >= 1.0 {
         parts *= 2;
     }
     parts
@@ -73,11 +74,14 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
 
 /// The largest share of the contact law that a node has for each kilogram \[1/kg\] that it sets against a lateral push:
 /// the sum over its row for a rigid shift.
-fn largest_share_by_mass(model: &Model, system: &DynamicSystem) -> f64 {
-    let n = system.held.len();
-    let shift = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; n];
-    let mut mass = vec![[0.0; 6]; n];
-    system.mass.multiply_into(&shift, &mut mass);
+fn largest_share_by_mass(model: &Model) -> f64 {
+    let shift = ElementVector::from_fn(|i, _| if i % 6 == 0 { 1.0 } else { 0.0 });
+    let mut mass = vec![[0.0; 6]; model.node_count()];
+    for (e, element) in model.elements.iter().enumerate() {
+        let beam = &element.beam;
+        let of_element = beam.mass() + beam.lateral_mass() * model.added_mass(e);
+        add_element_vector(&mut mass, e, &(element.chord.matrix_to_nodes(&of_element) * shift));
+    }
     let nodes = mass.iter().zip(&model.mesh.nodes).skip(1);
     nodes.map(|(row, node)| node.contact_share / row[0]).fold(0.0, f64::max)
 }

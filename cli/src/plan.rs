@@ -1,0 +1,79 @@
+//! What a scenario will take, without running it.
+
+use std::fmt::Write as _;
+
+use clap::Args;
+use drillsweep_sim::plan::{Plan, PlannedAccuracy};
+use drillsweep_worker::calibrate;
+use serde_json::{Value, json};
+
+use crate::print;
+use crate::simulate::{parse_set, read_scenario};
+
+#[derive(Args)]
+pub(crate) struct PlanArguments {
+    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
+    scenario: String,
+    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
+    set: Vec<(String, Value)>,
+    /// Print the plan as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints the plan of a scenario, with processor times from some short runs on this machine.
+pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
+    let mut scenario = read_scenario(&arguments.scenario)?;
+    for (path, value) in arguments.set.iter().cloned() {
+        scenario = scenario.with(&path, value)?;
+    }
+    for warning in scenario.validate()? {
+        tracing::warn!("{}: {}", warning.path, warning.message);
+    }
+    let speed = calibrate()?;
+    let plan = Plan::new(&scenario, Some(&speed))?;
+    if arguments.json {
+        print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
+    } else {
+        print(plan_text(&plan)?.trim_end());
+    }
+    Ok(())
+}
+
+fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    writeln!(text, "effects")?;
+    for decision in &plan.effects {
+        let state = if decision.active { "on" } else { "off" };
+        writeln!(
+            text,
+            "  {:20} {:5} {state:4} {}",
+            decision.effect.name(),
+            decision.switch.name(),
+            decision.reason
+        )?;
+    }
+    let statics = plan.statics_cpu_time.unwrap_or(0.0) * 1e3;
+    writeln!(text, "{} elements, {} nodes", plan.elements, plan.nodes)?;
+    writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
+    if plan.accuracies.is_empty() {
+        writeln!(text, "no run in time")?;
+        return Ok(text);
+    }
+    writeln!(
+        text,
+        "run in time: {} s simulated, {} degrees of freedom a node",
+        plan.simulated_time, plan.degrees_of_freedom
+    )?;
+    writeln!(text, "  {:10} {:18} {:>9} {:>10}  processor time", "accuracy", "method", "step", "steps")?;
+    for (i, PlannedAccuracy { name, integrator, step, steps, cpu_time }) in plan.accuracies.iter().enumerate()
+    {
+        let steps = steps.map_or("adaptive".to_owned(), |steps| steps.to_string());
+        let time = cpu_time.map_or("not known".to_owned(), |time| format!("{time:.2} s"));
+        let chosen = if i == 0 { "  <- as asked for" } else { "" };
+        let step = format!("{} ms", step * 1e3);
+        writeln!(text, "  {name:10} {:18} {step:>9} {steps:>10}  {time}{chosen}", integrator.name())?;
+    }
+    Ok(text)
+}

@@ -1,0 +1,94 @@
+//! What each effect costs in the run in time of the 200 m case, and what `auto` saves where a scene calls for less.
+//! Run: `cargo bench -p drillsweep-sim --bench effects`
+
+use divan::Bencher;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
+use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Effect, Scenario, Switch, preset};
+use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::transient::Transient;
+
+/// Simulated time of one run \[s\]: 100 steps.
+const DURATION: f64 = 0.05;
+
+/// What can be switched off without the string buckling.
+const SWITCHED: [Effect; 15] = [
+    Effect::FluidAddedMass,
+    Effect::FluidDamping,
+    Effect::FluidCoriolis,
+    Effect::FlowStiffness,
+    Effect::MudDrag,
+    Effect::Buoyancy,
+    Effect::Friction,
+    Effect::FrictionTorque,
+    Effect::Unbalance,
+    Effect::Gyroscopic,
+    Effect::AxialStiffening,
+    Effect::TorqueStiffening,
+    Effect::StructuralDamping,
+    Effect::Torsion,
+    Effect::AxialMotion,
+];
+
+/// Scenes that call for less and less.
+const SCENES: [&str; 5] = ["as it is", "dry", "frictionless", "straight", "straight and frictionless"];
+
+fn main() {
+    divan::main();
+}
+
+fn base() -> Scenario {
+    let mut scenario = preset("paper-200m").expect("it ships with the program");
+    scenario.duration = DURATION;
+    scenario.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
+    scenario.recording.spectrum_windows.clear();
+    scenario.recording.orbit_window = None;
+    scenario
+}
+
+fn scene(name: &str) -> Scenario {
+    let mut scenario = base();
+    if name == "dry" {
+        scenario.mud = None;
+    }
+    if name.contains("straight") {
+        for station in &mut scenario.well.survey {
+            (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+        }
+    }
+    if name.contains("frictionless") {
+        (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+    }
+    scenario
+}
+
+fn bench_run(bencher: Bencher, scenario: &Scenario) {
+    let model = Model::new(scenario).expect("the scene has a model");
+    let equilibrium = Equilibrium::find(&model).expect("the scene has an equilibrium");
+    bencher
+        .with_inputs(|| Transient::new(&model, &equilibrium).expect("the run can be set up"))
+        .bench_local_values(|transient| transient.run(&Control::new()));
+}
+
+#[divan::bench(args = SWITCHED.map(Effect::name))]
+fn without(bencher: Bencher, effect: &str) {
+    let mut scenario = base();
+    if let Some(&effect) = SWITCHED.iter().find(|candidate| candidate.name() == effect) {
+        scenario.effects.set(effect, Switch::Off);
+    }
+    bench_run(bencher, &scenario);
+}
+
+#[divan::bench(args = SCENES)]
+fn auto(bencher: Bencher, name: &str) {
+    bench_run(bencher, &scene(name));
+}
+
+#[divan::bench(args = SCENES)]
+fn all_on(bencher: Bencher, name: &str) {
+    let mut scenario = scene(name);
+    for &effect in Effect::ALL {
+        scenario.effects.set(effect, Switch::On);
+    }
+    bench_run(bencher, &scenario);
+}

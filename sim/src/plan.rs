@@ -1,0 +1,295 @@
+//! What a scenario will take, without running it (design.md section 3): the effects in play and why, the size of the
+//! problem, steps and processor time at each accuracy.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::{Model, ModelError};
+use crate::scenario::{
+    Accuracy, AccuracyPreset, EffectDecision, Integrator, NodeChoice, Recording, Scenario, Switch,
+    TimeStepping,
+};
+use crate::transient::step_count;
+
+/// The plan of a scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Plan {
+    /// Every effect, whether it takes part and why.
+    pub effects: Vec<EffectDecision>,
+    /// Elements of the string.
+    pub elements: usize,
+    /// Nodes of the string.
+    pub nodes: usize,
+    /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
+    pub degrees_of_freedom: usize,
+    /// Simulated time of all runs of the point together \[s\]; 0 where there is no run in time.
+    pub simulated_time: f64,
+    /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
+    /// is not known.
+    pub statics_cpu_time: Option<f64>,
+    /// The scenario's own accuracy first, then the named ones; only the first where there is no run in time.
+    pub accuracies: Vec<PlannedAccuracy>,
+}
+
+/// What one accuracy takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct PlannedAccuracy {
+    /// `draft`, `standard`, `reference`, or `explicit` where integrator and step were given in full.
+    pub name: String,
+    /// Method.
+    pub integrator: Integrator,
+    /// Step \[s\].
+    pub step: f64,
+    /// Steps of all runs of the point together; absent where the step adapts itself.
+    pub steps: Option<u64>,
+    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included; absent where the
+    /// machine's speed is not known or the step adapts itself.
+    pub cpu_time: Option<f64>,
+}
+
+/// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct MachineSpeed {
+    /// An equilibrium with its hydraulics, for each node \[s\].
+    pub statics_per_node: f64,
+    /// Steps of each method, in the order of [`MethodKind`]: for each node \[s\], with 4, 5 and 6 degrees of freedom.
+    pub step_per_node: [[f64; 3]; 4],
+}
+
+/// Methods whose steps differ in cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum MethodKind {
+    GeneralizedAlpha,
+    /// Two contact sweeps a stage.
+    Esdirk4,
+    /// Contact sweeps until they stand still.
+    Esdirk4Converged,
+    Rk4,
+}
+
+/// A short run whose steps are timed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationRun {
+    /// What to simulate.
+    pub scenario: Scenario,
+    method: usize,
+    degrees_of_freedom: usize,
+}
+
+impl Plan {
+    /// The plan of a valid scenario; with processor times where the machine's `speed` is known.
+    ///
+    /// # Errors
+    /// When the scenario has no model.
+    pub fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
+        let model = Model::new(scenario)?;
+        let nodes = model.node_count();
+        let in_time = model.effects.transient;
+        let simulated_time = if in_time { scenario.duration * f64::from(scenario.ensemble) } else { 0.0 };
+        let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
+        let degrees_of_freedom = degrees_of_freedom(&model);
+        let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
+        let planned = |(name, stepping): (&str, TimeStepping)| {
+            let runs = u64::from(scenario.ensemble);
+            let steps = step_count(&model, stepping).map(|steps| steps * runs);
+            let cost = |steps: u64| {
+                let per_node =
+                    speed?.step_per_node[MethodKind::of(stepping) as usize][degrees_of_freedom - 4];
+                Some(statics_cpu_time? + per_node * steps as f64 * nodes as f64)
+            };
+            PlannedAccuracy {
+                name: name.to_owned(),
+                integrator: stepping.integrator,
+                step: stepping.step,
+                steps,
+                cpu_time: steps.and_then(cost),
+            }
+        };
+        Ok(Self {
+            effects: scenario.decide_effects(),
+            elements: model.elements.len(),
+            nodes,
+            degrees_of_freedom: if in_time { degrees_of_freedom } else { 0 },
+            simulated_time,
+            statics_cpu_time,
+            accuracies: accuracies.into_iter().map(planned).collect(),
+        })
+    }
+
+    /// Processor time that the point is expected to take at its own accuracy \[s\]; absent where it is not known.
+    pub fn cpu_time(&self) -> Option<f64> {
+        self.accuracies.first().map_or(self.statics_cpu_time, |own| own.cpu_time)
+    }
+}
+
+fn degrees_of_freedom(model: &Model) -> usize {
+    4 + usize::from(model.effects.torsion) + usize::from(model.effects.axial_motion)
+}
+
+/// The scenario's own accuracy, then the named ones that it is not.
+fn accuracies(scenario: &Scenario) -> Vec<(&'static str, TimeStepping)> {
+    let named = [
+        ("draft", AccuracyPreset::Draft),
+        ("standard", AccuracyPreset::Standard),
+        ("reference", AccuracyPreset::Reference),
+    ];
+    let own = match scenario.accuracy {
+        Accuracy::Preset(own) => {
+            named.iter().find(|(_, preset)| *preset == own).map_or("explicit", |(name, _)| name)
+        }
+        Accuracy::Explicit(_) => "explicit",
+    };
+    let others = named.into_iter().filter(|(name, _)| *name != own);
+    let others = others.map(|(name, preset)| (name, Accuracy::Preset(preset).time_stepping()));
+    std::iter::once((own, scenario.accuracy.time_stepping())).chain(others).collect()
+}
+
+impl MethodKind {
+    const ALL: [MethodKind; 4] =
+        [MethodKind::GeneralizedAlpha, MethodKind::Esdirk4, MethodKind::Esdirk4Converged, MethodKind::Rk4];
+
+    fn of(stepping: TimeStepping) -> Self {
+        match stepping.integrator {
+            Integrator::GeneralizedAlpha => MethodKind::GeneralizedAlpha,
+            Integrator::Esdirk4 if stepping.contact_sweeps > 2 => MethodKind::Esdirk4Converged,
+            Integrator::Esdirk4 => MethodKind::Esdirk4,
+            Integrator::Rk4 => MethodKind::Rk4,
+        }
+    }
+
+    /// Stepping and simulated time \[s\] of a run long enough to be timed: some 10 ms.
+    fn sample(self) -> (TimeStepping, f64) {
+        let preset = |preset| Accuracy::Preset(preset).time_stepping();
+        match self {
+            MethodKind::GeneralizedAlpha => (preset(AccuracyPreset::Draft), 0.1),
+            MethodKind::Esdirk4 => (preset(AccuracyPreset::Standard), 0.06),
+            MethodKind::Esdirk4Converged => (preset(AccuracyPreset::Reference), 0.02),
+            MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.01),
+        }
+    }
+}
+
+/// The runs that tell how fast a machine is: every method with 4, 5 and 6 degrees of freedom a node, on the scenario
+/// `base` (the 200 m case).
+pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
+    let mut runs = Vec::new();
+    for method in MethodKind::ALL {
+        for degrees_of_freedom in 4..=6 {
+            let (stepping, duration) = method.sample();
+            let mut scenario = Scenario {
+                duration,
+                accuracy: Accuracy::Explicit(stepping),
+                recording: Recording {
+                    nodes: vec![NodeChoice::Node(49)],
+                    spectrum_windows: Vec::new(),
+                    orbit_window: None,
+                    ..base.recording.clone()
+                },
+                ..base.clone()
+            };
+            scenario.effects.torsion = if degrees_of_freedom > 4 { Switch::On } else { Switch::Off };
+            scenario.effects.axial_motion = if degrees_of_freedom > 5 { Switch::On } else { Switch::Off };
+            runs.push(CalibrationRun { scenario, method: method as usize, degrees_of_freedom });
+        }
+    }
+    runs
+}
+
+impl MachineSpeed {
+    /// The speed from the equilibrium's processor time and the calibration runs', in their order \[s\]. `nodes` and `steps`
+    /// are those of each run.
+    pub fn from_times(
+        statics: f64,
+        nodes: usize,
+        runs: impl IntoIterator<Item = (CalibrationRun, u64, f64)>,
+    ) -> Self {
+        let mut speed = Self { statics_per_node: statics / nodes as f64, step_per_node: [[0.0; 3]; 4] };
+        for (run, steps, time) in runs {
+            speed.step_per_node[run.method][run.degrees_of_freedom - 4] =
+                time / (steps as f64 * nodes as f64);
+        }
+        speed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Control;
+    use crate::scenario::preset;
+    use crate::statics::Equilibrium;
+    use crate::transient::{Outcome, Transient};
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    #[test]
+    fn planned_steps_and_degrees_of_freedom_are_those_of_the_run() {
+        type Change = fn(&mut Scenario);
+        let scenes: [Change; 4] = [
+            |_| {},
+            |s| (s.contact.stiffness, s.contact.damping) = (1e8, 1e5),
+            |s| s.effects.torsion = Switch::Off,
+            |s| s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, 6e-5)),
+        ];
+        for change in scenes {
+            let mut scenario = paper();
+            scenario.duration = 0.02;
+            scenario.recording.spectrum_windows.clear();
+            scenario.recording.orbit_window = None;
+            change(&mut scenario);
+            let plan = Plan::new(&scenario, None).unwrap();
+            let model = Model::new(&scenario).unwrap();
+            let run = Transient::new(&model, &Equilibrium::find(&model).unwrap()).unwrap();
+            assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom());
+            let Ok(Outcome::Finished(records)) = run.run(&Control::new()) else { panic!("not finished") };
+            assert_eq!(plan.accuracies[0].steps, Some(records.effort.steps), "{:?}", plan.accuracies);
+            assert_eq!(plan.accuracies[0].cpu_time, None);
+        }
+    }
+
+    #[test]
+    fn cost_is_that_of_the_steps_and_the_equilibrium() {
+        let speed = MachineSpeed {
+            statics_per_node: 1e-4,
+            step_per_node: [[1e-7, 2e-7, 3e-7], [1e-6; 3], [2e-6; 3], [5e-7; 3]],
+        };
+        let mut scenario = paper();
+        scenario.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
+        scenario.ensemble = 2;
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        let statics = 297.0 * 1e-4;
+        assert_eq!(plan.simulated_time, 120.0);
+        assert!((plan.cpu_time().unwrap() - (statics + 297.0 * 240_000.0 * 3e-7)).abs() < 1e-9);
+        let names: Vec<_> = plan.accuracies.iter().map(|accuracy| accuracy.name.as_str()).collect();
+        assert_eq!(names, ["draft", "standard", "reference"]);
+
+        scenario.recording.nodes.clear();
+        scenario.recording.spectrum_windows.clear();
+        scenario.recording.orbit_window = None;
+        let profile = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!((profile.degrees_of_freedom, profile.simulated_time), (0, 0.0));
+        assert!(profile.accuracies.is_empty());
+        assert_eq!(profile.cpu_time(), Some(statics));
+    }
+
+    #[test]
+    fn calibration_covers_every_method_with_every_number_of_degrees_of_freedom() {
+        let runs = calibration_runs(&paper());
+        let speed = MachineSpeed::from_times(
+            297e-4,
+            297,
+            runs.into_iter().enumerate().map(|(i, run)| {
+                assert_eq!(run.scenario.validate(), Ok(vec![]));
+                let plan = Plan::new(&run.scenario, None).unwrap();
+                assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
+                (run, 100, (i + 1) as f64 * 29_700.0)
+            }),
+        );
+        assert_eq!(speed.statics_per_node, 1e-4);
+        assert_eq!(speed.step_per_node, [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.], [10., 11., 12.]]);
+    }
+}

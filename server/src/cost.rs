@@ -96,6 +96,10 @@ pub(crate) async fn show(
     }
     blocking(move || {
         let report: CostReport = serde_json::from_slice(&stored).map_err(|error| Error::internal(&error))?;
+        if report.methods.is_empty() && matches!(format, CostFormat::Svg | CostFormat::Png) {
+            let detail = "must be json or csv: a study of effects has no chart";
+            return Err(Error::parameter("format", None, detail));
+        }
         let measure = match measure {
             Some(ChartMeasure::OrbitSize) => Measure::OrbitSize,
             Some(ChartMeasure::Trajectory) => Measure::Trajectory,

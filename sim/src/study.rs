@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::ensemble::parting_time;
 use crate::model::{Model, ModelError};
 use crate::scenario::{
-    Accuracy, CostStudy, Integrator, MethodSteps, NodeChoice, Recording, Scenario, TimeStepping, TimeWindow,
+    Accuracy, CostStudy, Effect, EffectDecision, Integrator, MethodSteps, NodeChoice, Recording, Scenario,
+    Switch, TimeStepping, TimeWindow,
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::summary::TransientSummary;
@@ -56,6 +57,11 @@ pub enum Role {
         /// Factor on all target element lengths.
         factor: f64,
     },
+    /// The scenario without one of its effects.
+    Without {
+        /// The effect.
+        effect: Effect,
+    },
 }
 
 /// What a study keeps of a run.
@@ -99,6 +105,10 @@ pub struct CostReport {
     /// Meshes. Contact stiffness is a node's unless the contact law has a `reference_length`: then a finer mesh is
     /// another, stiffer wall, and these rows need not converge.
     pub meshes: Vec<CostRow>,
+    /// The scenario without one effect at a time; the reference is the whole scenario at its own accuracy then, and what stands as
+    /// an error is what the effect changes.
+    #[serde(default)]
+    pub effects: Vec<CostRow>,
     /// Cheapest methods for some accuracies.
     pub recommendations: Vec<Recommendation>,
     /// What to doubt.
@@ -109,6 +119,9 @@ pub struct CostReport {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CostRow {
+    /// The effect that was switched off; absent where none was.
+    #[serde(default)]
+    pub effect: Option<Effect>,
     /// Method.
     pub integrator: Integrator,
     /// Step \[s\].
@@ -201,6 +214,9 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRun>, StudyError> {
         ensemble: 1,
         ..scenario.clone()
     };
+    if study.effects {
+        return Ok(ablation(scenario, base));
+    }
     let interval = 1.0 / base.recording.rate_hz;
     let methods = match study.methods {
         Some(methods) => methods,
@@ -246,6 +262,23 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRun>, StudyError> {
         }
     }
     Ok(runs)
+}
+
+/// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
+fn ablation(scenario: &Scenario, mut base: Scenario) -> Vec<PlannedRun> {
+    let decisions = scenario.decide_effects();
+    for decision in &decisions {
+        base.effects.set(decision.effect, if decision.active { Switch::On } else { Switch::Off });
+    }
+    let run = |role, member| PlannedRun { role, scenario: base.clone(), member };
+    let mut runs = vec![run(Role::Reference, 0), run(Role::Twin, 1)];
+    let in_play = decisions.iter().filter(|decision| decision.active && decision.effect != Effect::Transient);
+    runs.extend(in_play.map(|&EffectDecision { effect, .. }| {
+        let mut planned = run(Role::Without { effect }, 0);
+        planned.scenario.effects.set(effect, Switch::Off);
+        planned
+    }));
+    runs
 }
 
 /// The recording of a study's runs: by depth, since another mesh has other node numbers, at half the rate where that
@@ -397,6 +430,7 @@ pub fn report(
         let measure = run.as_ref().ok();
         let cpu_time = measure.map_or(0.0, |(_, cpu_time)| *cpu_time);
         CostRow {
+            effect: if let Role::Without { effect } = planned.role { Some(effect) } else { None },
             integrator: stepping.integrator,
             step: stepping.step,
             mesh_factor: if let Role::Mesh { factor } = planned.role { factor } else { 1.0 },
@@ -446,7 +480,10 @@ pub fn report(
             .next()
             .ok_or_else(|| StudyError::Reference("it is missing".to_owned()))?,
         meshes: finest.map_or_else(Vec::new, |finest| meshes().map(|run| row(run, finest)).collect()),
-        recommendations: WANTED.iter().map(recommend).collect(),
+        effects: with_role(|role| matches!(role, Role::Without { .. }))
+            .map(|run| row(run, reference))
+            .collect(),
+        recommendations: if methods.is_empty() { Vec::new() } else { WANTED.iter().map(recommend).collect() },
         methods,
         warnings,
     })

@@ -41,6 +41,7 @@ mod tests {
     /// A run with errors in proportion to `error`.
     pub(super) fn row(integrator: Integrator, step: f64, cpu: f64, error: f64) -> CostRow {
         CostRow {
+            effect: None,
             integrator,
             step,
             mesh_factor: 1.0,
@@ -85,6 +86,7 @@ mod tests {
                 row(Integrator::Rk4, 5e-5, 4.2, 1e-3),
             ],
             meshes: vec![coarse, fine],
+            effects: Vec::new(),
             recommendations: vec![Recommendation {
                 orbit_size: 0.01,
                 integrator: Some(Integrator::Esdirk4),

@@ -4,13 +4,14 @@ use drillsweep_sim::study::{CostErrors, CostReport, CostRow};
 
 use crate::table::{Column, Table};
 
-/// One row a run: its `role` (`reference`, `method` or `mesh`), what it was, what it took, its errors against the
+/// One row a run: its `role` (`reference`, `method`, `mesh` or `effect`), what it was, what it took, its errors against the
 /// reference, and the `failure` of one that has none.
 pub fn table(report: &CostReport) -> Table {
     let of_role = |role, rows| std::iter::repeat(role).zip(rows);
     let runs: Vec<(&str, &CostRow)> = of_role("reference", std::slice::from_ref(&report.reference))
         .chain(of_role("method", &report.methods))
         .chain(of_role("mesh", &report.meshes))
+        .chain(of_role("effect", &report.effects))
         .collect();
     let texts =
         |text: fn(&CostRow) -> Option<String>| Column::Text(runs.iter().map(|(_, row)| text(row)).collect());
@@ -25,6 +26,7 @@ pub fn table(report: &CostReport) -> Table {
     };
     Table::default()
         .with("role", Column::Text(runs.iter().map(|(role, _)| Some((*role).to_owned())).collect()))
+        .with("without_effect", texts(|row| row.effect.map(|effect| effect.name().to_owned())))
         .with("integrator", texts(|row| Some(row.integrator.name().to_owned())))
         .with("step", numbers(|row| row.step))
         .with("mesh_factor", numbers(|row| row.mesh_factor))
@@ -60,7 +62,7 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(
             lines[0],
-            "role,integrator,step,mesh_factor,elements,steps,step_subdivisions,cpu_time,cpu_per_simulated_second,\
+            "role,without_effect,integrator,step,mesh_factor,elements,steps,step_subdivisions,cpu_time,cpu_per_simulated_second,\
              trajectory_error,orbit_size_error,mean_radius_error,line_frequency_error_hz,static_position_error,\
              friction_coefficient_error,energy_error,estimated_error,failure"
         );

@@ -12,8 +12,9 @@ const ABSENT: &str = "-";
 /// The study in words and aligned columns.
 pub fn text(report: &CostReport) -> String {
     let name = if report.scenario.is_empty() { "the scenario" } else { &report.scenario };
+    let subject = if report.effects.is_empty() { "what accuracy costs" } else { "what each effect does" };
     let mut text = format!(
-        "what accuracy costs: runs of {name} over {} s, orbits and lines over [{}, {}) s\n",
+        "{subject}: runs of {name} over {} s, orbits and lines over [{}, {}) s\n",
         report.duration, report.window.from, report.window.to
     );
     let reference = &report.reference;
@@ -44,6 +45,12 @@ pub fn text(report: &CostReport) -> String {
     if !report.meshes.is_empty() {
         text.push_str("\nmeshes, errors against the finest (relative, but lines in Hz)\n");
         text.push_str(&aligned(&mesh_columns(&report.meshes), &report.meshes));
+    }
+    if !report.effects.is_empty() {
+        text.push_str(
+            "\neffects, what changes without each (relative, but lines in Hz) and the time it saves\n",
+        );
+        text.push_str(&aligned(&effect_columns(report), &report.effects));
     }
     if !report.recommendations.is_empty() {
         text.push_str("\nrecommended\n");
@@ -105,6 +112,25 @@ fn mesh_columns(rows: &[CostRow]) -> Vec<Column> {
         errors("line Hz", rows, |errors| errors.line_frequency_hz),
     ]);
     columns
+}
+
+fn effect_columns(report: &CostReport) -> Vec<Column> {
+    let rows = &report.effects;
+    let whole = report.reference.cpu_per_simulated_second;
+    let saved = |row: &CostRow| {
+        let share = 100.0 * (1.0 - row.cpu_per_simulated_second / whole);
+        (row.failure.is_none() && share.is_finite()).then(|| format!("{share:.0} %"))
+    };
+    vec![
+        column("without", rows, |row| row.effect.map(|effect| effect.name().to_owned())),
+        errors("statics", rows, |errors| Some(errors.static_position)),
+        errors("C_f", rows, |errors| errors.friction_coefficient),
+        errors("history", rows, |errors| errors.trajectory),
+        errors("orbit size", rows, |errors| Some(errors.orbit_size)),
+        errors("mean radius", rows, |errors| Some(errors.mean_radius)),
+        errors("line Hz", rows, |errors| errors.line_frequency_hz),
+        column("time saved", rows, saved),
+    ]
 }
 
 fn run_columns(rows: &[CostRow]) -> Vec<Column> {

@@ -20,6 +20,10 @@ pub struct CostStudy {
     /// Factors on the mesh's target element lengths, each a run of its own; empty means none.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
+    /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
+    /// switched off in turn.
+    #[serde(default)]
+    pub effects: bool,
 }
 
 /// One method and the steps to try it with.
@@ -35,7 +39,7 @@ pub struct MethodSteps {
 
 impl Default for CostStudy {
     fn default() -> Self {
-        Self { duration: ten_seconds(), methods: None, mesh_factors: Vec::new() }
+        Self { duration: ten_seconds(), methods: None, mesh_factors: Vec::new(), effects: false }
     }
 }
 

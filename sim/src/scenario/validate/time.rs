@@ -161,6 +161,12 @@ fn check_study(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
         "effects.transient off",
         "needs the run in time",
     );
+    report.require(
+        !study.effects || (study.methods.is_none() && study.mesh_factors.is_empty()),
+        "cost_study.effects",
+        "true",
+        "is a study of its own: give neither methods nor mesh_factors with it",
+    );
     let mut runs = study.mesh_factors.len();
     for (i, method) in study.methods.iter().flatten().enumerate() {
         runs += method.steps.len();

@@ -90,7 +90,8 @@ mod tests {
             "axes": {"flow_rate": {"from": 0.01, "to": 0.06, "count": 100}}});
         let expansion = || expand(&serde_json::from_value(request.clone()).unwrap()).unwrap();
         let speed = json!({"statics_per_node": 0.0, "step_per_node":
-            [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]]});
+            [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]],
+            "large_mesh_factor": 2.0});
         let planned = DryRun::new(expansion(), 40, Some(&speed.to_string()), 2);
         // 60 points of 120,000 steps of 297 nodes.
         let wanted = 60.0 * 120_000.0 * 297.0 * 3e-7;

@@ -139,7 +139,7 @@ async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
     let keys: Vec<_> = expansion.points.iter().map(|point| point.key).collect();
     let known = app.store.known_results(&keys).await?;
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
-    let workers = app.store.workers(WORKER_SILENCE).await?.len();
+    let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
     blocking(move || Ok(DryRun::new(expansion, known, speed.as_deref(), workers))).await
 }
 

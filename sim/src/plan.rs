@@ -54,9 +54,18 @@ pub struct PlannedAccuracy {
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,
-    /// Steps of each method, in the order of [`MethodKind`]: for each node \[s\], with 4, 5 and 6 degrees of freedom.
+    /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they stand still, and RK4: for each
+    /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
+    /// By what a node's step is dearer on a mesh of [`LARGE_MESH`] times as many nodes, which no longer fits the inner caches.
+    pub large_mesh_factor: f64,
 }
+
+/// Nodes of the large mesh that is timed, over those of the 200 m case.
+const LARGE_MESH: f64 = 5.0;
+
+/// Nodes of the 200 m case.
+const BASE_NODES: f64 = 297.0;
 
 /// Methods whose steps differ in cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +85,7 @@ pub struct CalibrationRun {
     pub scenario: Scenario,
     method: usize,
     degrees_of_freedom: usize,
+    is_large: bool,
 }
 
 impl Plan {
@@ -95,9 +105,8 @@ impl Plan {
             let runs = u64::from(scenario.ensemble);
             let steps = step_count(&model, stepping).map(|steps| steps * runs);
             let cost = |steps: u64| {
-                let per_node =
-                    speed?.step_per_node[MethodKind::of(stepping) as usize][degrees_of_freedom - 4];
-                Some(statics_cpu_time? + per_node * steps as f64 * nodes as f64)
+                let step = speed?.step(MethodKind::of(stepping), degrees_of_freedom, nodes);
+                Some(statics_cpu_time? + step * steps as f64)
             };
             PlannedAccuracy {
                 name: name.to_owned(),
@@ -163,54 +172,88 @@ impl MethodKind {
     fn sample(self) -> (TimeStepping, f64) {
         let preset = |preset| Accuracy::Preset(preset).time_stepping();
         match self {
-            MethodKind::GeneralizedAlpha => (preset(AccuracyPreset::Draft), 0.1),
-            MethodKind::Esdirk4 => (preset(AccuracyPreset::Standard), 0.06),
-            MethodKind::Esdirk4Converged => (preset(AccuracyPreset::Reference), 0.02),
-            MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.01),
+            MethodKind::GeneralizedAlpha => (preset(AccuracyPreset::Draft), 0.05),
+            MethodKind::Esdirk4 => (preset(AccuracyPreset::Standard), 0.03),
+            MethodKind::Esdirk4Converged => (preset(AccuracyPreset::Reference), 0.01),
+            MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.005),
         }
     }
 }
 
-/// The runs that tell how fast a machine is: every method with 4, 5 and 6 degrees of freedom a node, on the scenario
-/// `base` (the 200 m case).
+/// The runs that tell how fast a machine is: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
+/// (the 200 m case), and one on a large mesh of it.
 pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
-    let mut runs = Vec::new();
-    for method in MethodKind::ALL {
-        for degrees_of_freedom in 4..=6 {
-            let (stepping, duration) = method.sample();
-            let mut scenario = Scenario {
-                duration,
-                accuracy: Accuracy::Explicit(stepping),
-                recording: Recording {
-                    nodes: vec![NodeChoice::Node(49)],
-                    spectrum_windows: Vec::new(),
-                    orbit_window: None,
-                    ..base.recording.clone()
-                },
-                ..base.clone()
-            };
-            scenario.effects.torsion = if degrees_of_freedom > 4 { Switch::On } else { Switch::Off };
-            scenario.effects.axial_motion = if degrees_of_freedom > 5 { Switch::On } else { Switch::Off };
-            runs.push(CalibrationRun { scenario, method: method as usize, degrees_of_freedom });
-        }
+    let run = |method: MethodKind, degrees_of_freedom: usize| {
+        let (stepping, duration) = method.sample();
+        let mut scenario = Scenario {
+            duration,
+            accuracy: Accuracy::Explicit(stepping),
+            recording: Recording {
+                nodes: vec![NodeChoice::Node(49)],
+                spectrum_windows: Vec::new(),
+                orbit_window: None,
+                ..base.recording.clone()
+            },
+            ..base.clone()
+        };
+        scenario.effects.torsion = if degrees_of_freedom > 4 { Switch::On } else { Switch::Off };
+        scenario.effects.axial_motion = if degrees_of_freedom > 5 { Switch::On } else { Switch::Off };
+        CalibrationRun { scenario, method: method as usize, degrees_of_freedom, is_large: false }
+    };
+    let mut runs: Vec<_> = MethodKind::ALL
+        .into_iter()
+        .flat_map(|method| (4..=6).map(move |d| (method, d)))
+        .map(|(m, d)| run(m, d))
+        .collect();
+    let mut large = run(MethodKind::GeneralizedAlpha, 6);
+    large.is_large = true;
+    let mesh = &mut large.scenario.mesh;
+    for length in
+        [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
+    {
+        *length /= LARGE_MESH;
     }
+    runs.push(large);
     runs
 }
 
+/// Processor time of a calibration run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunTime {
+    /// Nodes of its mesh.
+    pub nodes: usize,
+    /// Steps made.
+    pub steps: u64,
+    /// Processor time \[s\].
+    pub cpu_time: f64,
+}
+
 impl MachineSpeed {
-    /// The speed from the equilibrium's processor time and the calibration runs', in their order \[s\]. `nodes` and `steps`
-    /// are those of each run.
+    /// The speed from the equilibrium's processor time for each node \[s\] and the calibration runs', in their order.
     pub fn from_times(
-        statics: f64,
-        nodes: usize,
-        runs: impl IntoIterator<Item = (CalibrationRun, u64, f64)>,
+        statics_per_node: f64,
+        runs: impl IntoIterator<Item = (CalibrationRun, RunTime)>,
     ) -> Self {
-        let mut speed = Self { statics_per_node: statics / nodes as f64, step_per_node: [[0.0; 3]; 4] };
-        for (run, steps, time) in runs {
-            speed.step_per_node[run.method][run.degrees_of_freedom - 4] =
-                time / (steps as f64 * nodes as f64);
+        let mut speed = Self { statics_per_node, step_per_node: [[0.0; 3]; 4], large_mesh_factor: 1.0 };
+        for (run, RunTime { nodes, steps, cpu_time }) in runs {
+            let per_node = cpu_time / (steps as f64 * nodes as f64);
+            let usual = &mut speed.step_per_node[run.method][run.degrees_of_freedom - 4];
+            if run.is_large {
+                speed.large_mesh_factor = (per_node / *usual).max(1.0);
+            } else {
+                *usual = per_node;
+            }
         }
         speed
+    }
+
+    /// Processor time of one step \[s\]. Between the two meshes that were timed the cost of a node grows with the logarithm
+    /// of their number; beyond them it stays.
+    fn step(&self, method: MethodKind, degrees_of_freedom: usize, nodes: usize) -> f64 {
+        let nodes = nodes as f64;
+        let way = ((nodes / BASE_NODES).ln() / LARGE_MESH.ln()).clamp(0.0, 1.0);
+        let per_node = self.step_per_node[method as usize][degrees_of_freedom - 4];
+        per_node * nodes * (1.0 + way * (self.large_mesh_factor - 1.0))
     }
 }
 
@@ -256,6 +299,7 @@ mod tests {
         let speed = MachineSpeed {
             statics_per_node: 1e-4,
             step_per_node: [[1e-7, 2e-7, 3e-7], [1e-6; 3], [2e-6; 3], [5e-7; 3]],
+            large_mesh_factor: 2.0,
         };
         let mut scenario = paper();
         scenario.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
@@ -278,18 +322,23 @@ mod tests {
 
     #[test]
     fn calibration_covers_every_method_with_every_number_of_degrees_of_freedom() {
-        let runs = calibration_runs(&paper());
-        let speed = MachineSpeed::from_times(
-            297e-4,
-            297,
-            runs.into_iter().enumerate().map(|(i, run)| {
-                assert_eq!(run.scenario.validate(), Ok(vec![]));
-                let plan = Plan::new(&run.scenario, None).unwrap();
-                assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
-                (run, 100, (i + 1) as f64 * 29_700.0)
-            }),
-        );
-        assert_eq!(speed.statics_per_node, 1e-4);
+        let mut times = Vec::new();
+        for (i, run) in calibration_runs(&paper()).into_iter().enumerate() {
+            assert_eq!(run.scenario.validate(), Ok(vec![]));
+            let plan = Plan::new(&run.scenario, None).unwrap();
+            assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
+            assert_eq!(plan.nodes > 1400, run.is_large);
+            let per_node = if run.is_large { 4.5 } else { (i + 1) as f64 };
+            let cpu_time = per_node * 100.0 * plan.nodes as f64;
+            times.push((run, RunTime { nodes: plan.nodes, steps: 100, cpu_time }));
+        }
+        let speed = MachineSpeed::from_times(1e-4, times);
         assert_eq!(speed.step_per_node, [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.], [10., 11., 12.]]);
+        // Of generalized-alpha with six degrees of freedom: 4.5 after 3.
+        assert!((speed.large_mesh_factor - 1.5).abs() < 1e-12);
+        let step = |nodes| speed.step(MethodKind::GeneralizedAlpha, 6, nodes) / nodes as f64;
+        assert_eq!(step(100), 3.0);
+        assert!((step(664) - 3.75).abs() < 1e-3, "half way by the logarithm: {}", step(664));
+        assert!((step(5000) - 4.5).abs() < 1e-12);
     }
 }

@@ -5,7 +5,7 @@
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{
-    Accuracy, CostStudy, Effect, Integrator, Scenario, Switch, TimeStepping, preset,
+    Accuracy, AutoRule, CostStudy, Effect, Integrator, Scenario, Switch, TimeStepping, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::{Measure, Role, plan, report};
@@ -94,6 +94,19 @@ fn auto_agrees_with_everything_on_to_rounding() {
         let distance = distance(&all, &auto);
         assert!(distance < 1e-8, "{name}: {distance:e}");
     }
+}
+
+#[test]
+fn what_is_neglected_as_small_stays_within_its_estimate() {
+    let scenario = base(0.5, METHODS[1]);
+    let mut neglecting = scenario.clone();
+    neglecting.effects.auto = AutoRule::Aggressive;
+    let left_out: Vec<_> =
+        neglecting.decide_effects().into_iter().filter(|decision| !decision.active).collect();
+    assert!(!left_out.is_empty() && left_out.len() <= 3, "{left_out:?}");
+    // Each changes frequencies by less than 1e-3, so phases of motion up to 20 Hz by less than 1e-3 * 126 rad/s * 0.5 s.
+    let distance = distance(&run(&scenario).0, &run(&neglecting).0);
+    assert!(distance > 0.0 && distance < left_out.len() as f64 * 1e-3 * 126.0 * 0.5, "{distance:e}");
 }
 
 #[test]

@@ -1,8 +1,15 @@
 //! Which effects a scene calls for, and why.
 
+use std::f64::consts::PI;
+
 use serde::Serialize;
 
-use super::{ActiveEffects, Effect, Scenario, SurveyStation, Switch};
+use super::{ActiveEffects, AutoRule, Effect, Scenario, Section, SurveyStation, Switch};
+use crate::beam::BeamSection;
+use crate::model::FlowMomentum;
+
+/// Change of frequencies below which the aggressive rule leaves an effect out.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// One effect of a scenario, decided.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,19 +29,31 @@ impl Scenario {
     /// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
     ///
     /// `auto` leaves an effect out where the scene makes its term zero, or a motion stand still, exactly, so that the
-    /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for.
+    /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
+    /// aggressive rule neglects what is small.
     pub fn decide_effects(&self) -> Vec<EffectDecision> {
         // Friction torque is decided before torsion, which depends on it.
         let mut active = ActiveEffects::ALL;
         let decide = |&effect: &Effect| {
             let switch = self.effects.switch(effect);
             let (is_active, reason) = match switch {
-                Switch::On => (true, "asked for"),
-                Switch::Off => (false, "switched off"),
-                Switch::Auto => called_for(effect, self, &active),
+                Switch::On => (true, "asked for".to_owned()),
+                Switch::Off => (false, "switched off".to_owned()),
+                Switch::Auto => match (called_for(effect, self, &active), self.effects.auto) {
+                    ((true, _), AutoRule::Aggressive) if self.frequency_change(effect) < NEGLIGIBLE => {
+                        let change = self.frequency_change(effect);
+                        (
+                            false,
+                            format!(
+                                "left out as small: it changes frequencies by about {change:.0e} of them"
+                            ),
+                        )
+                    }
+                    ((is_active, reason), _) => (is_active, reason.to_owned()),
+                },
             };
             active.set(effect, is_active);
-            EffectDecision { effect, switch, active: is_active, reason: reason.to_owned() }
+            EffectDecision { effect, switch, active: is_active, reason }
         };
         Effect::ALL.iter().map(decide).collect()
     }
@@ -46,6 +65,40 @@ impl Scenario {
             active.set(decision.effect, decision.active);
         }
         active
+    }
+
+    /// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string:
+    /// for gyroscopic moments, Coriolis terms and flow stiffness, the largest of any section; infinite for all others.
+    ///
+    /// A wave of wave number k has m w^2 = E I k^4, so that k^2 = w (m/(E I))^(1/2). To first order the rotary moments
+    /// 2 rho I W change w by rho I W k^2 / (m w), the Coriolis term c by c k / (2 m w), and the flows' centrifugal
+    /// stiffness S by S k^2 / (2 m w^2).
+    fn frequency_change(&self, effect: Effect) -> f64 {
+        let material = &self.string.material;
+        let frequency = self.operation.rotation_speed_rpm.abs() * PI / 30.0;
+        let of_section = |section: &Section| {
+            let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, material);
+            let flow = self.mud.as_ref().map(|mud| FlowMomentum::new(mud, &beam, self.well.hole_diameter));
+            let added =
+                flow.map_or(0.0, |flow| flow.bore_mass + flow.added_mass_coefficient * flow.displaced_mass);
+            let mass = material.density * beam.area + added;
+            let stiffness = material.youngs_modulus * beam.second_moment;
+            let wave_number = (frequency * (mass / stiffness).sqrt()).sqrt();
+            let change = match (effect, flow) {
+                (Effect::Gyroscopic, _) => material.density * beam.second_moment * wave_number.powi(2) / mass,
+                (Effect::FluidCoriolis, Some(flow)) => {
+                    flow.coriolis.abs() * wave_number / (2.0 * mass * frequency)
+                }
+                (Effect::FlowStiffness, Some(flow)) => {
+                    let stiffness = flow.bore_flux + flow.added_mass_coefficient * flow.annulus_flux;
+                    stiffness * wave_number.powi(2) / (2.0 * mass * frequency.powi(2))
+                }
+                _ => f64::INFINITY,
+            };
+            // Without rotation there is no such wave.
+            if change.is_nan() { f64::INFINITY } else { change }
+        };
+        self.string.sections.iter().map(of_section).fold(0.0, f64::max)
     }
 
     /// Whether the hole is straight along the whole string.
@@ -240,6 +293,27 @@ mod tests {
         assert!(of(Effect::Gyroscopic).active);
         // Friction torque follows from what was decided of contact.
         assert_eq!(of(Effect::FrictionTorque).reason, "there is no contact");
+    }
+
+    #[test]
+    fn small_effects_are_left_out_only_where_that_is_asked_for_and_with_an_estimate() {
+        let mut scenario = paper();
+        assert!(scenario.decide_effects().iter().all(|decision| decision.active));
+        scenario.effects.auto = AutoRule::Aggressive;
+        let decisions = scenario.decide_effects();
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        // Collars of 159 x 71 mm: rho I = 7900 * 3.01e-5 kg m, m = 261 kg/m with added mass, E I = 6.1e6 N m2, so that
+        // rho I W / (m E I)^(1/2) = 0.238 * 12.57 / 4.0e4 = 7.5e-5.
+        let change = scenario.frequency_change(Effect::Gyroscopic);
+        assert!((change / 7.5e-5 - 1.0).abs() < 0.3, "{change:e}");
+        assert!(!of(Effect::Gyroscopic).active);
+        assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
+        assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
+        // Fast flow is felt.
+        scenario.mud.as_mut().unwrap().flow_rate = 0.5;
+        let decisions = scenario.decide_effects();
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        assert!(of(Effect::FlowStiffness).active && of(Effect::FluidCoriolis).active);
     }
 
     #[test]

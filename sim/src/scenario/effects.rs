@@ -17,6 +17,19 @@ pub enum Switch {
     Off,
 }
 
+/// How far `auto` goes in leaving effects out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum AutoRule {
+    /// What could not change a number.
+    #[default]
+    Exact,
+    /// Gyroscopic moments, Coriolis terms and flow stiffness too where they are estimated to change frequencies by less than
+    /// a thousandth.
+    Aggressive,
+}
+
 impl Switch {
     /// The name on the wire.
     pub fn name(self) -> &'static str {
@@ -34,7 +47,11 @@ macro_rules! effects {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
         #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
         #[serde(deny_unknown_fields, default)]
-        pub struct Effects { $($(#[$doc])* pub $field: Switch,)* }
+        pub struct Effects {
+            /// How far `auto` goes.
+            pub auto: AutoRule,
+            $($(#[$doc])* pub $field: Switch,)*
+        }
 
         /// The effects that take part in a model: the switches with every `auto` decided.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -17,7 +17,7 @@ mod validate;
 
 pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
 pub use decide::EffectDecision;
-pub use effects::{ActiveEffects, Effect, Effects, Switch};
+pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;

@@ -199,7 +199,7 @@ fn an_ablation_takes_one_effect_away_at_a_time_and_tells_what_changes() {
     let change = |effect| row(effect).errors.unwrap();
     // Buoyancy moves the string at rest; what acts on motion alone does not.
     assert!(change(Effect::Buoyancy).static_position > 1e-3);
-    assert_eq!(change(Effect::FluidAddedMass).static_position, 0.0);
+    assert!(change(Effect::FluidAddedMass).static_position < 1e-14);
     assert!(change(Effect::FluidAddedMass).trajectory.unwrap() > 0.01);
     // Gyroscopic moments are small at this speed: rho I Omega / sqrt(m E I) is 1e-4 for these collars.
     assert!(change(Effect::Gyroscopic).trajectory.unwrap() < 0.01);

@@ -68,13 +68,13 @@ mod tests {
         );
         let roles: Vec<&str> = lines[1..].iter().filter_map(|line| line.split(',').next()).collect();
         assert_eq!(roles, ["reference", "method", "method", "method", "method", "mesh", "mesh"]);
-        assert_eq!(lines[1], "reference,esdirk4,0.00025,1.0,296,8000,1,3.2,1.6,,,,,,,,,");
+        assert_eq!(lines[1], "reference,,esdirk4,0.00025,1.0,296,8000,1,3.2,1.6,,,,,,,,,");
         assert_eq!(
             lines[3],
-            "method,esdirk4,0.001,1.0,296,2000,1,0.8,0.4,0.012,0.004,0.0004,0.0,0.0,0.0,,0.02,"
+            "method,,esdirk4,0.001,1.0,296,2000,1,0.8,0.4,0.012,0.004,0.0004,0.0,0.0,0.0,,0.02,"
         );
         assert!(lines[4].ends_with(",,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[4]);
-        assert!(lines[6].starts_with("mesh,esdirk4,0.001,2.0,158,"), "{}", lines[6]);
+        assert!(lines[6].starts_with("mesh,,esdirk4,0.001,2.0,158,"), "{}", lines[6]);
     }
 
     #[test]

@@ -145,8 +145,11 @@ fn run_columns(rows: &[CostRow]) -> Vec<Column> {
     ]
 }
 
+/// Errors that are rounding and nothing else.
+const ROUNDING: f64 = 1e-14;
+
 fn error_text(error: f64) -> String {
-    if error == 0.0 { "0".to_owned() } else { format!("{error:.1e}") }
+    if error < ROUNDING { "0".to_owned() } else { format!("{error:.1e}") }
 }
 
 /// The columns that have any value, the first flush left, the others flush right; then why runs failed.

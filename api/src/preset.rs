@@ -9,7 +9,8 @@ pub fn presets() -> ScenarioList {
     let entry = |&(name, description): &(&str, &str)| ScenarioEntry {
         name: name.to_owned(),
         description: description.to_owned(),
-        link: format!("/v1/scenarios/{name}"),
+        // A name is one segment of the path.
+        link: format!("/v1/scenarios/{}", name.replace('/', "%2F")),
     };
     ScenarioList { scenarios: PRESETS.iter().map(entry).collect() }
 }

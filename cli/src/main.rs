@@ -5,9 +5,11 @@ mod client;
 mod cost;
 mod fetch;
 mod health;
+mod modes;
 mod plan;
 mod service;
 mod simulate;
+mod soak;
 mod submit;
 mod sweeps;
 mod text;
@@ -56,6 +58,10 @@ enum Command {
     Plan(plan::PlanArguments),
     /// Measure what accuracy costs: methods, steps and meshes against a converged run.
     Cost(cost::CostArguments),
+    /// Small motions about the equilibrium: frequencies, growth, direction of whirl.
+    Modes(modes::ModesArguments),
+    /// Run scenes drawn at random over wide ranges and report how each ends.
+    Soak(soak::SoakArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -99,6 +105,8 @@ fn main() -> anyhow::Result<()> {
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Modes(arguments) => modes::show(&arguments),
+        Command::Soak(arguments) => soak::soak(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),
         Command::Check(arguments) => check::check(&arguments),

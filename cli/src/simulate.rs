@@ -170,6 +170,9 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         writeln!(text, "  C_f                 {least:>10.5} to {largest:.5}")?;
         writeln!(text, "  damping k           {k_least:>10.2} to {k_largest:.2} N s/m2")?;
     }
+    if let Some(stability) = &computed.stability {
+        writeln!(text, "{stability}")?;
+    }
     if let Some(transient) = &computed.transient {
         for orbit in &transient.orbits {
             writeln!(

@@ -13,10 +13,12 @@ pub mod control;
 pub mod ensemble;
 pub mod linalg;
 pub mod model;
+pub mod modes;
 pub mod mud;
 pub mod plan;
 pub mod scenario;
 pub mod signal;
+pub mod soak;
 pub mod statics;
 pub mod string;
 pub mod study;
@@ -26,4 +28,4 @@ pub mod well;
 
 /// Version of the numbers: raised by hand whenever the same scenario may give other results, and part of every
 /// result's key.
-pub const PHYSICS_VERSION: u32 = 2;
+pub const PHYSICS_VERSION: u32 = 3;

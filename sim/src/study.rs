@@ -296,6 +296,7 @@ fn recording(scenario: &Scenario, study: &CostStudy, model: &Model) -> Recording
         nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
         spectrum_windows: vec![window],
         orbit_window: Some(window),
+        stability: false,
     }
 }
 

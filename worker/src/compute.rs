@@ -6,6 +6,7 @@ use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::ensemble::parting_time;
 use drillsweep_sim::model::{Model, ModelError};
+use drillsweep_sim::modes::{Stability, stability};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::{CostReport, Recommendation, StudyError};
@@ -32,6 +33,8 @@ pub struct Computed {
     pub histories_part_at: Option<f64>,
     /// The cost study in place of a run, where the scenario asks for one.
     pub study: Option<CostReport>,
+    /// Whether the scene is unstable by its physics, where the scenario asks for it.
+    pub stability: Option<Stability>,
     /// Versions, integrator, steps and cost.
     pub provenance: Map<String, Value>,
 }
@@ -72,9 +75,17 @@ pub enum ComputeError {
     /// There is no equilibrium.
     #[error(transparent)]
     Statics(#[from] StaticsError),
-    /// The run in time failed.
+    /// The run in time cannot be set up.
     #[error(transparent)]
     Transient(#[from] TransientError),
+    /// The run in time failed; beside it, whether the scene itself is unstable.
+    #[error("{error}; {}", .stability.map_or_else(String::new, |stability| stability.to_string()))]
+    Run {
+        /// What was seen.
+        error: TransientError,
+        /// The verdict of the linearised equations; absent where they could not be judged.
+        stability: Option<Stability>,
+    },
     /// A cost study has no reference to compare with.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -88,9 +99,12 @@ impl ComputeError {
     pub fn to_json(&self) -> Value {
         let mut error = json!({ "class": "physical", "reason": self.to_string() });
         match self {
-            ComputeError::Transient(TransientError::Diverged { time, node, .. }) => {
-                error["time"] = json!(time);
-                error["node"] = json!(node);
+            ComputeError::Run { error: failure, stability } => {
+                if let TransientError::Diverged { time, node, .. } = failure {
+                    error["time"] = json!(time);
+                    error["node"] = json!(node);
+                }
+                error["stability"] = json!(stability);
             }
             ComputeError::Statics(StaticsError::NotConverged { node, .. }) => error["node"] = json!(node),
             ComputeError::Statics(StaticsError::Singular(block)) => error["node"] = json!(block.row + 1),
@@ -105,6 +119,19 @@ impl Computed {
     pub fn summary_row(&self) -> Map<String, Value> {
         let mut row =
             summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at);
+        if let Some(stability) = &self.stability {
+            let unstable = stability.instability;
+            row.insert("stable".into(), json!(stability.stable));
+            row.insert("instability".into(), json!(unstable.map(|unstable| unstable.kind)));
+            row.insert(
+                "instability_growth_rate".into(),
+                json!(unstable.map(|unstable| unstable.growth_rate)),
+            );
+            row.insert(
+                "instability_frequency_hz".into(),
+                json!(unstable.map(|unstable| unstable.frequency_hz)),
+            );
+        }
         if let Some(study) = &self.study {
             row.insert("histories_part_at".into(), json!(study.histories_part_at));
             for Recommendation { orbit_size, cpu_time, .. } in &study.recommendations {
@@ -159,7 +186,15 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();
-    let run = |member| match Transient::member(&model, &equilibrium, member)?.run(&control.part())? {
+    let judge = || stability(&model, &equilibrium).ok();
+    let failed = |error| match error {
+        error @ TransientError::Diverged { .. } => ComputeError::Run { error, stability: judge() },
+        error => ComputeError::Transient(error),
+    };
+    let run = |member| match Transient::member(&model, &equilibrium, member)
+        .and_then(|run| run.run(&control.part()))
+        .map_err(failed)?
+    {
         Outcome::Finished(records) => Ok(*records),
         Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
     };
@@ -178,6 +213,7 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         }
     }
     let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
+    let stability = if scenario.recording.stability { judge() } else { None };
 
     let mut provenance = Map::new();
     provenance.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
@@ -205,7 +241,7 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, study, provenance })
+    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance })
 }
 
 /// What the error estimate is an estimate of, for people.

@@ -39,7 +39,10 @@ fn run(planned: &PlannedRun, control: &Control) -> Result<(Measure, f64), Comput
     let model = Model::new(&planned.scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
     let watch = Stopwatch::start();
-    match Transient::member(&model, &equilibrium, planned.member)?.run(&control.part())? {
+    match Transient::member(&model, &equilibrium, planned.member)
+        .and_then(|run| run.run(&control.part()))
+        .map_err(ComputeError::Transient)?
+    {
         Outcome::Finished(records) => {
             let (_, cpu_time) = watch.elapsed();
             Ok((Measure::new(&model, &equilibrium, &records), cpu_time))

@@ -97,6 +97,16 @@ impl<L: Lane> ContactParameters<L> {
         sliding_speed * self.half_slope * shape
     }
 
+    /// d(mu)/d(v_g) of (14) \[s/m\]: 1 / v_ref at rest, negative where the curve falls.
+    pub fn friction_slope(&self, sliding_speed: L) -> L {
+        let one = L::splat(1.0);
+        let run = self.decay * sliding_speed.abs();
+        let fade = one / (run + one);
+        let twice = (one + self.xi) * fade;
+        let shape = (twice + (one - self.xi)) * fade;
+        self.half_slope * (shape - run * fade * fade * (twice + twice + (one - self.xi)))
+    }
+
     /// Static friction coefficient mu_s.
     pub fn static_friction(&self) -> L {
         self.static_friction

@@ -2,11 +2,13 @@
 //!
 //! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
 //! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
-//! force in motion is [`dynamic_contact`], at rest [`static_contact`].
+//! force in motion is [`dynamic_contact`], at rest [`static_contact`]; its
+//! linearisation about steady sliding is [`sliding_tangent`].
 
 mod law;
 mod motion;
 mod rest;
+mod sliding;
 
 #[cfg(test)]
 mod tests;
@@ -14,6 +16,7 @@ mod tests;
 pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, dynamic_contact};
 pub use rest::{StaticContactForce, static_contact};
+pub use sliding::{SlidingTangent, sliding_tangent};
 
 /// What contact needs to know of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]

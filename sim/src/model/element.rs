@@ -35,6 +35,8 @@ pub struct StringElement {
     /// Loads that do not depend on the eccentricity: weight, buoyancy, centrifugal load of the flows, less the
     /// forces of a straight pipe bent into the hole.
     pub load: ElementVector,
+    /// Buoyed weight along the chord, downhole \[N\].
+    pub axial_weight: f64,
     /// Nodal loads of 1 N/m upward along the chord, which the mud's drag multiplies.
     pub unit_drag: ElementVector,
 }
@@ -106,6 +108,7 @@ impl StringElement {
             tension_row: chord.vector_to_nodes(&beam.tension_row()),
             torque_row: chord.vector_to_nodes(&beam.torque_row()),
             load: chord.vector_to_nodes(&load),
+            axial_weight: distributed[2] * chord.length,
             unit_drag: chord.vector_to_nodes(&beam.distributed_load([0.0, 0.0, -1.0])),
             flow_geometry,
             beam,

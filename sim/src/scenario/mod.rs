@@ -359,6 +359,10 @@ pub struct Recording {
     /// Half-open window of the orbit statistics; absent means the last third of the run.
     #[serde(default)]
     pub orbit_window: Option<TimeWindow>,
+    /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which. It takes about a second; a run
+    /// that fails is judged in any case.
+    #[serde(default)]
+    pub stability: bool,
 }
 
 /// One node, by number (1 is the top) or by measured depth (the nearest node).

@@ -1,21 +1,60 @@
 //! Scenarios that ship with the program, kept as readable TOML.
 
-use super::Scenario;
+use super::{Scenario, ScenarioRequest};
 
-/// Name and one-line description of every preset.
-pub const PRESETS: &[(&str, &str)] = &[
-    ("paper-200m", "Base case of Tran et al. 2019: 200 m string in a curved 3D hole, with mud"),
-    ("paper-200m-dry", "The same without mud, hence without buoyancy"),
-];
+macro_rules! presets {
+    ($($name:literal: $description:literal,)*) => {
+        /// Name and one-line description of every preset.
+        pub const PRESETS: &[(&str, &str)] = &[$(($name, $description),)*];
 
-/// The scenario of a preset, or `None` if there is none of that name.
-pub fn preset(name: &str) -> Option<Scenario> {
-    let text = match name {
-        "paper-200m" => include_str!("../../presets/paper-200m.toml"),
-        "paper-200m-dry" => include_str!("../../presets/paper-200m-dry.toml"),
-        _ => return None,
+        fn text(name: &str) -> Option<&'static str> {
+            match name {
+                $($name => Some(include_str!(concat!("../../presets/", $name, ".toml"))),)*
+                _ => None,
+            }
+        }
     };
-    Some(toml::from_str(text).expect("shipped presets are parsed by a test"))
+}
+
+presets! {
+    "paper-200m": "Base case of Tran et al. 2019: 200 m string in a curved 3D hole, with mud",
+    "paper-200m-dry": "The same without mud, hence without buoyancy",
+    "hard/tight-gauge": "Gauges of 0.01 mm in a wall of 1e9 N/m: a stiff pin with next to no play",
+    "hard/stiff-contact-10": "Contact ten times as stiff and damped: the sweeps over contacts need shorter steps",
+    "hard/stiff-contact-100": "Contact a hundred times as stiff and damped",
+    "hard/sharp-friction": "Friction that turns within 1 mm/s: next to a jump of the force at rest",
+    "hard/dry-friction-whirl": "Dry friction of 0.8 on a slender rotor: backward whirl up to the speed of rolling without slip",
+    "hard/stick-slip": "Slow rotation and steeply falling friction: the collars stop and break loose again",
+    "hard/dry-unbalance-150": "No mud and 150 times the unbalance: the string is thrown from wall to wall",
+    "hard/no-rotation": "No rotation: friction has no sense and no speed",
+    "hard/slow-rotation": "A tenth of a turn a minute: all nodes slide through friction's zero",
+    "hard/near-buckling": "A horizontal string near the sinusoidal buckling load, at 0.7 of it",
+    "hard/beyond-buckling": "A horizontal string well beyond the helical buckling load",
+    "hard/torque-near-greenhill": "A slender shaft under 0.95 of the torque that buckles it",
+    "hard/flow-0.2": "A flow of 0.2 m3/s, 50 m/s in the collars' bore",
+    "hard/flow-flutter": "A free span of pipe under a flow beyond its critical speed",
+    "hard/no-flow": "Still mud: no drag, no friction loss, no flow terms",
+    "hard/light-mud": "Mud of 500 kg/m3",
+    "hard/heavy-mud": "Mud of 3000 kg/m3",
+    "hard/vertical": "A vertical hole: no low side to lie on",
+    "hard/horizontal": "A horizontal hole: all weight on the wall",
+    "hard/inverted": "A hole that climbs at 120 degrees",
+    "hard/dogleg-20": "Doglegs of 20 degrees in 30 m, up and down",
+    "hard/one-element": "A string of one element",
+    "hard/elements-5000": "A string of 5,000 elements of 4 cm",
+    "hard/length-10km": "A string of 10 km",
+    "hard/wide-tool-joint": "Tool joints wider than the gauges",
+    "hard/all-on-wall": "Every node on the wall at once",
+    "hard/on-axis": "A start exactly on the axis of the hole",
+    "hard/undamped-flow-torque": "No damping at all, with upward annular flow and torque: growth in the highest modes of the mesh",
+}
+
+/// The scenario of a preset, or `None` if there is none of that name. A preset's file is a scenario, or another preset with what to
+/// change in it.
+pub fn preset(name: &str) -> Option<Scenario> {
+    let request = ScenarioRequest::from_toml(text(name)?).expect("shipped presets are parsed by a test");
+    let scenario = request.resolve().expect("shipped presets are resolved by a test");
+    Some(Scenario { name: name.to_owned(), ..scenario })
 }
 
 #[cfg(test)]

@@ -4,8 +4,10 @@
 //! with the hydraulics until both stand still (physics.md section 8).
 
 mod newton;
+mod overload;
 
 pub use newton::NewtonSettings;
+pub use overload::Overload;
 
 use crate::contact::{ContactNode, ContactParameters, StaticContactForce, static_contact};
 use crate::linalg::SingularBlock;
@@ -18,6 +20,15 @@ const HYDRAULIC_PASSES: usize = 30;
 
 /// Change of an eccentricity at which string and mud stand still.
 const ECCENTRICITY_STANDSTILL: f64 = 1e-10;
+
+/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not arrive.
+const PATIENCE: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
+
+/// Stiffness of softer walls on the way to the scenario's own.
+const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
+
+/// Iterations of such a search.
+const PATIENT_ITERATIONS: usize = 1000;
 
 /// The string at rest: displacements, internal forces, contacts, flow.
 #[derive(Debug, Clone)]
@@ -56,8 +67,8 @@ pub struct StaticsEffort {
 pub enum StaticsError {
     /// Newton's method did not arrive.
     #[error(
-        "no equilibrium after {iterations} iterations: the force left is {residual:.3e} N, largest at node {node}; \
-         the string may be unstable under its loads (buckled without a wall, torque beyond Greenhill's)"
+        "no equilibrium after {iterations} iterations: the force left is {residual:.3e} N, largest at node {node}; {}",
+        overload::verdict(overload.as_ref())
     )]
     NotConverged {
         /// Iterations made.
@@ -66,6 +77,8 @@ pub enum StaticsError {
         residual: f64,
         /// Node where it stands, from 1.
         node: usize,
+        /// Where the string is loaded beyond its stability between two places that hold it; absent where it is not.
+        overload: Option<Overload>,
     },
     /// The tangent broke down.
     #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
@@ -109,7 +122,7 @@ impl Equilibrium {
         for pass in 1..=HYDRAULIC_PASSES {
             let flows = sections.flows(&eccentricity)?;
             let drag = drag(model, &flows);
-            let outcome = newton::solve(model, &model.constant_load(&drag), &mut displacement, &settings)?;
+            let outcome = patiently(model, &model.constant_load(&drag), &mut displacement, &settings)?;
             newton_iterations += outcome.iterations;
             // Later passes start next to the solution: plain Newton from there.
             settings.initial_shift = 0.0;
@@ -158,6 +171,58 @@ impl Equilibrium {
             model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose()?;
         Ok(Self { displacement, tension, torque, normal_force, flows, drag, pressures, effort })
     }
+}
+
+/// Newton's method, and where it does not arrive, again from the same start: against a soft wall that is hardened by and by, then with
+/// shorter steps held by a stiffer spring.
+fn patiently(
+    model: &Model,
+    load: &[[f64; 6]],
+    displacement: &mut NodalVector,
+    settings: &NewtonSettings,
+) -> Result<newton::NewtonOutcome, StaticsError> {
+    let start = displacement.clone();
+    let failure = match newton::solve(model, load, displacement, settings) {
+        Err(failure) => failure,
+        arrived => return arrived,
+    };
+    displacement.clone_from(&start);
+    if let Ok(outcome) = against_a_hardening_wall(model, load, displacement) {
+        return Ok(outcome);
+    }
+    for (stiffer, shorter) in PATIENCE {
+        displacement.clone_from(&start);
+        let defaults = NewtonSettings::default();
+        let slow = NewtonSettings {
+            initial_shift: stiffer * defaults.initial_shift,
+            largest_step: shorter * defaults.largest_step,
+            iteration_limit: PATIENT_ITERATIONS,
+            ..defaults
+        };
+        if let Ok(outcome) = newton::solve(model, load, displacement, &slow) {
+            return Ok(outcome);
+        }
+    }
+    Err(match failure {
+        StaticsError::NotConverged { iterations, residual, node, .. } => {
+            StaticsError::NotConverged { iterations, residual, node, overload: overload::find(model) }
+        }
+        other => other,
+    })
+}
+
+/// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.
+fn against_a_hardening_wall(
+    model: &Model,
+    load: &[[f64; 6]],
+    displacement: &mut NodalVector,
+) -> Result<newton::NewtonOutcome, StaticsError> {
+    let mut soft = model.clone();
+    for share in SOFT_WALLS {
+        soft.scenario.contact.stiffness = share * model.scenario.contact.stiffness;
+        newton::solve(&soft, load, displacement, &NewtonSettings::default())?;
+    }
+    newton::solve(model, load, displacement, &NewtonSettings::default())
 }
 
 /// The quasi-static contact force of a node; the top node never touches.

@@ -93,6 +93,7 @@ pub(super) fn solve(
         iterations: settings.iteration_limit,
         residual: largest(&residual),
         node,
+        overload: None,
     })
 }
 

@@ -2,7 +2,7 @@
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
 use super::forces::Forces;
-use super::implicit::{StageSolver, flat, flat_mut};
+use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut};
 use super::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
@@ -42,6 +42,12 @@ const ERROR_WEIGHTS: [f64; STAGES] = [
     WEIGHTS[5] - 61727.0 / 225920.0,
 ];
 
+/// Of every stage of a step \[s\].
+pub(super) fn stage_coefficients(step: f64) -> StageCoefficients {
+    let c = 1.0 / (DIAGONAL * step);
+    StageCoefficients { acceleration: c * c, velocity: c }
+}
+
 /// Stage values of one step; the last stage of a step is the first of the next.
 #[derive(Debug, Clone)]
 pub(super) struct Esdirk<const D: usize> {
@@ -62,11 +68,10 @@ impl<const D: usize> Esdirk<D> {
         step: f64,
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
-        let c = 1.0 / (DIAGONAL * step);
         let zero = vec![[0.0; D]; initial.len()];
         Ok(Self {
             step,
-            solver: StageSolver::new(system, initial, c * c, c, sweeps)?,
+            solver: StageSolver::new(system, initial, stage_coefficients(step), sweeps)?,
             velocities: std::array::from_fn(|_| zero.clone()),
             accelerations: std::array::from_fn(|_| zero.clone()),
             displacement_base: zero.clone(),

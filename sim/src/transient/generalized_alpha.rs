@@ -1,7 +1,7 @@
 //! The generalized-alpha method of Chung and Hulbert (1993), second order.
 
 use super::forces::Forces;
-use super::implicit::{StageSolver, flat, flat_mut};
+use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut};
 use super::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
@@ -16,6 +16,15 @@ fn parameters(spectral_radius: f64) -> (f64, f64, f64, f64) {
     let alpha_f = spectral_radius / (spectral_radius + 1.0);
     let beta = 0.25 * (1.0 - alpha_m + alpha_f).powi(2);
     (alpha_m, alpha_f, beta, 0.5 - alpha_m + alpha_f)
+}
+
+/// Of the level at which a step \[s\] balances.
+pub(super) fn stage_coefficients(step: f64, spectral_radius: f64) -> StageCoefficients {
+    let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
+    StageCoefficients {
+        acceleration: (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step),
+        velocity: gamma / (beta * step),
+    }
 }
 
 /// The unknown of a step is the displacement at t + (1 - alpha_f) h, where the forces are balanced.
@@ -37,14 +46,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         sweeps: u32,
         spectral_radius: f64,
     ) -> Result<Self, SingularBlock> {
-        let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
-        let solver = StageSolver::new(
-            system,
-            initial,
-            (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step),
-            gamma / (beta * step),
-            sweeps,
-        )?;
+        let solver = StageSolver::new(system, initial, stage_coefficients(step, spectral_radius), sweeps)?;
         let zero = vec![[0.0; D]; initial.len()];
         Ok(Self {
             step,

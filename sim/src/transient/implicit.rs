@@ -54,32 +54,55 @@ impl SweepMonitor {
     }
 }
 
-impl<const D: usize> StageSolver<D> {
-    pub(super) fn new(
-        system: &DynamicSystem<D>,
-        initial: &[[f64; D]],
-        acceleration_coefficient: f64,
-        velocity_coefficient: f64,
-        sweeps: u32,
-    ) -> Result<Self, SingularBlock> {
+/// What velocities and accelerations of a stage are per displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StageCoefficients {
+    /// c_a \[1/s2\].
+    pub(super) acceleration: f64,
+    /// c_v \[1/s\].
+    pub(super) velocity: f64,
+}
+
+impl StageCoefficients {
+    /// `c_a M + c_v C + K`, held degrees of freedom with a diagonal of the size of their node's other entries: next to 1e15 a one would
+    /// count as zero. It is a power of two, which costs no digits.
+    pub(super) fn matrix<const D: usize>(&self, system: &DynamicSystem<D>) -> BlockTridiagonal<f64, D> {
         let mut matrix = BlockTridiagonal::combine(
-            acceleration_coefficient,
+            self.acceleration,
             &system.mass,
-            velocity_coefficient,
+            self.velocity,
             &system.damping,
             1.0,
             &system.stiffness,
         );
-        let held = held_list(system);
-        for &(node, dof) in &held {
-            matrix.diagonal[node][(dof, dof)] = 1.0;
+        for (node, dof) in held_list(system) {
+            let largest = (0..D).fold(0.0_f64, |most, i| most.max(matrix.diagonal[node][(i, i)].abs()));
+            matrix.diagonal[node][(dof, dof)] =
+                if largest > 0.0 { largest.log2().floor().exp2() } else { 1.0 };
         }
+        matrix
+    }
+}
+
+impl<const D: usize> StageSolver<D> {
+    pub(super) fn new(
+        system: &DynamicSystem<D>,
+        initial: &[[f64; D]],
+        StageCoefficients { acceleration, velocity: velocity_coefficient }: StageCoefficients,
+        sweeps: u32,
+    ) -> Result<Self, SingularBlock> {
+        let coefficients = StageCoefficients { acceleration, velocity: velocity_coefficient };
+        let matrix = coefficients.matrix(system);
+        let held = held_list(system);
         let n = initial.len();
         let zero = vec![[0.0; D]; n];
         Ok(Self {
             factor: Factor::new(&matrix)?,
             velocity_coefficient,
-            held_values: held.iter().map(|&(node, dof)| initial[node][dof]).collect(),
+            held_values: held
+                .iter()
+                .map(|&(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
+                .collect(),
             held,
             sweeps,
             external: zero.clone(),

@@ -67,6 +67,8 @@ struct Run<'m, const D: usize> {
     steps_per_sample: u64,
     ledger_every: u64,
     subdivisions: u32,
+    /// Node that moved fastest at the last sample, from 0.
+    fastest: usize,
     progress: Progress<D>,
 }
 
@@ -124,6 +126,8 @@ pub struct Records {
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
     pub energy: Vec<EnergyRow>,
+    /// What the last row's residual may be at most \[J\]; a run that exceeds it ends as diverged.
+    pub energy_bound: f64,
     /// Estimated error of the lateral displacements.
     pub error: ErrorEstimate,
     /// What the run took.
@@ -170,6 +174,19 @@ pub enum TransientError {
         /// The largest stable one \[s\].
         limit: f64,
     },
+    /// The contact is so stiff that no step is short enough.
+    #[error(
+        "two contact sweeps need the step of {step:e} s cut into more than {most} parts at node {node}: its contact is too stiff for \
+         its mass"
+    )]
+    ContactTooStiff {
+        /// The step asked for \[s\].
+        step: f64,
+        /// Parts into which a step may be cut.
+        most: u32,
+        /// The node with the stiffest contact for its mass, from 1.
+        node: usize,
+    },
     /// The motion left every bound.
     #[error("diverged at t = {time:.6} s, node {node} (depth {measured_depth:.2} m): {reason}")]
     Diverged {
@@ -198,6 +215,16 @@ pub enum DivergenceReason {
         /// Radius of the hole \[m\].
         hole_radius: f64,
     },
+    /// More energy appeared or vanished than the method may make of it.
+    #[error(
+        "the energy ledger leaves {residual:.3e} J, more than its bound of {bound:.3e} J: the steps are too long for this contact"
+    )]
+    EnergyNotConserved {
+        /// What is left over \[J\].
+        residual: f64,
+        /// Its bound \[J\].
+        bound: f64,
+    },
     /// The adaptive step shrank to nothing.
     #[error("the adaptive step collapsed")]
     StepCollapsed,
@@ -222,6 +249,7 @@ impl<'m> Transient<'m> {
         for (value, at_rest) in rest.iter_mut().flatten().zip(equilibrium.displacement.iter().flatten()) {
             *value += at_rest;
         }
+        let rest = (rest, equilibrium.normal_force.as_slice());
         Ok(Self(match *system.moving() {
             [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], rest)?)),
             [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], rest)?)),
@@ -270,16 +298,16 @@ impl<'m> Transient<'m> {
 }
 
 impl<'m, const D: usize> Run<'m, D> {
-    /// A run of the degrees of freedom `places` of `system`, from the displacements `rest`.
+    /// A run of the degrees of freedom `places` of `system`, from the displacements `rest` with the normal forces there.
     fn new(
         model: &'m Model,
         system: &DynamicSystem,
         places: [usize; D],
-        rest: NodalVector,
+        (rest, normal_force): (NodalVector, &[f64]),
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
         let stepping = scenario.accuracy.time_stepping();
-        let subdivisions = stability::subdivisions(model, stepping.integrator, stepping.step);
+        let subdivisions = stability::subdivisions(model, system, normal_force, &stepping)?;
         let rk4_limit = match stepping.integrator {
             Integrator::Rk4 => stability::rk4_limit(model, system)?,
             _ => f64::INFINITY,
@@ -343,6 +371,7 @@ impl<'m, const D: usize> Run<'m, D> {
             steps_per_sample,
             ledger_every: (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64,
             subdivisions,
+            fastest: 0,
         };
         run.start()?;
         Ok(run)
@@ -367,12 +396,12 @@ impl<'m, const D: usize> Run<'m, D> {
                     &self.progress,
                 ))));
             }
-            self.record();
+            self.record()?;
             self.advance()?;
             control.report(self.time());
         }
         let time = self.time();
-        self.book(time);
+        let energy_bound = self.book(time)?;
         let scenario = &self.model.scenario;
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
@@ -380,6 +409,7 @@ impl<'m, const D: usize> Run<'m, D> {
             histories: self.progress.histories,
             contacts: self.progress.contacts,
             energy: self.progress.energy,
+            energy_bound,
             error: self.progress.errors.estimate(stepping.integrator, self.model.node_count()),
             effort: TransientEffort {
                 stepping,
@@ -424,7 +454,7 @@ impl<'m, const D: usize> Run<'m, D> {
         Ok(())
     }
 
-    fn record(&mut self) {
+    fn record(&mut self) -> Result<(), TransientError> {
         for history in &mut self.progress.histories {
             let (node, state) = (history.node, &self.progress.state);
             let all = |values: [f64; D], held: [f64; 6]| {
@@ -438,14 +468,24 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         if self.progress.sample.is_multiple_of(self.ledger_every) {
             let time = self.time();
-            self.book(time);
+            self.book(time)?;
         }
+        Ok(())
     }
 
-    fn book(&mut self, time: f64) {
+    /// Enters a row into the ledger and returns its bound.
+    fn book(&mut self, time: f64) -> Result<f64, TransientError> {
         let state = &self.progress.state;
         self.progress.errors.observe_motion(&state.displacement, &self.initial);
-        self.progress.energy.push(self.ledger.row(time, &state.displacement, &state.velocity));
+        let row = self.ledger.row(time, &state.displacement, &state.velocity);
+        let bound = self.ledger.bound(&row);
+        self.progress.energy.push(row);
+        // Written so that a residual that is not a number fails.
+        if row.residual.abs() <= bound {
+            return Ok(bound);
+        }
+        Err(self
+            .diverged(self.fastest, DivergenceReason::EnergyNotConserved { residual: row.residual, bound }))
     }
 
     /// Advances by one recording interval.
@@ -478,7 +518,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 progress.steps += std::mem::take(&mut method.steps);
                 progress.rejected += std::mem::take(&mut method.rejected);
                 if outcome.is_err() {
-                    return Err(self.diverged(0, DivergenceReason::StepCollapsed));
+                    return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
                 }
             }
         }
@@ -488,14 +528,20 @@ impl<'m, const D: usize> Run<'m, D> {
     }
 
     /// Refuses a state that is not finite or outside the hole.
-    fn check_bounds(&self) -> Result<(), TransientError> {
+    fn check_bounds(&mut self) -> Result<(), TransientError> {
         let state = &self.progress.state;
         let hole_radius = 0.5 * self.model.scenario.well.hole_diameter;
         // Without a wall the string may swing freely, but not out of the theory of small rotations.
         let bound = if self.model.effects.contact { 2.0 } else { 100.0 } * hole_radius;
+        let (mut fastest, mut highest_speed) = (self.fastest, 0.0);
         for (node, (x, v)) in state.displacement.iter().zip(&state.velocity).enumerate() {
+            // A solve spreads what is not finite over the whole string; it began where the motion was fastest.
             if !x.iter().chain(v).all(|value| value.is_finite()) {
-                return Err(self.diverged(node, DivergenceReason::NotFinite));
+                return Err(self.diverged(self.fastest, DivergenceReason::NotFinite));
+            }
+            let speed_squared = v[0] * v[0] + v[1] * v[1];
+            if speed_squared > highest_speed {
+                (fastest, highest_speed) = (node, speed_squared);
             }
             let radius_squared = x[0] * x[0] + x[1] * x[1];
             if radius_squared > bound * bound {
@@ -503,6 +549,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 return Err(self.diverged(node, DivergenceReason::OutsideHole { radius, hole_radius }));
             }
         }
+        self.fastest = fastest;
         Ok(())
     }
 
@@ -536,7 +583,7 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     }
     let recording = &model.scenario.recording;
     let samples = (model.scenario.duration * recording.rate_hz).round() as u64;
-    let subdivisions = stability::subdivisions(model, stepping.integrator, stepping.step);
+    let subdivisions = stability::expected_subdivisions(model, stepping.integrator, stepping.step);
     Some(samples * steps_per_interval(1.0 / recording.rate_hz, stepping.step) * u64::from(subdivisions))
 }
 

@@ -1,0 +1,88 @@
+//! Small motions about a scenario's equilibrium: frequencies, growth, direction.
+
+use std::fmt::Write as _;
+
+use clap::Args;
+use drillsweep_sim::model::Model;
+use drillsweep_sim::modes::{ModeSearch, Modes, modes};
+use drillsweep_sim::statics::Equilibrium;
+use serde_json::Value;
+
+use crate::print;
+use crate::simulate::{parse_set, read_scenario};
+
+#[derive(Args)]
+pub(crate) struct ModesArguments {
+    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
+    scenario: String,
+    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
+    set: Vec<(String, Value)>,
+    /// Lowest frequency in Hz.
+    #[arg(long, default_value_t = 0.0)]
+    from: f64,
+    /// Highest frequency in Hz.
+    #[arg(long, default_value_t = 20.0)]
+    to: f64,
+    /// Show only the modes that grow.
+    #[arg(long)]
+    growing: bool,
+    /// Print the modes as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Finds the modes and prints them.
+pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
+    let mut scenario = read_scenario(&arguments.scenario)?;
+    for (path, value) in arguments.set.iter().cloned() {
+        scenario = scenario.with(&path, value)?;
+    }
+    scenario.validate()?;
+    let model = Model::new(&scenario)?;
+    let equilibrium = Equilibrium::find(&model)?;
+    let search = ModeSearch { from_hz: arguments.from, to_hz: arguments.to, ..ModeSearch::default() };
+    let mut found = modes(&model, &equilibrium, &search)?;
+    if arguments.growing {
+        found.modes.retain(|mode| mode.growth_rate > 0.0);
+    }
+    if arguments.json {
+        print(&serde_json::to_string_pretty(&found)?);
+    } else {
+        print(text(&scenario.name, &found)?.trim_end());
+    }
+    Ok(())
+}
+
+fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
+    let mut text = String::new();
+    let name = if name.is_empty() { "the scenario" } else { name };
+    writeln!(text, "modes of {name} about its equilibrium, contacts closed and sliding")?;
+    writeln!(
+        text,
+        "{:>10} {:>11} {:>10} {:>7} {:>7} {:>7} {:>7}  {:>9}  nine tenths of the energy",
+        "Hz", "growth 1/s", "kind", "lateral", "torsion", "axial", "whirl", "most at m"
+    )?;
+    for mode in &found.modes {
+        writeln!(
+            text,
+            "{:>10.4} {:>+11.4} {:>10} {:>7.3} {:>7.3} {:>7.3} {:>+7.2}  {:>9.2}  {:.1} to {:.1} m",
+            mode.frequency_hz,
+            mode.growth_rate,
+            mode.kind.name(),
+            mode.lateral_share,
+            mode.torsional_share,
+            mode.axial_share,
+            mode.whirl,
+            mode.measured_depth,
+            mode.extent[0],
+            mode.extent[1]
+        )?;
+    }
+    writeln!(
+        text,
+        "complete to {:.3} Hz for growth and decay below {:.3} 1/s; overdamped motions are left out",
+        found.complete_to_hz, found.complete_to_rate
+    )?;
+    Ok(text)
+}

@@ -1,0 +1,333 @@
+//! Small motions about the equilibrium: frequencies, growth, direction.
+//!
+//! The equations of motion are linearised about the equilibrium with its contacts closed and sliding at the speed of rotation
+//! ([`Pencil`]): normal stiffness and damping of the wall, friction's direction and the slope of its curve, mud damping,
+//! Coriolis and flow stiffness, gyroscopic terms. What grows here grows in a run until contact or sliding limits it. Eigenvalues
+//! are found around shifts that walk along the imaginary axis, so that none of a band of frequencies is left out.
+
+mod arnoldi;
+mod pencil;
+mod shifted;
+mod stability;
+
+pub use pencil::Pencil;
+pub use stability::{Instability, InstabilityKind, Stability, stability};
+
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+
+use crate::linalg::DOFS;
+use crate::model::Model;
+use crate::statics::Equilibrium;
+use arnoldi::{Eigenpair, around};
+
+/// Size of the Krylov space of one shift to begin with.
+const DIMENSION: usize = 80;
+
+/// The largest it may become where eigenvalues are dense.
+const LARGEST_DIMENSION: usize = 320;
+
+/// Half the step between two shifts over the radius in which all eigenvalues are known: what lies between two shifts is found up
+/// to a growth of 0.7 radii.
+const OVERLAP: f64 = 0.7;
+
+/// Shifts along the positive real axis, in radii of the first: static instabilities grow without turning.
+const REAL_SHIFTS: [f64; 2] = [1.0, 4.0];
+
+/// Residual of the equation of motion up to which a mode is believed.
+const BELIEVED: f64 = 1e-5;
+
+/// Size of `Mode::whirl` from which a mode counts as whirling in one sense.
+const ONE_SENSE: f64 = 0.1;
+
+/// The band that is searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeSearch {
+    /// Lowest frequency \[Hz\]; 0 looks for static instabilities as well.
+    pub from_hz: f64,
+    /// Highest frequency \[Hz\].
+    pub to_hz: f64,
+    /// The search ends when it has this many modes.
+    pub most: usize,
+}
+
+impl Default for ModeSearch {
+    fn default() -> Self {
+        Self { from_hz: 0.0, to_hz: 20.0, most: 1000 }
+    }
+}
+
+/// The modes of a band.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Modes {
+    /// The modes, by frequency.
+    pub modes: Vec<Mode>,
+    /// Up to this frequency \[Hz\] none is left out whose growth or decay is below `complete_to_rate`.
+    pub complete_to_hz: f64,
+    /// See `complete_to_hz` \[1/s\].
+    pub complete_to_rate: f64,
+}
+
+/// One mode: `x(t) = Re(shape exp((growth_rate + 2 pi i frequency) t))`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Mode {
+    /// Frequency \[Hz\]; 0 is a static instability.
+    pub frequency_hz: f64,
+    /// Growth of its amplitude \[1/s\]; negative is decay.
+    pub growth_rate: f64,
+    /// What moves most.
+    pub kind: ModeKind,
+    /// Share of the kinetic energy in lateral motion, 0 to 1.
+    pub lateral_share: f64,
+    /// Share in torsion.
+    pub torsional_share: f64,
+    /// Share in axial motion.
+    pub axial_share: f64,
+    /// Sense of its whirl: 1 forward (with the rotation), -1 backward, 0 to and fro.
+    pub whirl: f64,
+    /// Node with most of the kinetic energy, from 1 at the top.
+    pub node: usize,
+    /// Measured depth of that node \[m\].
+    pub measured_depth: f64,
+    /// Measured depths \[m\] between which nine tenths of the kinetic energy lie.
+    pub extent: [f64; 2],
+}
+
+/// What moves most in a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ModeKind {
+    /// Lateral, whirling with the rotation.
+    Forward,
+    /// Lateral, whirling against it.
+    Backward,
+    /// Lateral, to and fro.
+    Lateral,
+    /// Torsion.
+    Torsional,
+    /// Along the string.
+    Axial,
+}
+
+impl ModeKind {
+    /// The name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            ModeKind::Forward => "forward",
+            ModeKind::Backward => "backward",
+            ModeKind::Lateral => "lateral",
+            ModeKind::Torsional => "torsional",
+            ModeKind::Axial => "axial",
+        }
+    }
+}
+
+/// Why a band has no modes.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ModesError {
+    /// The band is empty or not finite.
+    #[error("a band from {from_hz} to {to_hz} Hz: must be 0 <= from < to")]
+    Band {
+        /// Lower end \[Hz\].
+        from_hz: f64,
+        /// Upper end \[Hz\].
+        to_hz: f64,
+    },
+    /// The iteration did not find the eigenvalues around a shift.
+    #[error("the eigenvalues around {frequency_hz:.3} Hz could not be found")]
+    NotFound {
+        /// Frequency of the shift \[Hz\].
+        frequency_hz: f64,
+    },
+}
+
+/// The modes of a model about its equilibrium.
+///
+/// # Errors
+/// When the band is empty or its eigenvalues cannot be found.
+pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> Result<Modes, ModesError> {
+    modes_of(&Pencil::about(model, equilibrium), &model.mesh.depths(), search)
+}
+
+/// The modes of a pencil whose nodes are at `depths` \[m\].
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_of(pencil: &Pencil, depths: &[f64], search: &ModeSearch) -> Result<Modes, ModesError> {
+    let found = eigenpairs(pencil, search)?;
+    Ok(Modes {
+        modes: found.pairs.iter().map(|pair| Mode::new(pencil, pair, depths)).collect(),
+        complete_to_hz: (found.complete_to / TAU).min(search.to_hz),
+        complete_to_rate: found.rate,
+    })
+}
+
+/// What a walk over a band has found.
+struct Found {
+    pairs: Vec<Eigenpair>,
+    /// Circular frequency up to which it is complete \[1/s\].
+    complete_to: f64,
+    /// Growth up to which it is.
+    rate: f64,
+}
+
+fn eigenpairs(pencil: &Pencil, search: &ModeSearch) -> Result<Found, ModesError> {
+    let (from_hz, to_hz) = (search.from_hz, search.to_hz);
+    if !(from_hz >= 0.0 && to_hz > from_hz && to_hz.is_finite()) {
+        return Err(ModesError::Band { from_hz, to_hz });
+    }
+    let (from, to) = (TAU * from_hz, TAU * to_hz);
+    let mut found = Found { pairs: Vec::new(), complete_to: from, rate: f64::INFINITY };
+    let mut dimension = DIMENSION;
+    let mut ahead = 0.0;
+    while found.complete_to < to && found.pairs.len() < search.most {
+        let centre = found.complete_to + ahead;
+        let missing = ModesError::NotFound { frequency_hz: centre / TAU };
+        // An eigenvalue that the shift hits is missed by the next one.
+        let nudged = Complex::new(1e-7 * (to + 1.0), centre);
+        let near = around(Complex::new(0.0, centre), pencil, dimension)
+            .or_else(|| around(nudged, pencil, dimension))
+            .ok_or(missing)?;
+        let reach = OVERLAP * near.radius;
+        found.add(pencil, near.pairs, from, to);
+        if centre - reach > found.complete_to {
+            // Denser than thought: come back nearer, at last with a larger space.
+            ahead = 0.5 * reach;
+            if reach < 1e-4 * (to - from) {
+                if dimension >= LARGEST_DIMENSION {
+                    return Err(missing);
+                }
+                dimension *= 2;
+            }
+            continue;
+        }
+        if reach < 1e-6 * (to - from) {
+            if dimension >= LARGEST_DIMENSION {
+                return Err(missing);
+            }
+            dimension *= 2;
+            continue;
+        }
+        if centre == 0.0 {
+            for factor in REAL_SHIFTS {
+                let shift = Complex::new((factor * near.radius).min(1e4), 0.0);
+                if let Some(near) = around(shift, pencil, dimension) {
+                    found.add(pencil, near.pairs, from, to);
+                }
+            }
+        }
+        found.complete_to = centre + reach;
+        found.rate = found.rate.min(OVERLAP * near.radius);
+        ahead = 0.95 * reach;
+    }
+    found
+        .pairs
+        .sort_by(|a, b| (a.value.im, a.value.re).partial_cmp(&(b.value.im, b.value.re)).expect("finite"));
+    Ok(found)
+}
+
+impl Found {
+    /// Takes in what is new: within the band, true to the equation of motion, not overdamped.
+    fn add(&mut self, pencil: &Pencil, pairs: Vec<Eigenpair>, from: f64, to: f64) {
+        for mut pair in pairs {
+            let still = pair.value.im.abs() <= 1e-6 * pair.value.norm();
+            if still {
+                pair.value.im = 0.0;
+            }
+            let wanted = (from..=to).contains(&pair.value.im) && (!still || pair.value.re > 0.0);
+            if !wanted
+                || !pair.value.norm().is_finite()
+                || pencil.residual(pair.value, &pair.shape) > BELIEVED
+            {
+                continue;
+            }
+            normalise(&mut pair.shape);
+            // Equal eigenvalues have as many modes as independent shapes.
+            let mut rest = pair.shape.clone();
+            let tolerance = 1e-6 * pair.value.norm().max(1e-3 * to);
+            for other in self.pairs.iter().filter(|other| (other.value - pair.value).norm() <= tolerance) {
+                let common: Complex<f64> = other.shape.iter().zip(&rest).map(|(a, b)| a.conj() * b).sum();
+                for (value, other) in rest.iter_mut().zip(&other.shape) {
+                    *value -= common * other;
+                }
+            }
+            if rest.iter().map(Complex::norm_sqr).sum::<f64>() > 0.01 {
+                normalise(&mut rest);
+                self.pairs.push(Eigenpair { value: pair.value, shape: rest });
+            }
+        }
+    }
+}
+
+fn normalise(shape: &mut [Complex<f64>]) {
+    let size = shape.iter().map(Complex::norm_sqr).sum::<f64>().sqrt();
+    shape.iter_mut().for_each(|value| *value /= size);
+}
+
+impl Mode {
+    fn new(pencil: &Pencil, pair: &Eigenpair, depths: &[f64]) -> Self {
+        let inertia = pencil.times_mass(&pair.shape);
+        let (shape, _) = pair.shape.as_chunks::<DOFS>();
+        let (inertia, _) = inertia.as_chunks::<DOFS>();
+        let mut by_motion = [0.0; 3];
+        let mut by_node = vec![0.0; shape.len()];
+        let (mut forward, mut backward) = (0.0, 0.0);
+        let i = Complex::new(0.0, 1.0);
+        for ((x, momentum), energy) in shape.iter().zip(inertia).zip(&mut by_node) {
+            for dof in 0..DOFS {
+                let share = (x[dof].conj() * momentum[dof]).re;
+                by_motion[MOTION_OF_DOF[dof]] += share;
+                *energy += share;
+            }
+            // u + i v of Re(x exp(i w t)) is the sum of two circles.
+            forward += (x[0] + i * x[1]).norm_sqr();
+            backward += (x[0] - i * x[1]).norm_sqr();
+        }
+        let total: f64 = by_node.iter().sum();
+        let [lateral_share, axial_share, torsional_share] = by_motion.map(|share| share / total);
+        let whirl = if pair.value.im == 0.0 || forward + backward == 0.0 {
+            0.0
+        } else {
+            (forward - backward) / (forward + backward)
+        };
+        let kind = if torsional_share > lateral_share.max(axial_share) {
+            ModeKind::Torsional
+        } else if axial_share > lateral_share {
+            ModeKind::Axial
+        } else if whirl > ONE_SENSE {
+            ModeKind::Forward
+        } else if whirl < -ONE_SENSE {
+            ModeKind::Backward
+        } else {
+            ModeKind::Lateral
+        };
+        let node = (0..by_node.len()).max_by(|&a, &b| by_node[a].total_cmp(&by_node[b])).unwrap_or(0);
+        let depth_at = |share: f64| {
+            let mut sum = 0.0;
+            let place = by_node.iter().position(|energy| {
+                sum += energy;
+                sum >= share * total
+            });
+            depths[place.unwrap_or(depths.len() - 1)]
+        };
+        Self {
+            frequency_hz: pair.value.im / TAU,
+            growth_rate: pair.value.re,
+            kind,
+            lateral_share,
+            torsional_share,
+            axial_share,
+            whirl,
+            node: node + 1,
+            measured_depth: depths[node],
+            extent: [depth_at(0.05), depth_at(0.95)],
+        }
+    }
+}
+
+/// Lateral, axial or torsional motion of each degree of freedom of a node.
+const MOTION_OF_DOF: [usize; DOFS] = [0, 0, 1, 0, 0, 2];

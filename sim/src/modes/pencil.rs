@@ -1,0 +1,108 @@
+//! The matrices of small motions about an equilibrium.
+
+use nalgebra::Complex;
+
+use crate::contact::{ContactNode, ContactParameters, sliding_tangent};
+use crate::linalg::{BlockTridiagonal, DOFS};
+use crate::model::{Model, NodalVector, clear_held};
+use crate::statics::Equilibrium;
+
+/// Small motions about a state: `M a + C v + K x = 0`.
+#[derive(Debug, Clone)]
+pub struct Pencil {
+    /// Mass.
+    pub mass: BlockTridiagonal<f64>,
+    /// Damping, Coriolis and gyroscopic terms, and what closed contacts add.
+    pub damping: BlockTridiagonal<f64>,
+    /// Stiffness, and what closed contacts add.
+    pub stiffness: BlockTridiagonal<f64>,
+    /// Degrees of freedom that do not move; their rows and columns are empty.
+    pub held: Vec<[bool; DOFS]>,
+}
+
+impl Pencil {
+    /// A pencil of given matrices, rows and columns of held degrees of freedom emptied.
+    pub fn new(
+        mut mass: BlockTridiagonal<f64>,
+        mut damping: BlockTridiagonal<f64>,
+        mut stiffness: BlockTridiagonal<f64>,
+        held: Vec<[bool; DOFS]>,
+    ) -> Self {
+        for matrix in [&mut mass, &mut damping, &mut stiffness] {
+            clear_held(matrix, &held);
+        }
+        Self { mass, damping, stiffness, held }
+    }
+
+    /// Small motions of a model about its equilibrium, contacts closed there staying closed and sliding at the speed of rotation.
+    pub fn about(model: &Model, equilibrium: &Equilibrium) -> Self {
+        let system = model.dynamic_system(equilibrium);
+        let (mut damping, mut stiffness) = (system.damping, system.stiffness);
+        add_contact(model, equilibrium, &mut stiffness, &mut damping);
+        Self::new(system.mass, damping, stiffness, system.held)
+    }
+
+    pub(super) fn matrices(&self) -> [&BlockTridiagonal<f64>; 3] {
+        [&self.mass, &self.damping, &self.stiffness]
+    }
+
+    pub(super) fn times_mass(&self, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
+        times(&self.mass, x)
+    }
+
+    pub(super) fn times_damping(&self, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
+        times(&self.damping, x)
+    }
+
+    /// `|Q(l) x|` relative to the sizes of its three terms: how well an eigenvalue and its shape satisfy the equation of motion.
+    pub(super) fn residual(&self, value: Complex<f64>, shape: &[Complex<f64>]) -> f64 {
+        let [inertia, damping, elastic] = self.matrices().map(|matrix| times(matrix, shape));
+        let (mut left, mut size) = (0.0, 0.0);
+        for ((m, c), k) in inertia.iter().zip(&damping).zip(&elastic) {
+            left += (value * value * m + value * c + k).norm_sqr();
+            size += (value * value * m).norm_sqr() + (value * c).norm_sqr() + k.norm_sqr();
+        }
+        (left / size).sqrt()
+    }
+}
+
+/// Adds what the closed contacts of an equilibrium do to stiffness and damping.
+pub(super) fn add_contact(
+    model: &Model,
+    equilibrium: &Equilibrium,
+    stiffness: &mut BlockTridiagonal<f64>,
+    damping: &mut BlockTridiagonal<f64>,
+) {
+    if !model.effects.contact {
+        return;
+    }
+    let law = ContactParameters::new(&model.scenario.contact, &model.effects);
+    for (node, data) in model.mesh.nodes.iter().enumerate().skip(1) {
+        let site = ContactNode {
+            clearance: data.clearance,
+            contact_radius: data.contact_radius,
+            share: data.contact_share,
+        };
+        let [u, v, ..] = equilibrium.displacement[node];
+        let Some(tangent) = sliding_tangent(&law, &site, u, v, model.rotation_speed) else { continue };
+        for (i, row) in [0, 1, 5].into_iter().enumerate() {
+            for (j, column) in [0, 1, 5].into_iter().enumerate() {
+                stiffness.diagonal[node][(row, column)] += tangent.stiffness[i][j];
+                damping.diagonal[node][(row, column)] += tangent.damping[i][j];
+            }
+        }
+    }
+}
+
+/// A real matrix times a complex vector.
+pub(super) fn times(matrix: &BlockTridiagonal<f64>, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
+    let part = |part: fn(&Complex<f64>) -> f64| {
+        let (nodes, _) = x.as_chunks::<DOFS>();
+        let values: NodalVector = nodes.iter().map(|node| node.each_ref().map(part)).collect();
+        let mut product = vec![[0.0; DOFS]; values.len()];
+        matrix.multiply_into(&values, &mut product);
+        product
+    };
+    let (re, im) = (part(|value| value.re), part(|value| value.im));
+    re.as_flattened().iter().zip(im.as_flattened()).map(|(&re, &im)| Complex::new(re, im)).collect()
+}

@@ -1,0 +1,190 @@
+//! Whether a scene is unstable by its physics, and by which: what a failed run or a limit cycle is to be told apart by.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+
+use super::arnoldi::Eigenpair;
+use super::pencil::{Pencil, add_contact, times};
+use super::{Mode, ModeKind, ModeSearch, ModesError, eigenpairs};
+use crate::linalg::BlockTridiagonal;
+use crate::model::{FlowMomentum, Model, add_element_matrix, clear_held};
+use crate::statics::Equilibrium;
+
+/// Band in which the verdict looks for growth \[Hz\]: the frequencies of drilling vibrations.
+const BAND_HZ: f64 = 20.0;
+
+/// Growth \[1/s\] below which a mode counts as neither growing nor decaying.
+const NEUTRAL: f64 = 1e-6;
+
+/// The verdict of the linearised equations about the equilibrium, contacts closed, on frequencies up to `complete_to_hz`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Stability {
+    /// Whether all modes decay.
+    pub stable: bool,
+    /// The frequency \[Hz\] up to which modes were looked at.
+    pub complete_to_hz: f64,
+    /// The mode that grows fastest; absent where the scene is stable.
+    pub instability: Option<Instability>,
+}
+
+/// The mode that grows fastest, and what feeds it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Instability {
+    /// What it is.
+    pub kind: InstabilityKind,
+    /// Growth of its amplitude \[1/s\].
+    pub growth_rate: f64,
+    /// Its frequency \[Hz\]; 0 where it does not vibrate.
+    pub frequency_hz: f64,
+    /// Node that moves most, from 1 at the top.
+    pub node: usize,
+    /// Measured depth of that node \[m\].
+    pub measured_depth: f64,
+    /// Modes that grow.
+    pub growing_modes: usize,
+}
+
+/// Kinds of instability, by what puts energy into the mode and how it moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum InstabilityKind {
+    /// Compression pushes the string aside.
+    Buckling,
+    /// Torque winds the string into a helix (Greenhill), with or without vibration.
+    TorqueBuckling,
+    /// The momentum of the flows pushes the string aside.
+    FlowDivergence,
+    /// The flows feed a vibration.
+    FlowFlutter,
+    /// Friction at the wall feeds a lateral vibration: dry-friction whirl.
+    FrictionWhirl,
+    /// Friction that falls with speed feeds torsion: stick-slip.
+    StickSlip,
+    /// Anything else.
+    Other,
+}
+
+impl InstabilityKind {
+    /// The kind in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            InstabilityKind::Buckling => "buckling under compression",
+            InstabilityKind::TorqueBuckling => "buckling under torque",
+            InstabilityKind::FlowDivergence => "divergence by the flow",
+            InstabilityKind::FlowFlutter => "flutter by the flow",
+            InstabilityKind::FrictionWhirl => "whirl by friction",
+            InstabilityKind::StickSlip => "stick-slip by falling friction",
+            InstabilityKind::Other => "an instability",
+        }
+    }
+}
+
+impl fmt::Display for Stability {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.instability {
+            None => write!(formatter, "stable about its equilibrium up to {:.0} Hz", self.complete_to_hz),
+            Some(unstable) => write!(
+                formatter,
+                "physically unstable: {}, {:.3} Hz, growing with {:.3} 1/s, most at {:.1} m",
+                unstable.kind.in_words(),
+                unstable.frequency_hz,
+                unstable.growth_rate,
+                unstable.measured_depth
+            ),
+        }
+    }
+}
+
+/// The verdict on a model about its equilibrium.
+///
+/// # Errors
+/// When the modes cannot be found.
+pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, ModesError> {
+    let pencil = Pencil::about(model, equilibrium);
+    let found = eigenpairs(&pencil, &ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() })?;
+    let growing = found.pairs.iter().filter(|pair| pair.value.re > NEUTRAL);
+    let fastest = growing.clone().max_by(|a, b| a.value.re.total_cmp(&b.value.re));
+    Ok(Stability {
+        stable: fastest.is_none(),
+        complete_to_hz: (found.complete_to / TAU).min(BAND_HZ),
+        instability: fastest.map(|pair| {
+            let mode = Mode::new(&pencil, pair, &model.mesh.depths());
+            Instability {
+                kind: kind(model, equilibrium, &pencil, pair, mode.kind),
+                growth_rate: mode.growth_rate,
+                frequency_hz: mode.frequency_hz,
+                node: mode.node,
+                measured_depth: mode.measured_depth,
+                growing_modes: growing.count(),
+            }
+        }),
+    })
+}
+
+/// What puts most energy into a growing mode decides its kind.
+fn kind(
+    model: &Model,
+    equilibrium: &Equilibrium,
+    pencil: &Pencil,
+    pair: &Eigenpair,
+    moves: ModeKind,
+) -> InstabilityKind {
+    let zero = || BlockTridiagonal::<f64>::zeros(model.node_count());
+    let [mut compression, mut torque, mut flow, mut coriolis, mut wall, mut rubbing] =
+        std::array::from_fn(|_| zero());
+    for (e, element) in model.elements.iter().enumerate() {
+        if let Some(unit) = &element.tension_unit {
+            add_element_matrix(&mut compression, e, &(unit * equilibrium.tension[e]));
+        }
+        if let Some(unit) = &element.torque_unit {
+            add_element_matrix(&mut torque, e, &(unit * equilibrium.torque[e]));
+        }
+        if let Some(matrix) = &element.flow {
+            add_element_matrix(&mut flow, e, matrix);
+        }
+        if let Some(mud) = model.scenario.mud.as_ref().filter(|_| model.effects.fluid_coriolis) {
+            let momentum = FlowMomentum::new(mud, element.beam.section(), model.scenario.well.hole_diameter);
+            let matrix = element.chord.matrix_to_nodes(&element.beam.coriolis()) * momentum.coriolis;
+            add_element_matrix(&mut coriolis, e, &matrix);
+        }
+    }
+    add_contact(model, equilibrium, &mut wall, &mut rubbing);
+    for matrix in [&mut compression, &mut torque, &mut flow, &mut coriolis, &mut wall, &mut rubbing] {
+        clear_held(matrix, &pencil.held);
+    }
+    // Mean power of a force -(K + l C) x on the velocity l x.
+    let power = |stiffness: &BlockTridiagonal<f64>, damping: Option<&BlockTridiagonal<f64>>| -> f64 {
+        let mut force = times(stiffness, &pair.shape);
+        if let Some(damping) = damping {
+            for (force, damped) in force.iter_mut().zip(times(damping, &pair.shape)) {
+                *force += pair.value * damped;
+            }
+        }
+        let products = pair.shape.iter().zip(&force).map(|(x, force)| (pair.value * x).conj() * force);
+        -products.sum::<Complex<f64>>().re
+    };
+    let powers = [
+        power(&compression, None),
+        power(&torque, None),
+        power(&flow, Some(&coriolis)),
+        power(&wall, Some(&rubbing)),
+    ];
+    let most = (0..powers.len()).max_by(|&a, &b| powers[a].total_cmp(&powers[b])).unwrap_or(0);
+    let still = pair.value.im == 0.0;
+    match most {
+        _ if powers[most] <= 0.0 => InstabilityKind::Other,
+        0 if still => InstabilityKind::Buckling,
+        1 => InstabilityKind::TorqueBuckling,
+        2 if still => InstabilityKind::FlowDivergence,
+        2 => InstabilityKind::FlowFlutter,
+        3 if moves == ModeKind::Torsional => InstabilityKind::StickSlip,
+        3 => InstabilityKind::FrictionWhirl,
+        _ => InstabilityKind::Other,
+    }
+}

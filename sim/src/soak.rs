@@ -1,0 +1,391 @@
+//! Scenes drawn at random over wide ranges, and what a run of one must keep to.
+//!
+//! Every scene ends in one of two ways: with a result whose numbers are all finite and whose energy ledger closes within its bound,
+//! or with a typed failure that says where, when and why. Scene i of a seed is always the same one.
+
+use crate::control::Control;
+use crate::model::Model;
+use crate::scenario::{
+    Accuracy, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator, Material, Mesh, Mud,
+    NodeChoice, Operation, RayleighDamping, Recording, RegimeChoice, Scenario, Section, SectionKind,
+    SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass, Well,
+};
+use crate::statics::{Equilibrium, StaticsError};
+use crate::string::StringMesh;
+use crate::transient::{DivergenceReason, Outcome, Records, Transient, TransientError};
+
+/// Samples of a scene's run.
+const SAMPLES: f64 = 40.0;
+
+/// Elements of a scene at most, before places that ask for nodes of their own.
+const MOST_ELEMENTS: f64 = 120.0;
+
+/// How a scene ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SceneEnd {
+    /// With a result: all numbers finite, the ledger within its bound.
+    Finite {
+        /// Residual of the ledger over its bound.
+        ledger: f64,
+    },
+    /// Without a result, and with a typed reason.
+    Failed {
+        /// The kind of failure.
+        cause: &'static str,
+        /// The whole reason, with time and node where there are any.
+        reason: String,
+    },
+    /// Against the contract: a number is not finite, the ledger is out of its bound, or a scene as drawn was refused.
+    Broken {
+        /// What is wrong.
+        reason: String,
+    },
+    /// It was cancelled.
+    Cancelled,
+}
+
+/// Runs a scene and judges how it ended.
+pub fn run(scenario: &Scenario, control: &Control) -> SceneEnd {
+    if let Err(problems) = scenario.validate() {
+        return SceneEnd::Broken { reason: format!("refused: {problems}") };
+    }
+    let failed = |cause, reason: String| SceneEnd::Failed { cause, reason };
+    let model = match Model::new(scenario) {
+        Ok(model) => model,
+        Err(error) => return failed("no model", error.to_string()),
+    };
+    let equilibrium = match Equilibrium::find(&model) {
+        Ok(equilibrium) => equilibrium,
+        Err(error) => return failed(statics_cause(&error), error.to_string()),
+    };
+    let ended = Transient::new(&model, &equilibrium).and_then(|transient| transient.run(control));
+    match ended {
+        Ok(Outcome::Finished(records)) => judge(&records),
+        Ok(Outcome::Cancelled | Outcome::Suspended(_)) => SceneEnd::Cancelled,
+        Err(error) => failed(transient_cause(&error), error.to_string()),
+    }
+}
+
+/// Whether a result keeps the contract.
+fn judge(records: &Records) -> SceneEnd {
+    let broken = |reason: String| SceneEnd::Broken { reason };
+    for history in &records.histories {
+        let series = [
+            &history.u,
+            &history.v,
+            &history.w,
+            &history.theta_z,
+            &history.u_rate,
+            &history.v_rate,
+            &history.w_rate,
+            &history.theta_z_rate,
+        ];
+        if series.iter().any(|values| values.iter().any(|value| !value.is_finite())) {
+            return broken(format!("the history of node {} is not finite", history.node + 1));
+        }
+    }
+    if let Some(node) = records.contacts.iter().position(|contact| {
+        ![contact.largest_radius(), contact.contact_time, contact.largest_normal_force]
+            .iter()
+            .all(|value| value.is_finite())
+    }) {
+        return broken(format!("the contact statistics of node {} are not finite", node + 1));
+    }
+    let Some(last) = records.energy.last() else { return broken("no row in the ledger".into()) };
+    let (residual, bound) = (last.residual, records.energy_bound);
+    if !(residual.is_finite() && bound.is_finite() && records.error.displacement.is_finite()) {
+        return broken(format!("the ledger leaves {residual} J of {bound} J"));
+    }
+    if residual.abs() > bound {
+        return broken(format!("the ledger leaves {residual:.3e} J, its bound is {bound:.3e} J"));
+    }
+    // Where nothing moved there is no bound either.
+    SceneEnd::Finite { ledger: if residual == 0.0 { 0.0 } else { residual.abs() / bound } }
+}
+
+fn statics_cause(error: &StaticsError) -> &'static str {
+    match error {
+        StaticsError::NotConverged { .. } => "no equilibrium",
+        StaticsError::Singular(_) => "singular tangent",
+        StaticsError::Mud(_) => "mud without a flow",
+        StaticsError::HydraulicsNotConverged { .. } => "string and mud do not settle",
+    }
+}
+
+fn transient_cause(error: &TransientError) -> &'static str {
+    match error {
+        TransientError::Singular(_) => "singular step matrix",
+        TransientError::StepBeyondStability { .. } => "rk4 step beyond its limit",
+        TransientError::ContactTooStiff { .. } => "contact too stiff for the step",
+        TransientError::Diverged { reason, .. } => match reason {
+            DivergenceReason::NotFinite => "not finite",
+            DivergenceReason::OutsideHole { .. } => "far outside the hole",
+            DivergenceReason::StepCollapsed => "adaptive step collapsed",
+            DivergenceReason::EnergyNotConserved { .. } => "energy ledger out of bound",
+        },
+    }
+}
+
+/// Scene `index` of a seed.
+pub fn scene(seed: u64, index: u64) -> Scenario {
+    let mut draw = Draw::new(seed, index);
+    let hole_diameter = draw.log(0.1, 0.45);
+    let string = draw_string(&mut draw, hole_diameter);
+    let length = total_length(&string);
+    let (accuracy, rate_hz) = draw_accuracy(&mut draw);
+    let mut scenario = Scenario {
+        name: format!("soak {seed}/{index}"),
+        well: Well { hole_diameter, survey: draw_survey(&mut draw, length) },
+        operation: draw_operation(&mut draw),
+        mud: draw_mud(&mut draw),
+        contact: draw_contact(&mut draw),
+        damping: RayleighDamping {
+            mass_proportional: draw.or_zero(0.2, 1e-3, 1.0),
+            stiffness_proportional: draw.or_zero(0.6, 1e-8, 1e-4),
+        },
+        mesh: draw_mesh(&mut draw, &string),
+        duration: SAMPLES / rate_hz,
+        recording: Recording {
+            rate_hz,
+            nodes: Vec::new(),
+            spectrum_windows: Vec::new(),
+            orbit_window: None,
+            stability: false,
+        },
+        accuracy: Accuracy::Explicit(accuracy),
+        effects: draw_effects(&mut draw),
+        ensemble: 1,
+        cost_study: None,
+        string,
+    };
+    // A gauge may not be wider than what the body leaves of the hole where it stands.
+    if let Ok(mesh) = StringMesh::new(&scenario) {
+        for gauge in &mut scenario.string.gauges {
+            let node = mesh.nearest_node(gauge.measured_depth);
+            let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].outer_diameter);
+            let below = mesh.elements.get(node).map_or(0.0, |below| below.outer_diameter);
+            gauge.clearance = gauge.clearance.min(0.5 * (hole_diameter - above.max(below)));
+        }
+        let last = mesh.nodes.len() as u32;
+        let mut nodes = [2, last / 2 + 1, last].to_vec();
+        nodes.dedup();
+        nodes.sort_unstable();
+        nodes.dedup();
+        scenario.recording.nodes = nodes.into_iter().map(NodeChoice::Node).collect();
+    }
+    scenario
+}
+
+fn total_length(string: &DrillString) -> f64 {
+    string.sections.iter().map(|section| f64::from(section.count) * section.length).sum()
+}
+
+fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
+    let material = match draw.below(6) {
+        0 => Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33 },
+        1 => Material { youngs_modulus: 1.1e11, density: 4430.0, poissons_ratio: 0.31 },
+        _ => Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 },
+    };
+    let kinds = [SectionKind::Drillpipe, SectionKind::Collar, SectionKind::Stabilizer, SectionKind::Bit];
+    let sections = (0..=draw.below(4))
+        .map(|_| {
+            let kind = kinds[draw.below(4) as usize];
+            let outer_diameter = hole * draw.between(0.25, 0.95);
+            let inner_diameter = outer_diameter * draw.between(0.2, 0.92);
+            let length = match kind {
+                SectionKind::Drillpipe | SectionKind::Collar => draw.log(2.0, 80.0),
+                SectionKind::Stabilizer | SectionKind::Bit => draw.log(0.3, 3.0),
+            };
+            let jointed = kind == SectionKind::Drillpipe && draw.chance(0.6);
+            let tool_joint = jointed.then(|| ToolJoint {
+                length: (0.3 * length).min(draw.between(0.15, 0.5)),
+                outer_diameter: outer_diameter + (hole - outer_diameter) * draw.between(0.0, 0.98),
+                inner_diameter: inner_diameter * draw.between(0.6, 1.0),
+            });
+            let count = if kind == SectionKind::Drillpipe { 1 + draw.below(4) as u32 } else { 1 };
+            Section { kind, count, length, outer_diameter, inner_diameter, tool_joint }
+        })
+        .collect();
+    let mut string = DrillString { material, sections, gauges: Vec::new(), unbalance: Vec::new() };
+    let length = total_length(&string);
+    for _ in 0..draw.below(5) {
+        let measured_depth = if draw.chance(0.3) { length } else { length * draw.between(0.02, 1.0) };
+        string.gauges.push(Gauge { measured_depth, clearance: draw.log(1e-5, 1e-2) });
+    }
+    for _ in 0..draw.below(6) {
+        string.unbalance.push(UnbalanceMass {
+            measured_depth: length * draw.between(0.02, 1.0),
+            mass: draw.log(0.05, 300.0),
+            radius: 0.5 * hole * draw.between(0.05, 0.9),
+            phase_deg: draw.between(0.0, 360.0),
+        });
+    }
+    string
+}
+
+fn draw_survey(draw: &mut Draw, length: f64) -> Vec<SurveyStation> {
+    let straight = |inclination_deg: f64| {
+        [0.0, length].map(|measured_depth| SurveyStation {
+            measured_depth,
+            inclination_deg,
+            azimuth_deg: 30.0,
+        })
+    };
+    match draw.below(6) {
+        0 => straight(0.0).to_vec(),
+        1 => straight(90.0).to_vec(),
+        2 => straight(draw.between(0.0, 150.0)).to_vec(),
+        _ => {
+            let mut inclination_deg = draw.between(0.0, 110.0);
+            let mut azimuth_deg = draw.between(0.0, 360.0);
+            let mut measured_depth = 0.0;
+            let mut survey = vec![SurveyStation { measured_depth, inclination_deg, azimuth_deg }];
+            let pieces = 1 + draw.below(5);
+            for _ in 0..pieces {
+                let piece = length / pieces as f64;
+                measured_depth += piece;
+                // Doglegs to 20 degrees in 30 m; below half a turn between two stations.
+                let turn = (draw.between(-20.0, 20.0) * piece / 30.0).clamp(-80.0, 80.0);
+                inclination_deg = (inclination_deg + turn).clamp(0.0, 170.0);
+                azimuth_deg += draw.between(-20.0, 20.0) * (piece / 30.0).min(4.0);
+                survey.push(SurveyStation { measured_depth, inclination_deg, azimuth_deg });
+            }
+            survey
+        }
+    }
+}
+
+fn draw_operation(draw: &mut Draw) -> Operation {
+    let speed = match draw.below(10) {
+        0 => 0.0,
+        1 => draw.log(1e-3, 1.0),
+        _ => draw.log(1.0, 300.0),
+    };
+    let sense = if draw.chance(0.1) { -1.0 } else { 1.0 };
+    let torque = draw.or_zero(0.2, 10.0, 3e4);
+    Operation {
+        rotation_speed_rpm: sense * speed,
+        weight_on_bit: -draw.or_zero(0.2, 1e2, 5e5),
+        torque_on_bit: -sense * torque,
+        top: if draw.chance(0.2) { TopCondition::Pinned } else { TopCondition::Clamped },
+    }
+}
+
+fn draw_mud(draw: &mut Draw) -> Option<Mud> {
+    let mud = Mud {
+        density: draw.log(600.0, 2600.0),
+        flow_rate: draw.or_zero(0.15, 1e-4, 0.2),
+        yield_stress: draw.or_zero(0.2, 0.01, 30.0),
+        consistency: draw.log(1e-3, 3.0),
+        flow_index: draw.between(0.2, 1.3),
+        regime: if draw.chance(0.2) { RegimeChoice::Laminar } else { RegimeChoice::Auto },
+        rotation_factor: draw.chance(0.2),
+        viscosity_eccentricity: draw.chance(0.2),
+        bit_pressure_drop: draw.or_zero(0.5, 1e5, 1e7),
+        back_pressure: draw.or_zero(0.7, 1e5, 1e7),
+    };
+    (!draw.chance(0.15)).then_some(mud)
+}
+
+fn draw_contact(draw: &mut Draw) -> ContactLaw {
+    let static_friction = if draw.chance(0.1) { 0.0 } else { draw.between(0.02, 0.9) };
+    ContactLaw {
+        stiffness: draw.log(1e5, 1e10),
+        damping: draw.or_zero(0.1, 10.0, 1e6),
+        stiffness_sharpness: draw.log(1e4, 1e9),
+        damping_sharpness: draw.log(1e3, 1e7),
+        adhesion: if draw.chance(0.3) { Adhesion::None } else { Adhesion::Allowed },
+        static_friction,
+        dynamic_friction: static_friction * draw.between(0.0, 1.0),
+        friction_reference_speed: draw.log(1e-3, 0.3),
+        reference_length: draw.chance(0.3).then(|| draw.log(0.1, 10.0)),
+    }
+}
+
+fn draw_mesh(draw: &mut Draw, string: &DrillString) -> Mesh {
+    let finest = total_length(string) / MOST_ELEMENTS;
+    let mut target = || finest * draw.log(2.0, 300.0);
+    Mesh { drillpipe: target(), tool_joint: target(), collar: target(), stabilizer: target(), bit: target() }
+}
+
+/// Integrator and step, with a recording rate whose interval holds whole steps.
+fn draw_accuracy(draw: &mut Draw) -> (TimeStepping, f64) {
+    let integrator = match draw.below(8) {
+        0 => Integrator::Rk4,
+        1..=3 => Integrator::GeneralizedAlpha,
+        _ => Integrator::Esdirk4,
+    };
+    if integrator == Integrator::Rk4 {
+        let step = draw.log(2e-6, 5e-5);
+        let tolerance = draw.chance(0.5).then(|| draw.log(1e-9, 1e-4));
+        return (TimeStepping { tolerance, ..TimeStepping::fixed(integrator, step) }, 1.0 / (4.0 * step));
+    }
+    let step = draw.log(2e-5, 5e-3);
+    let contact_sweeps = if draw.chance(0.2) { 3 + draw.below(20) as u32 } else { 2 };
+    let spectral_radius =
+        (integrator == Integrator::GeneralizedAlpha && draw.chance(0.5)).then(|| draw.between(0.0, 0.95));
+    let steps = (1 + draw.below(4)) as f64;
+    let stepping = TimeStepping { contact_sweeps, spectral_radius, ..TimeStepping::fixed(integrator, step) };
+    (stepping, 1.0 / (steps * step))
+}
+
+fn draw_effects(draw: &mut Draw) -> Effects {
+    let mut effects = Effects::default();
+    let some_off = draw.chance(0.5);
+    for &effect in Effect::ALL {
+        let off = draw.chance(0.1) && some_off;
+        if off && effect != Effect::Transient {
+            effects.set(effect, Switch::Off);
+        }
+    }
+    effects
+}
+
+/// Numbers without pattern from a seed: SplitMix64 (Steele, Lea and Flood 2014).
+struct Draw(u64);
+
+impl Draw {
+    fn new(seed: u64, index: u64) -> Self {
+        let mut draw = Self(seed);
+        let start = draw.next() ^ index.wrapping_mul(0xd134_2543_de82_ef95);
+        Self(start)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In \[0, 1).
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly in \[low, high).
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Evenly by the logarithm in \[low, high).
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// Zero with a probability, else by the logarithm.
+    fn or_zero(&mut self, zero: f64, low: f64, high: f64) -> f64 {
+        let value = self.log(low, high);
+        if self.chance(zero) { 0.0 } else { value }
+    }
+
+    fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    /// A whole number below `count`.
+    fn below(&mut self, count: u64) -> u64 {
+        self.next() % count
+    }
+}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, SupportsFloat
 from urllib.parse import quote
 
 import httpx
@@ -60,6 +61,10 @@ class Client:
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
         axes: Mapping[str, Any] | None = None,
+        design: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
@@ -72,7 +77,14 @@ class Client:
             preset: Name of a preset scenario; either this or `scenario`.
             scenario: A scenario in full.
             set: Changes to the scenario by path, such as `{"duration": 60, "operation.rotation_speed_rpm": 120}`.
-            axes: The swept parameters by name, each an `Axis`: a list or an array of values, or a `Range`.
+            axes: The swept parameters, each an `Axis`: a list or an array of values, or a `Range`. Names are
+                `flow_rate`, `mud_density`, or the path of any numeric field of the scenario.
+            design: How points are made from the axes: `grid` (the default), `zip`, `latin_hypercube` or `sobol`; or
+                `list`, with `points`.
+            samples: Number of points of a design that draws.
+            seed: What such a design is drawn from; the same seed draws the same points, always.
+            points: The points of the design `list`, each with a value for every parameter; rows of a data frame do
+                (`frame.to_dict("records")`).
             name: A name for people.
             owner: Whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
@@ -83,6 +95,7 @@ class Client:
         Raises:
             InvalidRequest: With everything that is wrong with it, by field.
         """
+        fields |= _design(design, samples, seed, points)
         body = _request(preset, scenario, set, axes, name, owner, priority, fields)
         return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key))
 
@@ -109,9 +122,14 @@ class Client:
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
         axes: Mapping[str, Any] | None = None,
+        design: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
         **fields: Any,
     ) -> Plan:
         """What a sweep would become, without storing anything. Arguments are those of `submit`."""
+        fields |= _design(design, samples, seed, points)
         body = _request(preset, scenario, set, axes, None, None, None, fields)
         return Plan.from_json(self.post_json("/v1/sweeps", body, {"dry_run": "true"}))
 
@@ -178,6 +196,55 @@ class Client:
         file.write_bytes(response.content)
         return file
 
+    def download(self, path: str, file: str | Path, query: Mapping[str, Any]) -> Path:
+        """Writes what the service sends to a file, piece by piece; a transfer that breaks off leaves no file."""
+        file = Path(file)
+        part = file.with_name(file.name + ".part")
+        parameters = {name: value for name, value in query.items() if value is not None}
+        # Files are compressed as they are.
+        headers = {"accept-encoding": "identity"}
+        try:
+            with (
+                self._http.stream("GET", path, params=parameters, headers=headers) as response,
+                part.open("wb") as sink,
+            ):
+                if not response.is_success:
+                    response.read()
+                    raise problem(response.status_code, _problem_document(response))
+                for piece in response.iter_bytes():
+                    sink.write(piece)
+            part.replace(file)
+        except httpx.TransportError as error:
+            raise NoAnswer(f"the transfer from {self.server} broke off: {error}") from error
+        finally:
+            part.unlink(missing_ok=True)
+        return file
+
+    def events(self, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Names and data of a stream of server-sent events, until the server has nothing left to tell.
+
+        A stream that breaks off, as when the server is started anew, is taken up after the last event that came.
+        """
+        last: str | None = None
+        deadline = time.monotonic() + self.patience
+        while True:
+            headers = {"accept": "text/event-stream", **({} if last is None else {"last-event-id": last})}
+            try:
+                with self._http.stream("GET", path, headers=headers) as response:
+                    if response.status_code == 204:
+                        return
+                    if not response.is_success:
+                        response.read()
+                        raise problem(response.status_code, _problem_document(response))
+                    for fields in _event_fields(response.iter_lines()):
+                        last = fields.get("id", last)
+                        deadline = time.monotonic() + self.patience
+                        yield fields.get("event", "message"), json.loads(fields["data"])
+            except httpx.TransportError as error:
+                if time.monotonic() > deadline:
+                    raise NoAnswer(f"the events of {self.server} broke off: {error}") from error
+            time.sleep(_FIRST_PAUSE)
+
     def close(self) -> None:
         """Closes the connections."""
         self._http.close()
@@ -229,6 +296,32 @@ class Client:
                     raise problem(response.status_code, _problem_document(response), retry_after)
             time.sleep(wait)
             pause = min(2.0 * pause, _LONGEST_PAUSE)
+
+
+def _event_fields(lines: Iterator[str]) -> Iterator[dict[str, str]]:
+    """The fields of each event that has data (WHATWG HTML section 9.2.6); comments are left out."""
+    fields: dict[str, str] = {}
+    for line in lines:
+        name, _, value = line.partition(":")
+        if name:
+            value = value.removeprefix(" ")
+            fields[name] = f"{fields['data']}\n{value}" if name == "data" and "data" in fields else value
+        elif not line:
+            if "data" in fields:
+                yield fields
+            fields = {}
+
+
+def _design(
+    design: str | None,
+    samples: int | None,
+    seed: int | None,
+    points: Iterable[Mapping[str, SupportsFloat]] | None,
+) -> dict[str, Any]:
+    listed = None if points is None else [{name: float(value) for name, value in point.items()} for point in points]
+    if listed is not None and design is None:
+        design = "list"
+    return {"design": design, "samples": samples, "seed": seed, "points": listed}
 
 
 def _request(

@@ -9,16 +9,20 @@ from typing import Any, Literal, SupportsFloat
 
 @dataclass(frozen=True)
 class Range:
-    """`count` values from `start` to `stop`, both ends included and exact; the service forms them."""
+    """`count` values from `start` to `stop`, both ends included and exact; the service forms them.
+
+    Without a count it is the interval from which the designs `latin_hypercube` and `sobol` draw.
+    """
 
     start: float
     stop: float
-    count: int
+    count: int | None = None
     scale: Literal["linear", "log"] = "linear"
 
     def to_json(self) -> dict[str, Any]:
         """The range as the service takes it."""
-        return {"from": self.start, "to": self.stop, "count": self.count, "scale": self.scale}
+        axis = {"from": self.start, "to": self.stop, "count": self.count, "scale": self.scale}
+        return {name: value for name, value in axis.items() if value is not None}
 
 
 Axis = Range | Mapping[str, Any] | Iterable[SupportsFloat]

@@ -192,7 +192,7 @@ class Point:
         return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))
 
     def save(self, name: str, file: str | Path, **query: Any) -> Path:
-        """Writes a table to a file, in the format of its ending: .csv, .json, .parquet or what else the service has."""
+        """Writes a table to a file, in the format of its ending: .csv, .json, .parquet, .npz; pictures: .svg, .png."""
         return self._client.save(f"{self.path}/{name}", file, query)
 
     def _detail(self, name: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -178,6 +178,14 @@ class Sweep:
                 bar.close()
         return self
 
+    def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        """What happens to it from now on, as it happens, until every point is final.
+
+        Pairs of a name and data: `sweep` with the sweep as it stands, `point` with the `ordinals` of points that came
+        to a new `state` at a time `at`.
+        """
+        return self._client.events(f"{self.path}/events")
+
     def point(self, ordinal: int) -> Point:
         """One point, in full; the first is 1."""
         return Point(self._client, self._client.get_json(f"{self.path}/points/{ordinal}"))
@@ -198,6 +206,16 @@ class Sweep:
     def save_table(self, file: str | Path) -> Path:
         """Writes the table to a file, in the format of its ending: .csv, .json, .parquet."""
         return self._client.save(f"{self.path}/table", file, {})
+
+    def export(self, file: str | Path, tables: Sequence[str] | None = None) -> Path:
+        """Writes the whole sweep to one zip archive: request, table, and the tables of every point as Parquet.
+
+        Args:
+            file: The archive.
+            tables: Names of the tables of each point, such as `["profile", "history"]`; None means all.
+        """
+        names = None if tables is None else ",".join(tables)
+        return self._client.download(f"{self.path}/export", file, {"artifacts": names})
 
     def cancel(self) -> Sweep:
         """Cancels it: points that wait at once, points under way within a heartbeat of their worker."""

@@ -7,9 +7,12 @@
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
+pub mod chart;
 pub mod cost;
 pub mod dry_run;
+pub mod event;
 pub mod expand;
+pub mod npz;
 pub mod picture;
 pub mod point;
 pub mod preset;
@@ -23,8 +26,12 @@ pub mod view;
 
 pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint};
+pub use event::PointEvent;
 pub use expand::{Expansion, PointKey, SweepPoint, expand, key_text};
-pub use point::{FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow, PointState};
+pub use point::{
+    ArtifactEntry, ArtifactList, FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow,
+    PointState, SelectedPointList,
+};
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
 pub use request::{AxisName, Design, RunRequest, SweepRequest};

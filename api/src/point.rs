@@ -71,6 +71,46 @@ pub struct PointList {
     pub next: Option<String>,
 }
 
+/// A page of points, with the fields of each that were asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SelectedPointList {
+    /// The points, by ordinal.
+    pub points: Vec<Map<String, Value>>,
+    /// Cursor of the next page; absent on the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+}
+
+impl PointRow {
+    /// The fields of a row in a list.
+    pub const FIELDS: [&'static str; 7] =
+        ["ordinal", "state", "parameters", "progress", "attempts", "error", "links"];
+}
+
+/// The files of a point's result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ArtifactList {
+    /// One entry a file, by name.
+    pub artifacts: Vec<ArtifactEntry>,
+}
+
+/// One file of a point's result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ArtifactEntry {
+    /// Its name within the result.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Its size.
+    pub bytes: u64,
+    /// Rows of the table in it.
+    pub rows: u64,
+    /// BLAKE3 hash of its content, its `ETag`.
+    pub hash: String,
+    /// Where it is.
+    pub link: String,
+}
+
 /// Everything about one point but its tables.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PointDetail {

@@ -34,6 +34,8 @@ pub enum ProblemKind {
     NotAcceptable,
     /// The body is larger than the limit.
     BodyTooLarge,
+    /// None of the bytes asked for exist.
+    RangeNotSatisfiable,
     /// No such route.
     NoSuchRoute,
     /// The route exists, the method does not.
@@ -72,6 +74,7 @@ impl ProblemKind {
         ProblemKind::CrossSite,
         ProblemKind::NotAcceptable,
         ProblemKind::BodyTooLarge,
+        ProblemKind::RangeNotSatisfiable,
         ProblemKind::NoSuchRoute,
         ProblemKind::MethodNotAllowed,
         ProblemKind::NotFound,
@@ -120,6 +123,7 @@ impl ProblemKind {
             ProblemKind::CrossSite => ("cross-site", "Requests from other sites are refused", 403),
             ProblemKind::NotAcceptable => ("not-acceptable", "No acceptable format", 406),
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
+            ProblemKind::RangeNotSatisfiable => ("range-not-satisfiable", "No such bytes", 416),
             ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
             ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),
             ProblemKind::NotFound => ("not-found", "Not found", 404),

@@ -52,6 +52,17 @@ pub enum SweepState {
     Cancelled,
 }
 
+impl SweepState {
+    /// The name on the wire.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            SweepState::Running => "running",
+            SweepState::Completed => "completed",
+            SweepState::Cancelled => "cancelled",
+        }
+    }
+}
+
 /// Numbers of points by state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
 pub struct PointCounts {
@@ -79,6 +90,10 @@ pub struct SweepLinks {
     pub points: String,
     /// One row a point, with its summary.
     pub table: String,
+    /// A stream of events.
+    pub events: String,
+    /// Everything in one archive.
+    pub export: String,
     /// Cancels it (POST).
     pub cancel: String,
     /// Retries its failed and cancelled points (POST).
@@ -92,6 +107,8 @@ impl SweepLinks {
         SweepLinks {
             points: format!("{this}/points"),
             table: format!("{this}/table"),
+            events: format!("{this}/events"),
+            export: format!("{this}/export"),
             cancel: format!("{this}/cancel"),
             retry: format!("{this}/retry"),
             this,

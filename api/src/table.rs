@@ -75,6 +75,22 @@ impl Table {
         self
     }
 
+    /// The table of some columns, in the order in which they are named.
+    ///
+    /// # Errors
+    /// The name that is no column's.
+    pub fn select(&self, names: &[String]) -> Result<Table, String> {
+        let mut selected = Table { attributes: self.attributes.clone(), ..Table::default() };
+        for name in names {
+            let column = self.columns.get(name).ok_or_else(|| name.clone())?;
+            selected.push(name, column.clone());
+            if let Some(unit) = self.units.get(name) {
+                selected.units.insert(name.clone(), unit.clone());
+            }
+        }
+        Ok(selected)
+    }
+
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.columns.values().next().map_or(0, Column::len)

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use drillsweep_store::{Store, StoreError, TokensPresent};
 use tokio::net::TcpListener;
-use tokio::sync::watch;
+use tokio::sync::{Semaphore, watch};
 
 use crate::health::Readiness;
 use crate::limit::{OwnerLimits, RequestLimiter};
@@ -15,6 +15,9 @@ use crate::{maintenance, router};
 
 /// Where the service listens unless told otherwise: this machine only.
 pub const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 7340);
+
+/// Event streams that may be open at once; each looks at the store some times a second.
+pub(crate) const EVENT_STREAMS: usize = 1_000;
 
 /// How the service keeps house.
 #[derive(Debug, Clone)]
@@ -59,6 +62,8 @@ pub(crate) struct App {
     pub(crate) limiter: Arc<RequestLimiter>,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) readiness: Arc<Readiness>,
+    /// Places for event streams.
+    pub(crate) streams: Arc<Semaphore>,
 }
 
 impl App {
@@ -69,6 +74,7 @@ impl App {
             limiter: Arc::new(RequestLimiter::new(&config.owner_limits)),
             metrics: Arc::new(Metrics::new()),
             readiness: Arc::default(),
+            streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
             config: Arc::new(config),
         }
     }

@@ -1,10 +1,13 @@
 //! The tables that workers stored, as they are read back.
 
 use axum::body::Bytes;
+use drillsweep_api::chart::Hole;
 use drillsweep_api::view::node::{self, Choice};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::{Column, PointState, ProblemDetails, ProblemKind, Table};
-use drillsweep_store::{BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet};
+use drillsweep_store::{
+    Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
+};
 
 use crate::convert;
 use crate::error::{Error, Result};
@@ -16,18 +19,23 @@ pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Resu
 }
 
 async fn load_of(store: &Store, key: &WorkKey, name: &str) -> Result<Bytes> {
-    let artifacts = store.artifacts(key).await?;
-    let Some(artifact) = artifacts.iter().find(|artifact| artifact.name == name) else {
-        let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
-        let detail = format!("the run has no table {name}; it has {}", names.join(", "));
-        return Err(Error::new(ProblemKind::NoSuchTable, detail));
-    };
-    let blob: BlobId = artifact.blob.parse()?;
+    let blob: BlobId = find(store, key, name).await?.blob.parse()?;
     Ok(store.blobs().get(blob).await?)
 }
 
+/// Where a table of a result is.
+pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Artifact> {
+    let mut artifacts = store.artifacts(key).await?;
+    if let Some(index) = artifacts.iter().position(|artifact| artifact.name == name) {
+        return Ok(artifacts.swap_remove(index));
+    }
+    let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
+    let detail = format!("the run has no table {name}; it has {}", names.join(", "));
+    Err(Error::new(ProblemKind::NoSuchTable, detail))
+}
+
 /// The key of a point that has a result.
-async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
+pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
     let Some(point) = store.point(sweep, n.into()).await? else {
         return Err(convert::no_such_point(store, sweep, n).await?);
     };
@@ -116,6 +124,33 @@ impl Recording {
             _ => Err(Error::internal(&format!("a history without numbers in the column {name}"))),
         };
         Ok(NodeMotion { node, measured_depth, time: take("time")?, u: take(&u)?, v: take(&v)? })
+    }
+
+    /// How the hole stands about a node.
+    pub(crate) fn hole_at(&self, node: u32) -> Result<Hole> {
+        const COLUMNS: [&str; 5] =
+            ["node", "measured_depth", "true_vertical_depth", "clearance", "low_side_angle"];
+        /// Below this part of a hole's length gained in depth the low side is worth the name: 0.1 degrees.
+        const VERTICAL: f64 = 0.999_998_5;
+        let statics = decode(self.statics.clone(), Some(&COLUMNS))?;
+        let column = |name: &str| match statics.columns.get(name) {
+            Some(Column::Number(values)) => values.as_slice(),
+            _ => &[],
+        };
+        let Some(Column::Integer(nodes)) = statics.columns.get("node") else { return Ok(Hole::default()) };
+        let Some(row) = nodes.iter().position(|number| *number == Some(node.into())) else {
+            return Ok(Hole::default());
+        };
+        let value = |name: &str, row: usize| column(name).get(row).copied();
+        let (above, below) = (row.saturating_sub(1), (row + 1).min(nodes.len() - 1));
+        let gain = |name: &str| Some(value(name, below)? - value(name, above)?);
+        let is_inclined = gain("true_vertical_depth")
+            .zip(gain("measured_depth"))
+            .is_some_and(|(depth, length)| depth.abs() < VERTICAL * length);
+        Ok(Hole {
+            clearance: value("clearance", row),
+            low_side: value("low_side_angle", row).filter(|_| is_inclined),
+        })
     }
 
     /// The recorded nodes with their measured depths \[m\].

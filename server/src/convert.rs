@@ -6,6 +6,7 @@ use drillsweep_api::{
     ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, key_text,
 };
 use drillsweep_store::{NewPoint, NewSweep, PointRecord, Store, SweepRecord, TableRecord, WorkState};
+use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::de::DeserializeOwned;
 use serde_json::Map;
@@ -117,6 +118,11 @@ pub(crate) fn point_summary(record: &TableRecord) -> Result<PointSummary> {
         summary: record.summary_json.as_deref().map(read).transpose()?,
         error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
     })
+}
+
+/// The parameters of a point, by axis name.
+pub(crate) fn parameters(json: &str) -> Result<IndexMap<String, f64>> {
+    read(json)
 }
 
 /// The state of a point from that of the work behind it.

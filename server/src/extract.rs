@@ -154,6 +154,18 @@ pub(crate) mod value {
         }
     }
 
+    /// A whole number.
+    pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u64>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        text.parse().map(Some).map_err(|_| D::Error::custom("must be a whole number"))
+    }
+
+    /// Names separated by commas.
+    pub(crate) fn names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<String>>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Ok(Some(text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()))
+    }
+
     /// `true` or `false`.
     pub(crate) fn truth<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
         let text = String::deserialize(deserializer)?;

@@ -3,7 +3,9 @@
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::{Column, ProblemKind, Table};
+use drillsweep_api::chart::{PNG_WIDTH, no_such_column};
+use drillsweep_api::picture::Drawing;
+use drillsweep_api::{Column, ProblemDetails, ProblemKind, Table, npz};
 use drillsweep_store::{ColumnData, TableError, encode_parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
@@ -13,24 +15,95 @@ use crate::error::{Error, Result};
 /// The formats in which tables are served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Format {
+pub(crate) enum TableFormat {
     /// An object of columns.
     Json,
     /// One line a row, after a line of column names; a missing value is empty.
     Csv,
     /// Apache Parquet.
     Parquet,
+    /// NumPy's archive of arrays.
+    Npz,
+}
+
+/// The formats in which tables are served that can be shown as a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum PictureFormat {
+    /// An object of columns.
+    Json,
+    /// One line a row, after a line of column names; a missing value is empty.
+    Csv,
+    /// Apache Parquet.
+    Parquet,
+    /// NumPy's archive of arrays.
+    Npz,
+    /// A picture, as a drawing.
+    Svg,
+    /// A picture, as pixels.
+    Png,
+}
+
+/// A format to serve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    Json,
+    Csv,
+    Parquet,
+    Npz,
+    Svg,
+    Png,
+}
+
+/// What a query may ask for.
+pub(crate) trait Asked: Into<Format> {
+    /// Everything that it may ask for; on a tie `Accept` takes what comes first.
+    const OFFERED: &'static [Format];
+}
+
+impl Asked for TableFormat {
+    const OFFERED: &'static [Format] = &[Format::Json, Format::Csv, Format::Parquet, Format::Npz];
+}
+
+impl Asked for PictureFormat {
+    const OFFERED: &'static [Format] =
+        &[Format::Json, Format::Csv, Format::Parquet, Format::Npz, Format::Svg, Format::Png];
+}
+
+impl From<TableFormat> for Format {
+    fn from(format: TableFormat) -> Self {
+        match format {
+            TableFormat::Json => Format::Json,
+            TableFormat::Csv => Format::Csv,
+            TableFormat::Parquet => Format::Parquet,
+            TableFormat::Npz => Format::Npz,
+        }
+    }
+}
+
+impl From<PictureFormat> for Format {
+    fn from(format: PictureFormat) -> Self {
+        match format {
+            PictureFormat::Json => Format::Json,
+            PictureFormat::Csv => Format::Csv,
+            PictureFormat::Parquet => Format::Parquet,
+            PictureFormat::Npz => Format::Npz,
+            PictureFormat::Svg => Format::Svg,
+            PictureFormat::Png => Format::Png,
+        }
+    }
 }
 
 impl Format {
-    const ALL: [Format; 3] = [Format::Json, Format::Csv, Format::Parquet];
-
     /// The media type that the format is served as.
     pub(crate) fn media_type(self) -> &'static str {
         match self {
             Format::Json => "application/json",
             Format::Csv => "text/csv",
             Format::Parquet => "application/vnd.apache.parquet",
+            Format::Npz => "application/x-npz",
+            Format::Svg => "image/svg+xml",
+            Format::Png => "image/png",
         }
     }
 
@@ -39,13 +112,20 @@ impl Format {
             Format::Json => "json",
             Format::Csv => "csv",
             Format::Parquet => "parquet",
+            Format::Npz => "npz",
+            Format::Svg => "svg",
+            Format::Png => "png",
         }
     }
 
+    pub(crate) fn is_picture(self) -> bool {
+        matches!(self, Format::Svg | Format::Png)
+    }
+
     /// The format to serve: `?format=` if given, else the best that `Accept` allows, else JSON.
-    pub(crate) fn choose(asked: Option<Format>, headers: &HeaderMap) -> Result<Format> {
+    pub(crate) fn choose<A: Asked>(asked: Option<A>, headers: &HeaderMap) -> Result<Format> {
         if let Some(format) = asked {
-            return Ok(format);
+            return Ok(format.into());
         }
         let accepted: Vec<&str> =
             headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok()).collect();
@@ -53,19 +133,17 @@ impl Format {
             return Ok(Format::Json);
         }
         let accepted = accepted.join(",");
-        best(&accepted).ok_or_else(|| {
-            let offered = Format::ALL.map(Format::media_type).join(", ");
-            Error::new(
-                ProblemKind::NotAcceptable,
-                format!("tables are served as {offered}, not as {accepted}"),
-            )
+        best(&accepted, A::OFFERED).ok_or_else(|| {
+            let offered: Vec<_> = A::OFFERED.iter().map(|format| format.media_type()).collect();
+            let detail = format!("this is served as {}, not as {accepted}", offered.join(", "));
+            Error::new(ProblemKind::NotAcceptable, detail)
         })
     }
 }
 
 /// The format with the greatest weight in an `Accept` header (RFC 9110 section 12.5.1); on a tie, the one
-/// that JSON, CSV, Parquet names first. A media range that is more specific overrides one that is less.
-fn best(accept: &str) -> Option<Format> {
+/// that is offered first. A media range that is more specific overrides one that is less.
+fn best(accept: &str, offered: &[Format]) -> Option<Format> {
     let weight = |format: Format| {
         let media_type = format.media_type();
         let family = media_type.split('/').next().unwrap_or_default();
@@ -89,20 +167,49 @@ fn best(accept: &str) -> Option<Format> {
     };
     let mut chosen = None;
     let mut greatest = 0.0;
-    for format in Format::ALL {
-        if weight(format) > greatest {
-            (chosen, greatest) = (Some(format), weight(format));
+    for format in offered {
+        if weight(*format) > greatest {
+            (chosen, greatest) = (Some(*format), weight(*format));
         }
     }
     chosen
 }
 
-/// A table in a format, as a file called `name` for those who save it.
-pub(crate) fn respond(table: &Table, format: Format, name: &str) -> Result<Response> {
+/// A table, or some columns of it, in a format that is no picture, as a file called `name` for those who save it.
+pub(crate) fn respond(
+    table: &Table,
+    fields: Option<&[String]>,
+    format: Format,
+    name: &str,
+) -> Result<Response> {
+    respond_or_draw(table, fields, format, name, |_| {
+        Err(Box::new(ProblemDetails::new(ProblemKind::NotAcceptable, "there is no picture of this")))
+    })
+}
+
+/// The same; a picture is drawn by `draw` from the whole table.
+pub(crate) fn respond_or_draw(
+    table: &Table,
+    fields: Option<&[String]>,
+    format: Format,
+    name: &str,
+    draw: impl FnOnce(&Table) -> Result<Drawing, Box<ProblemDetails>>,
+) -> Result<Response> {
+    let selected;
+    let table = match fields.filter(|_| !format.is_picture()) {
+        None => table,
+        Some(fields) => {
+            selected = table.select(fields).map_err(|missing| no_such_column(table, &missing))?;
+            &selected
+        }
+    };
     let body = match format {
         Format::Json => serde_json::to_vec(table).map_err(|error| Error::internal(&error))?,
         Format::Csv => table.csv().into_bytes(),
         Format::Parquet => parquet(table)?,
+        Format::Npz => npz::npz(table).map_err(|error| Error::internal(&error))?,
+        Format::Svg => draw(table)?.svg().into_bytes(),
+        Format::Png => draw(table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
     };
     Ok(file(body, format, name))
 }
@@ -158,8 +265,10 @@ mod tests {
             ("APPLICATION/VND.APACHE.PARQUET", Some(Format::Parquet)),
             ("image/png", None),
             ("application/json;q=0", None),
+            ("application/x-npz", Some(Format::Npz)),
         ] {
-            assert_eq!(best(accept), format, "{accept}");
+            assert_eq!(best(accept, TableFormat::OFFERED), format, "{accept}");
         }
+        assert_eq!(best("image/*", PictureFormat::OFFERED), Some(Format::Svg));
     }
 }

@@ -18,7 +18,7 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::{Registry, Unit};
 
-use crate::app::App;
+use crate::app::{App, EVENT_STREAMS};
 use crate::error::{Error, Result};
 
 /// The media type of what [`encode`] writes.
@@ -31,6 +31,7 @@ const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1
 pub(crate) struct Metrics {
     registry: Mutex<Registry>,
     requests: Family<RequestLabels, Histogram>,
+    streams: Gauge,
     pub(crate) expired_leases: Counter,
     census: CensusGauges,
 }
@@ -65,7 +66,9 @@ impl Metrics {
         let mut registry = Registry::with_prefix("drillsweep");
         let requests =
             Family::<RequestLabels, Histogram>::new_with_constructor(|| Histogram::new(REQUEST_SECONDS));
-        let (expired_leases, census) = (Counter::default(), CensusGauges::default());
+        let (streams, expired_leases, census) =
+            (Gauge::default(), Counter::default(), CensusGauges::default());
+        registry.register("event_streams", "Event streams that are open", streams.clone());
         registry.register_with_unit(
             "http_request_duration",
             "Time from a request's headers to its answer's headers, by route",
@@ -78,7 +81,7 @@ impl Metrics {
             expired_leases.clone(),
         );
         census.register(&mut registry);
-        Metrics { registry: Mutex::new(registry), requests, expired_leases, census }
+        Metrics { registry: Mutex::new(registry), requests, streams, expired_leases, census }
     }
 
     fn text(&self, census: &Census) -> Result<String> {
@@ -174,6 +177,7 @@ pub(crate) fn router(app: App) -> Router {
 async fn show(State(app): State<App>) -> Response {
     let answer = async {
         let census = app.store.census(crate::status::WORKER_SILENCE).await?;
+        app.metrics.streams.set((EVENT_STREAMS - app.streams.available_permits()) as i64);
         app.metrics.text(&census)
     };
     match answer.await {

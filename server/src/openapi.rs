@@ -5,12 +5,14 @@ use std::sync::LazyLock;
 
 use axum::http::header;
 use axum::response::IntoResponse;
-use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemDetails, Table};
+use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList, Table};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
-use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type};
+use utoipa::openapi::{
+    ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type, schema::AnyOfBuilder,
+};
 use utoipa::{IntoResponses, Modify, OpenApi, ToSchema};
 
-use crate::format::Format;
+use crate::format::{Asked, Format, PictureFormat, TableFormat};
 use crate::router;
 
 /// What the document says about the service as a whole; the routes add themselves.
@@ -23,7 +25,7 @@ use crate::router;
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
-    components(schemas(ProblemDetails, Table)),
+    components(schemas(ProblemDetails, Table, PointEvent, PointList, SelectedPointList)),
     modifiers(&TokenSecurity),
     security(("token" = []), ()),
     tags(
@@ -68,23 +70,56 @@ impl IntoResponses for Problems {
 /// A table in the format that was asked for.
 pub(crate) struct TableResponse;
 
+/// A table in the format that was asked for, or its picture.
+pub(crate) struct PictureResponse;
+
 impl IntoResponses for TableResponse {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
-        let file = |format: Format, description| {
-            let text = ObjectBuilder::new().schema_type(Type::String).description(Some(description));
-            let schema = Schema::Object(text.content_media_type(format.media_type()).build());
-            (format.media_type(), ContentBuilder::new().schema(Some(schema)).build())
+        table_responses(TableFormat::OFFERED)
+    }
+}
+
+impl IntoResponses for PictureResponse {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        table_responses(PictureFormat::OFFERED)
+    }
+}
+
+fn table_responses(formats: &[Format]) -> BTreeMap<String, RefOr<Response>> {
+    let mut response = ResponseBuilder::new().description("The table");
+    for format in formats {
+        let description = match format {
+            Format::Json => None,
+            Format::Csv => Some("A line of column names, then a line a row; a missing value is empty."),
+            Format::Parquet => Some("Apache Parquet; a missing number is NaN, a missing text empty."),
+            Format::Npz => Some("An array a column, as `numpy.load` reads it; a missing number is NaN."),
+            Format::Svg => Some("A picture, as a drawing."),
+            Format::Png => Some("A picture, as pixels."),
         };
-        let json = ContentBuilder::new().schema(Some(reference::<Table>())).build();
-        let (csv, csv_content) =
-            file(Format::Csv, "A line of column names, then a line a row; a missing value is empty.");
-        let (parquet, parquet_content) =
-            file(Format::Parquet, "Apache Parquet; a missing number is NaN, a missing text empty.");
+        let content = match description {
+            None => ContentBuilder::new().schema(Some(reference::<Table>())),
+            Some(description) => {
+                let text = ObjectBuilder::new().schema_type(Type::String).description(Some(description));
+                let schema = Schema::Object(text.content_media_type(format.media_type()).build());
+                ContentBuilder::new().schema(Some(schema))
+            }
+        };
+        response = response.content(format.media_type(), content.build());
+    }
+    [("200".to_owned(), response.build().into())].into()
+}
+
+/// A page of points, whole or in the fields that were asked for.
+pub(crate) struct PointPageResponse;
+
+impl IntoResponses for PointPageResponse {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let either =
+            AnyOfBuilder::new().item(reference::<PointList>()).item(reference::<SelectedPointList>());
+        let content = ContentBuilder::new().schema(Some(Schema::AnyOf(either.build()))).build();
         let response = ResponseBuilder::new()
-            .description("The table")
-            .content(Format::Json.media_type(), json)
-            .content(csv, csv_content)
-            .content(parquet, parquet_content);
+            .description("A page of points; with `fields`, these of each")
+            .content(Format::Json.media_type(), content);
         [("200".to_owned(), response.build().into())].into()
     }
 }

@@ -2,15 +2,17 @@
 
 use axum::Json;
 use axum::extract::State;
-use drillsweep_api::{PointDetail, PointList, PointState};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::{PointDetail, PointList, PointRow, PointState, SelectedPointList};
 use serde::Deserialize;
+use serde_json::{Map, Value};
 use utoipa::IntoParams;
 
 use crate::app::App;
 use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{self, Path, Query, value};
-use crate::openapi::Problems;
+use crate::openapi::{PointPageResponse, Problems};
 use crate::results::PointPath;
 
 /// Which points are listed.
@@ -27,6 +29,10 @@ pub(crate) struct ListQuery {
     limit: Option<u32>,
     /// `next` of the page before.
     cursor: Option<String>,
+    /// Only these fields of each point, separated by commas.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>, example = "ordinal,state")]
+    fields: Option<Vec<String>>,
 }
 
 /// The points of a sweep, in order
@@ -36,14 +42,20 @@ pub(crate) struct ListQuery {
     tag = "points",
     operation_id = "list_points",
     params(("id" = String, Path, description = "Identifier of the sweep"), ListQuery),
-    responses((status = 200, description = "A page of points", body = PointList), Problems)
+    responses(PointPageResponse, Problems)
 )]
 pub(crate) async fn list(
     State(app): State<App>,
     Path(id): Path<String>,
     Query(query): Query<ListQuery>,
-) -> Result<Json<PointList>> {
+) -> Result<Response> {
     let limit = extract::page_size(query.limit)?;
+    if let Some(unknown) =
+        query.fields.iter().flatten().find(|name| !PointRow::FIELDS.contains(&name.as_str()))
+    {
+        let detail = format!("must be some of {}", PointRow::FIELDS.join(", "));
+        return Err(Error::parameter("fields", Some(unknown), detail));
+    }
     let after = match &query.cursor {
         None => 0,
         Some(cursor) => cursor
@@ -59,8 +71,24 @@ pub(crate) async fn list(
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.ordinal.to_string());
-    let points = records.iter().map(|record| convert::point_row(&id, record)).collect::<Result<_>>()?;
-    Ok(Json(PointList { points, next }))
+    let points: Vec<PointRow> =
+        records.iter().map(|record| convert::point_row(&id, record)).collect::<Result<_>>()?;
+    match query.fields {
+        None => Ok(Json(PointList { points, next }).into_response()),
+        Some(fields) => {
+            let points = points.iter().map(|row| select(row, &fields)).collect::<Result<_>>()?;
+            Ok(Json(SelectedPointList { points, next }).into_response())
+        }
+    }
+}
+
+fn select(row: &PointRow, fields: &[String]) -> Result<Map<String, Value>> {
+    let mut whole = match serde_json::to_value(row) {
+        Ok(Value::Object(fields)) => fields,
+        Ok(_) => Map::new(),
+        Err(error) => return Err(Error::internal(&error)),
+    };
+    Ok(fields.iter().filter_map(|name| Some((name.clone(), whole.remove(name)?))).collect())
 }
 
 /// One point: state, parameters, summary, provenance

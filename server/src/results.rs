@@ -3,16 +3,20 @@
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
+use drillsweep_api::chart;
 use drillsweep_api::view::{history, node, orbit, spectrum};
+use drillsweep_store::Store;
+use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
 use crate::app::App;
 use crate::artifact::{self, Recording};
+use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{Path, Query, value};
-use crate::format::{self, Format};
-use crate::openapi::{Problems, TableResponse};
+use crate::format::{self, Format, PictureFormat, TableFormat};
+use crate::openapi::{PictureResponse, Problems, TableResponse};
 use crate::work::blocking;
 
 /// Which point's result.
@@ -33,28 +37,59 @@ pub(crate) struct PointPath {
 pub(crate) struct TableQuery {
     /// Format of the table; absent means that `Accept` decides.
     #[param(inline)]
-    pub(crate) format: Option<Format>,
+    pub(crate) format: Option<TableFormat>,
+    /// Only these columns, separated by commas.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    pub(crate) fields: Option<Vec<String>>,
+}
+
+/// How a table is served that can be shown as a picture.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PictureQuery {
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
+    #[param(inline)]
+    pub(crate) format: Option<PictureFormat>,
+    /// Only these columns, separated by commas; of a picture, what it shows.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    pub(crate) fields: Option<Vec<String>>,
 }
 
 /// Geometry, hydraulics and forces of every element
 ///
 /// Eccentricity, friction coefficient C_f, apparent viscosity, flow regime, pressures, tension and torque at
-/// the equilibrium, from the top down.
+/// the equilibrium, from the top down. A picture shows C_f, or the `fields`, over depth.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/profile",
     tag = "points",
     operation_id = "get_profile",
-    params(PointPath, TableQuery),
-    responses(TableResponse, Problems)
+    params(PointPath, PictureQuery),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn profile(
-    app: State<App>,
-    path: Path<PointPath>,
-    query: Query<TableQuery>,
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(PictureQuery { format, fields }): Query<PictureQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    whole_table("profile", app, path, query, headers).await
+    let format = Format::choose(format, &headers)?;
+    let parquet = artifact::load(&app.store, &id, n, "profile").await?;
+    let file_name = file_name(&id, n, "profile");
+    if format == Format::Parquet && fields.is_none() {
+        return Ok(format::file(parquet, format, &file_name));
+    }
+    let title = caption(&app.store, &id, n, "Profile").await?;
+    blocking(move || {
+        let (table, fields) = (artifact::decode(parquet, None)?, fields.as_deref());
+        format::respond_or_draw(&table, fields, format, &file_name, |table| {
+            chart::profile(table, fields, &title)
+        })
+    })
+    .await
 }
 
 /// The static equilibrium, node by node
@@ -122,10 +157,13 @@ async fn whole_table(
     let format = Format::choose(query.format, &headers)?;
     let parquet = artifact::load(&app.store, &id, n, name).await?;
     let file_name = file_name(&id, n, name);
-    if format == Format::Parquet {
+    if format == Format::Parquet && query.fields.is_none() {
         return Ok(format::file(parquet, format, &file_name));
     }
-    blocking(move || format::respond(&artifact::decode(parquet, None)?, format, &file_name)).await
+    blocking(move || {
+        format::respond(&artifact::decode(parquet, None)?, query.fields.as_deref(), format, &file_name)
+    })
+    .await
 }
 
 /// Which part of the recorded histories is wanted.
@@ -150,9 +188,13 @@ pub(crate) struct HistoryQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
     max_points: Option<u32>,
-    /// Format of the table; absent means that `Accept` decides.
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
-    format: Option<Format>,
+    format: Option<PictureFormat>,
+    /// Only these columns, separated by commas; of a picture, what it shows.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    fields: Option<Vec<String>>,
 }
 
 impl HistoryQuery {
@@ -162,6 +204,7 @@ impl HistoryQuery {
             && self.from.is_none()
             && self.to.is_none()
             && self.max_points.is_none()
+            && self.fields.is_none()
     }
 }
 
@@ -174,7 +217,7 @@ impl HistoryQuery {
     tag = "points",
     operation_id = "get_history",
     params(PointPath, HistoryQuery),
-    responses(TableResponse, Problems)
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn history(
     State(app): State<App>,
@@ -194,13 +237,18 @@ pub(crate) async fn history(
         return Ok(format::file(parquet, format, &file_name));
     }
     let recording = Recording::load(&app.store, &id, n).await?;
+    let title = caption(&app.store, &id, n, "History").await?;
     blocking(move || {
         let table = match choice {
             None => recording.table()?,
             Some(choice) => recording.table_of(choice)?,
         };
         let max_points = query.max_points.map(|points| points as usize);
-        format::respond(&history::history(table, query.from, query.to, max_points), format, &file_name)
+        let table = history::history(table, query.from, query.to, max_points);
+        let fields = query.fields.as_deref();
+        format::respond_or_draw(&table, fields, format, &file_name, |table| {
+            chart::history(table, fields, &title)
+        })
     })
     .await
 }
@@ -228,9 +276,9 @@ pub(crate) struct OrbitQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 4)]
     max_points: Option<u32>,
-    /// Format of the table; absent means that `Accept` decides.
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
-    format: Option<Format>,
+    format: Option<PictureFormat>,
 }
 
 /// The path of one node across the hole
@@ -243,7 +291,7 @@ pub(crate) struct OrbitQuery {
     tag = "points",
     operation_id = "get_orbit",
     params(PointPath, OrbitQuery),
-    responses(TableResponse, Problems)
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn orbit(
     State(app): State<App>,
@@ -260,10 +308,13 @@ pub(crate) async fn orbit(
         return Err(Error::parameter("max_points", Some(&points.to_string()), detail));
     }
     let recording = Recording::load(&app.store, &id, n).await?;
+    let title = caption(&app.store, &id, n, "Orbit").await?;
     blocking(move || {
         let motion = recording.motion_of(choice)?;
         let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
-        format::respond(&table, format, &file_name(&id, n, &format!("orbit-{}", motion.node)))
+        let hole = recording.hole_at(motion.node)?;
+        let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
+        format::respond_or_draw(&table, None, format, &file_name, |table| chart::orbit(table, &hole, &title))
     })
     .await
 }
@@ -298,9 +349,9 @@ pub(crate) struct SpectrumQuery {
     #[serde(default = "default_peaks", deserialize_with = "peaks")]
     #[param(default = 10)]
     peaks: usize,
-    /// Format of the table; absent means that `Accept` decides.
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
-    format: Option<Format>,
+    format: Option<PictureFormat>,
 }
 
 fn default_range() -> f64 {
@@ -332,7 +383,7 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
     tag = "points",
     operation_id = "get_spectrum",
     params(PointPath, SpectrumQuery),
-    responses(TableResponse, Problems)
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn spectrum(
     State(app): State<App>,
@@ -344,15 +395,14 @@ pub(crate) async fn spectrum(
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth)?;
     let recording = Recording::load(&app.store, &id, n).await?;
+    let title = caption(&app.store, &id, n, "Full spectrum").await?;
     blocking(move || {
         let motion = recording.motion_of(choice)?;
         let part = motion.columns().window(query.from, query.to);
         let spectrum = spectrum::spectrum(&part, query.window, query.range_hz, query.peaks)?;
-        format::respond(
-            &motion.label(spectrum),
-            format,
-            &file_name(&id, n, &format!("spectrum-{}", motion.node)),
-        )
+        let (table, file_name) =
+            (motion.label(spectrum), file_name(&id, n, &format!("spectrum-{}", motion.node)));
+        format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
     })
     .await
 }
@@ -364,6 +414,15 @@ fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// The title of a picture: what it shows of which point.
+async fn caption(store: &Store, id: &str, n: u32, what: &str) -> Result<String> {
+    let parameters = match store.point(id, n.into()).await? {
+        Some(point) => convert::parameters(&point.parameters_json)?,
+        None => IndexMap::new(),
+    };
+    Ok(chart::caption(what, &parameters))
 }
 
 fn file_name(id: &str, n: u32, what: &str) -> String {

@@ -10,7 +10,9 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 
 use crate::app::{App, Config};
 use crate::error::Error;
-use crate::{cost, health, middleware, openapi, points, results, scenarios, status, sweeps};
+use crate::{
+    cost, events, export, files, health, middleware, openapi, points, results, scenarios, status, sweeps,
+};
 
 /// The service without the network. `stopping` ends long polls when it turns true.
 pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
@@ -34,9 +36,13 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::cancel))
         .routes(routes!(sweeps::retry))
         .routes(routes!(sweeps::table))
+        .routes(routes!(events::follow))
+        .routes(routes!(export::export))
         .routes(routes!(sweeps::create_run))
         .routes(routes!(points::list))
         .routes(routes!(points::show))
+        .routes(routes!(files::list))
+        .routes(routes!(files::show))
         .routes(routes!(results::profile))
         .routes(routes!(results::statics))
         .routes(routes!(results::history))

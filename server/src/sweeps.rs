@@ -7,11 +7,12 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
+use drillsweep_api::chart;
 use drillsweep_api::view::points;
 use drillsweep_api::{
-    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, expand,
+    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, SweepState, expand,
 };
-use drillsweep_store::SubmitOutcome;
+use drillsweep_store::{SubmitOutcome, SweepFilter};
 use serde::Deserialize;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
@@ -23,15 +24,15 @@ use crate::error::{Error, Result};
 use crate::extract::{self, Path, Query, value};
 use crate::format::{self, Format};
 use crate::limit;
-use crate::openapi::{Problems, TableResponse};
-use crate::results::TableQuery;
+use crate::openapi::{PictureResponse, Problems};
+use crate::results::PictureQuery;
 use crate::status::WORKER_SILENCE;
 use crate::work::blocking;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
 /// How often a long poll looks for progress within points; workers report it every 20 s.
-const PROGRESS_INTERVAL: Duration = Duration::from_secs(2);
+pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_secs(2);
 
 /// How a submission is meant.
 #[derive(Deserialize, IntoParams)]
@@ -166,6 +167,11 @@ pub(crate) struct ListQuery {
     cursor: Option<String>,
     /// Only sweeps of this owner.
     owner: Option<String>,
+    /// Only sweeps in this state.
+    #[param(inline)]
+    state: Option<SweepState>,
+    /// Only sweeps with this text in their name, in whatever case.
+    name: Option<String>,
 }
 
 /// The sweeps, newest first
@@ -180,8 +186,12 @@ pub(crate) struct ListQuery {
 pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
     let limit = extract::page_size(query.limit)?;
     // One more than asked for tells whether there is a next page.
-    let (owner, before) = (query.owner.as_deref(), query.cursor.as_deref());
-    let mut records = app.store.sweeps(owner, before, i64::from(limit) + 1).await?;
+    let filter = SweepFilter {
+        owner: query.owner.as_deref(),
+        state: query.state.map(SweepState::as_str),
+        name: query.name.as_deref(),
+    };
+    let mut records = app.store.sweeps(&filter, query.cursor.as_deref(), i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.id.clone());
@@ -189,7 +199,7 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
     Ok(Json(SweepList { sweeps, next }))
 }
 
-async fn load(app: &App, id: &str) -> Result<Sweep> {
+pub(crate) async fn load(app: &App, id: &str) -> Result<Sweep> {
     match app.store.sweep(id).await? {
         Some(record) => convert::sweep_with_request(&record),
         None => Err(convert::no_such_sweep(id)),
@@ -305,29 +315,32 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
 
 /// One row a point: its parameters and the scalars of its result
 ///
-/// Points without a result have their row too, with empty fields; `state` and `error` say why.
+/// Points without a result have their row too, with empty fields; `state` and `error` say why. A picture shows the
+/// columns in `fields` over the parameters that vary: lines over one of them, a map of the first column over two.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/table",
     tag = "sweeps",
     operation_id = "get_sweep_table",
-    params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery),
-    responses(TableResponse, Problems)
+    params(("id" = String, Path, description = "Identifier of the sweep"), PictureQuery),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
-    Query(query): Query<TableQuery>,
+    Query(PictureQuery { format, fields }): Query<PictureQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
-    if app.store.sweep_version(&id).await?.is_none() {
-        return Err(convert::no_such_sweep(&id));
-    }
+    let format = Format::choose(format, &headers)?;
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(convert::no_such_sweep(&id)) };
     let records = app.store.table_rows(&id).await?;
     blocking(move || {
         let rows: Vec<_> = records.iter().map(convert::point_summary).collect::<Result<_>>()?;
-        format::respond(&points::points(&rows), format, &format!("sweep-{id}"))
+        let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
+        let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
+        format::respond_or_draw(&points::points(&rows), fields, format, &format!("sweep-{id}"), |table| {
+            chart::sweep(table, &parameters, fields, title)
+        })
     })
     .await
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// A change of a work item that a sweep has among its points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
     /// The sweep's version after the change: it rises, with gaps where the sweep itself changed.
     pub seq: i64,
@@ -13,6 +13,8 @@ pub struct Event {
     pub state: WorkState,
     /// The work item.
     pub work_key: WorkKey,
+    /// Numbers of the points of the sweep that have it, from 1.
+    pub ordinals: Vec<u32>,
     /// When it happened \[ms since the epoch\].
     pub at: i64,
 }
@@ -23,8 +25,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
-        let rows: Vec<(i64, String, Vec<u8>, i64)> = sqlx::query_as(
-            "SELECT seq, kind, work_key, at FROM event WHERE sweep_id = ?1 AND seq > ?2 ORDER BY seq LIMIT ?3",
+        let rows: Vec<(i64, String, Vec<u8>, i64, Option<String>)> = sqlx::query_as(
+            "SELECT seq, kind, work_key, at,
+                    (SELECT group_concat(p.ordinal) FROM point p
+                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id)
+             FROM event WHERE sweep_id = ?1 AND seq > ?2 ORDER BY seq LIMIT ?3",
         )
         .bind(sweep_id)
         .bind(after)
@@ -32,8 +37,14 @@ impl Store {
         .fetch_all(&self.pool)
         .await?;
         rows.into_iter()
-            .map(|(seq, kind, key, at)| {
-                Ok(Event { seq, state: WorkState::parse(&kind)?, work_key: work_key(&key)?, at })
+            .map(|(seq, kind, key, at, ordinals)| {
+                let mut ordinals: Vec<u32> = ordinals
+                    .iter()
+                    .flat_map(|list| list.split(','))
+                    .filter_map(|number| number.parse().ok())
+                    .collect();
+                ordinals.sort_unstable();
+                Ok(Event { seq, state: WorkState::parse(&kind)?, work_key: work_key(&key)?, ordinals, at })
             })
             .collect()
     }

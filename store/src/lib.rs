@@ -31,7 +31,7 @@ pub use point::{Artifact, PointRecord, TableRecord};
 pub use queue::{Claim, FailureClass, Lease, NewArtifact, QueueDepths, Renewal};
 pub use state::{StateCounts, WorkKey, WorkState};
 pub use submit::{NewPoint, NewSweep, SubmitOutcome};
-pub use sweep::SweepRecord;
+pub use sweep::{SweepFilter, SweepRecord};
 pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};
 pub use token::{NewToken, TokenRecord, TokenScope, TokenSecret, TokensPresent};
 pub use worker::WorkerRecord;

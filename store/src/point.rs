@@ -151,6 +151,41 @@ impl Store {
             .collect()
     }
 
+    /// Points of a sweep after the ordinal `after` that have artifacts, with these, in order; `limit` points at most.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn point_artifacts(
+        &self,
+        sweep_id: &str,
+        after: i64,
+        limit: i64,
+    ) -> Result<Vec<(i64, Vec<Artifact>)>> {
+        #[derive(FromRow)]
+        struct Row {
+            ordinal: i64,
+            #[sqlx(flatten)]
+            artifact: Artifact,
+        }
+        let rows: Vec<Row> = sqlx::query_as(
+            "SELECT p.ordinal, a.name, a.media_type, a.blob, a.bytes, a.row_count
+             FROM (SELECT ordinal, work_key FROM point
+                   WHERE sweep_id = ?1 AND ordinal > ?2
+                     AND EXISTS (SELECT 1 FROM artifact WHERE artifact.work_key = point.work_key)
+                   ORDER BY ordinal LIMIT ?3) AS p
+             JOIN artifact a ON a.work_key = p.work_key
+             ORDER BY p.ordinal, a.name",
+        )
+        .bind(sweep_id)
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        let of_point =
+            |rows: &[Row]| (rows[0].ordinal, rows.iter().map(|row| row.artifact.clone()).collect());
+        Ok(rows.chunk_by(|a, b| a.ordinal == b.ordinal).map(of_point).collect())
+    }
+
     /// Artifacts of a result, by name; none before it is there.
     ///
     /// # Errors

@@ -34,6 +34,17 @@ pub struct SweepRecord {
     pub progress: f64,
 }
 
+/// Which sweeps are listed; what is absent lets all through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SweepFilter<'a> {
+    /// Of this owner.
+    pub owner: Option<&'a str>,
+    /// In this state: `running`, `completed` or `cancelled`.
+    pub state: Option<&'a str>,
+    /// With this text in their name, in whatever case of ASCII letters.
+    pub name: Option<&'a str>,
+}
+
 #[derive(FromRow)]
 struct SweepRow {
     id: String,
@@ -81,22 +92,29 @@ impl Store {
         Ok(row.map(SweepRow::record))
     }
 
-    /// Sweeps, newest first, of one owner or of all, before the sweep `before`.
+    /// Sweeps, newest first, those that the filter lets through, before the sweep `before`.
     ///
     /// # Errors
     /// When the database fails.
     pub async fn sweeps(
         &self,
-        owner: Option<&str>,
+        filter: &SweepFilter<'_>,
         before: Option<&str>,
         limit: i64,
     ) -> Result<Vec<SweepRecord>> {
         let rows: Vec<SweepRow> = sqlx::query_as(select_sweeps!(
-            "WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2) ORDER BY id DESC LIMIT ?3"
+            "WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
+               AND (?4 IS NULL OR ?4 = CASE WHEN cancelled <> 0 THEN 'cancelled'
+                                            WHEN finished IS NOT NULL THEN 'completed'
+                                            ELSE 'running' END)
+               AND (?5 IS NULL OR instr(lower(name), lower(?5)) > 0)
+             ORDER BY id DESC LIMIT ?3"
         ))
-        .bind(owner)
+        .bind(filter.owner)
         .bind(before)
         .bind(limit)
+        .bind(filter.state)
+        .bind(filter.name)
         .fetch_all(&self.pool)
         .await?;
         Ok(rows.into_iter().map(SweepRow::record).collect())

@@ -16,6 +16,8 @@ pub struct PlotAxis {
     /// The ends: decimal logarithms of values if the scale is logarithmic, else the values.
     low: f64,
     high: f64,
+    /// Whether it runs from its high end to its low one.
+    is_flipped: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +55,35 @@ impl PlotAxis {
         Some(Self::around(Scale::Linear, f64::midpoint(low, high), span))
     }
 
+    /// A linear axis from the least to the greatest of the values that are finite, without room at the ends. None if
+    /// no value is finite.
+    pub fn tight(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let (low, high) = extent(values.into_iter().filter_map(|value| Scale::Linear.coordinate(value)))?;
+        Self::between(low, high).or_else(|| Self::linear([low]))
+    }
+
+    /// A linear axis from zero to somewhat above the greatest of the values that are finite. None if no value is.
+    pub fn from_zero(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let (_, high) = extent(values.into_iter().filter_map(|value| Scale::Linear.coordinate(value)))?;
+        Self::between(0.0, high * (1.0 + 2.0 * PADDING)).or_else(|| Self::between(0.0, 1.0))
+    }
+
+    /// A linear axis from end to end. None if the ends are not finite, or have no values between them to tell apart.
+    pub fn between(low: f64, high: f64) -> Option<Self> {
+        let (low, high) = (Scale::Linear.coordinate(low)?, Scale::Linear.coordinate(high)?);
+        let magnitude = low.abs().max(high.abs());
+        let is_long_enough = high - low > magnitude * 1e-9 && magnitude >= 1.0 / LARGEST;
+        is_long_enough.then_some(Self { scale: Scale::Linear, low, high, is_flipped: false })
+    }
+
+    /// The same axis from its high end to its low one, as for depth.
+    #[must_use]
+    pub fn downwards(self) -> Self {
+        Self { is_flipped: true, ..self }
+    }
+
     fn around(scale: Scale, middle: f64, span: f64) -> Self {
-        Self { scale, low: middle - span / 2.0, high: middle + span / 2.0 }
+        Self { scale, low: middle - span / 2.0, high: middle + span / 2.0, is_flipped: false }
     }
 
     /// The place of a value along the axis: 0 is the low end, 1 the high end; values beyond an end lie
@@ -74,7 +103,8 @@ impl PlotAxis {
     }
 
     fn fraction_of_coordinate(&self, coordinate: f64) -> f64 {
-        (coordinate - self.low) / (self.high - self.low)
+        let fraction = (coordinate - self.low) / (self.high - self.low);
+        if self.is_flipped { 1.0 - fraction } else { fraction }
     }
 
     fn logarithmic_ticks(&self) -> Vec<Tick> {
@@ -136,6 +166,21 @@ impl Scale {
             Scale::Linear => value.is_finite().then(|| value.clamp(-LARGEST, LARGEST)),
         }
     }
+}
+
+/// A value in three digits: plain where that is short, else in powers of ten.
+pub(crate) fn three_digits(value: f64) -> String {
+    let magnitude = value.abs();
+    let text = if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&magnitude) {
+        let decimals = (2.0 - magnitude.log10().floor()).max(0.0) as usize;
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        scientific(value, 2)
+    };
+    text.replace('-', "−")
 }
 
 fn extent(coordinates: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
@@ -264,6 +309,35 @@ mod tests {
                 let wasteful = labelled.iter().all(|(_, label)| label.contains('.') && label.ends_with('0'));
                 assert!(!wasteful, "{labelled:?}");
             }
+        }
+    }
+
+    #[test]
+    fn an_axis_of_depth_runs_downwards_from_end_to_end() {
+        let axis = PlotAxis::tight([0.0, 50.0, 200.0]).expect("an axis").downwards();
+        assert_eq!([0.0, 50.0, 200.0].map(|depth| axis.fraction(depth)), [Some(1.0), Some(0.75), Some(0.0)]);
+        let ticks = axis.ticks();
+        assert_eq!((ticks[0].fraction, ticks[0].label.as_deref()), (1.0, Some("0")));
+        assert_eq!(PlotAxis::from_zero([0.2, 2.0]).expect("an axis").fraction(0.0), Some(0.0));
+        for values in [[0.0, 0.0], [-1.0, -2.0], [1e-305, 0.0], [f64::NAN, 0.0]] {
+            assert!(PlotAxis::from_zero(values).is_some() && PlotAxis::tight(values).is_some(), "{values:?}");
+        }
+        assert_eq!(PlotAxis::between(1.0, 1.0), None);
+        assert_eq!(PlotAxis::between(0.0, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn three_digits_are_short() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1200.0, "1200"),
+            (0.01, "0.01"),
+            (37.4512, "37.5"),
+            (-0.33333, "−0.333"),
+            (2e-7, "2×10⁻⁷"),
+            (123_456.0, "1.23×10⁵"),
+        ] {
+            assert_eq!(three_digits(value), text);
         }
     }
 

@@ -45,6 +45,8 @@ pub(super) enum Shape {
     /// Shapes that belong together, under a name that SVG shows as their class.
     Group(&'static str, Vec<Shape>),
     Rectangle(Rectangle, Stroke),
+    /// A rectangle full of one colour.
+    Filled(Rectangle, Colour),
     /// White that lets little of what is below show through, for text to stand on.
     Ground(Rectangle),
     Polyline(Vec<Position>, Stroke),

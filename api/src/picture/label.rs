@@ -1,6 +1,7 @@
 //! Where labels go: beside what they name, clear of everything else.
 
-use super::drawing::{Position, Rectangle};
+use super::drawing::{Colour, Position, Rectangle, Shape};
+use super::text::{Anchor, Text};
 
 /// What a line under a label costs, in ranks of candidates.
 const CROSSING: usize = 20;
@@ -80,6 +81,23 @@ pub(super) fn around([x, y]: Position, width: f64, height: f64, gap: f64) -> Vec
             ]
         })
         .collect()
+}
+
+/// A label and the ground it stands on, in the rectangle made for it.
+pub(super) fn label_shapes(
+    label: String,
+    place: &Rectangle,
+    anchor: Anchor,
+    size: f64,
+    colour: Colour,
+) -> [Shape; 2] {
+    let x = match anchor {
+        Anchor::Start => place.left,
+        Anchor::Middle => f64::midpoint(place.left, place.right),
+        Anchor::End => place.right,
+    };
+    let text = Text::new(label, [x, place.bottom - size * 0.15], anchor, size, colour);
+    [Shape::Ground(*place), Shape::Text(text)]
 }
 
 fn overlap(a: &Rectangle, b: &Rectangle) -> bool {

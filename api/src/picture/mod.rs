@@ -1,6 +1,6 @@
 //! Pictures of results, as SVG and PNG.
 //!
-//! A chart, such as a [`WorkPrecisionChart`], lays itself out as a [`Drawing`]: a list of shapes in a fixed
+//! A chart, such as a [`WorkPrecisionChart`] or a [`LinePlot`], lays itself out as a [`Drawing`]: a list of shapes in a fixed
 //! page. The drawing is then written as SVG or rasterised as PNG, both from the same shapes and with the same
 //! font metrics, so the two show the same picture. The font for PNG is built in: nothing depends on what the
 //! machine has installed.
@@ -10,15 +10,22 @@
 
 pub mod axis;
 mod drawing;
+mod heading;
 mod label;
+mod line_plot;
 mod marker;
+mod orbit;
 mod plot_area;
 mod raster;
 mod svg;
+mod sweep_map;
 mod text;
 mod work_precision;
 
 pub use axis::{PlotAxis, Tick};
 pub use drawing::Drawing;
+pub use line_plot::{Label, Line, LinePlot, Upright};
+pub use orbit::OrbitPlot;
 pub use raster::PictureError;
+pub use sweep_map::{MapPoint, SweepMap};
 pub use work_precision::{Point, Series, WantedAccuracy, WorkPrecisionChart};

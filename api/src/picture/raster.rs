@@ -61,6 +61,11 @@ impl Canvas {
                 Shape::Rectangle(area, stroke) => {
                     self.stroke(rectangle(area).map(PathBuilder::from_rect), stroke);
                 }
+                Shape::Filled(area, colour) => {
+                    if let Some(area) = rectangle(area) {
+                        self.pixmap.fill_rect(area, &paint(*colour), self.to_pixels, None);
+                    }
+                }
                 Shape::Ground(area) => {
                     let mut paint = paint(Colour::WHITE);
                     paint.shader.apply_opacity(Shape::GROUND_OPACITY);

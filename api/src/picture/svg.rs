@@ -40,6 +40,11 @@ fn shapes(out: &mut String, all: &[Shape]) {
                 let stroke = stroke_attributes(stroke);
                 writeln!(out, r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" {stroke}/>"#)
             }
+            Shape::Filled(area, colour) => {
+                let [x, y, width, height] = [area.left, area.top, area.width(), area.height()].map(number);
+                let fill = hex(*colour);
+                writeln!(out, r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" fill="{fill}"/>"#)
+            }
             Shape::Ground(area) => {
                 let [x, y, width, height] = [area.left, area.top, area.width(), area.height()].map(number);
                 let (fill, opacity) = (hex(Colour::WHITE), Shape::GROUND_OPACITY);

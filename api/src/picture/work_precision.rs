@@ -3,20 +3,16 @@
 use super::{
     Drawing, PictureError, PlotAxis,
     drawing::{Colour, Position, Rectangle, Shape, Stroke},
-    label::{LabelRoom, around},
+    heading::{self, Entry},
+    label::{LabelRoom, around, label_shapes},
     marker::{Marker, series_style},
     plot_area,
-    text::{self, Anchor, Text, Weight},
+    text::{self, Anchor, Weight},
 };
 
 const PAGE_WIDTH: f64 = 800.0;
 const PLOT_HEIGHT: f64 = 440.0;
 const RIGHT_MARGIN: f64 = 24.0;
-const TITLE_SIZE: f64 = 17.0;
-const LEGEND_SIZE: f64 = 13.0;
-const LEGEND_ROW: f64 = 22.0;
-/// The length of the sample of a series' line in the legend.
-const LEGEND_LINE: f64 = 30.0;
 const LABEL_SIZE: f64 = 11.0;
 /// The widest a point's label becomes before it is cut.
 const LABEL_WIDTH: f64 = 140.0;
@@ -93,15 +89,9 @@ impl WorkPrecisionChart {
         let (x_ticks, y_ticks) = axes.map(|(x, y)| (x.ticks(), y.ticks())).unwrap_or_default();
         let (left, right) = (plot_area::left_margin(&y_ticks), PAGE_WIDTH - RIGHT_MARGIN);
 
-        let title = text::line(&self.title, TITLE_SIZE, Weight::Bold, right - left);
-        let title_baseline = if title.is_empty() { 0.0 } else { 34.0 };
         let mut shapes = Vec::new();
-        if !title.is_empty() {
-            let heading =
-                Text::new(title.clone(), [left, title_baseline], Anchor::Start, TITLE_SIZE, Colour::TEXT);
-            shapes.push(Shape::Text(Text { weight: Weight::Bold, ..heading }));
-        }
-        let legend_bottom = self.legend(&mut shapes, left, right, title_baseline + 12.0);
+        let (title, title_bottom) = heading::title(&mut shapes, &self.title, left, right);
+        let legend_bottom = heading::legend(&mut shapes, self.legend(), left, right, title_bottom);
 
         let top = legend_bottom + 10.0;
         let area = Rectangle { left, top, right, bottom: top + PLOT_HEIGHT };
@@ -109,16 +99,7 @@ impl WorkPrecisionChart {
         shapes.push(plot_area::axes(&area, &x_ticks, &y_ticks, &self.x_label, &self.y_label));
         match axes {
             Some((x, y)) => self.data(&mut shapes, &area, &x, &y),
-            None => {
-                let middle = plot_area::position(&area, 0.5, 0.5);
-                shapes.push(Shape::Text(Text::new(
-                    "no data",
-                    middle,
-                    Anchor::Middle,
-                    TITLE_SIZE,
-                    Colour::QUIET_TEXT,
-                )));
-            }
+            None => shapes.push(heading::no_data(plot_area::position(&area, 0.5, 0.5))),
         }
         Drawing { title, width: PAGE_WIDTH, height: area.bottom + plot_area::BELOW, shapes }
     }
@@ -132,34 +113,12 @@ impl WorkPrecisionChart {
         Some((x, y))
     }
 
-    /// Adds the legend, in as many rows as it needs, and says where it ends.
-    fn legend(&self, shapes: &mut Vec<Shape>, left: f64, right: f64, top: f64) -> f64 {
-        let mut members = Vec::new();
-        let (mut x, mut middle) = (left, top + LEGEND_ROW / 2.0);
-        for (index, series) in self.series.iter().enumerate() {
+    fn legend(&self) -> impl Iterator<Item = Entry> {
+        self.series.iter().enumerate().map(|(index, series)| {
             let (colour, marker) = series_style(index);
             let no_data = if series.drawable().next().is_none() { " (no data)" } else { "" };
-            let text_start = LEGEND_LINE + 7.0;
-            let room = right - left - text_start;
-            let name = text::line(&format!("{}{no_data}", series.name), LEGEND_SIZE, Weight::Regular, room);
-            let width = text_start + text::room(&name, LEGEND_SIZE, Weight::Regular);
-            if x > left && x + width > right {
-                (x, middle) = (left, middle + LEGEND_ROW);
-            }
-            members.push(Shape::Polyline(
-                vec![[x, middle], [x + LEGEND_LINE, middle]],
-                Stroke::solid(colour, 2.0),
-            ));
-            members.push(Shape::Marker([x + LEGEND_LINE / 2.0, middle], marker, colour));
-            let at = [x + text_start, middle + LEGEND_SIZE * 0.36];
-            members.push(Shape::Text(Text::new(name, at, Anchor::Start, LEGEND_SIZE, Colour::TEXT)));
-            x += width + 26.0;
-        }
-        if members.is_empty() {
-            return top;
-        }
-        shapes.push(Shape::Group("legend", members));
-        middle + LEGEND_ROW / 2.0
+            Entry { name: format!("{}{no_data}", series.name), colour, marker: Some(marker) }
+        })
     }
 
     fn data<'a>(&'a self, shapes: &mut Vec<Shape>, area: &Rectangle, x: &PlotAxis, y: &PlotAxis) {
@@ -219,7 +178,7 @@ fn wanted_line(room: &mut LabelRoom, area: &Rectangle, height: f64, label: &str)
     let mut shapes = vec![Shape::Polyline(line.to_vec(), Stroke::dashed(Colour::QUIET_TEXT, 1.3))];
     if let Some(place) = place {
         let anchor = if place.left == left { Anchor::Start } else { Anchor::End };
-        shapes.extend(label_shapes(label, &place, anchor, Colour::QUIET_TEXT));
+        shapes.extend(label_shapes(label, &place, anchor, LABEL_SIZE, Colour::QUIET_TEXT));
     }
     Shape::Group("wanted", shapes)
 }
@@ -236,18 +195,7 @@ fn point_label(room: &mut LabelRoom, at: Position, label: &str) -> Option<[Shape
     } else {
         Anchor::Middle
     };
-    Some(label_shapes(label, &place, anchor, Colour::TEXT))
-}
-
-/// A label and the ground it stands on, in the rectangle made for it.
-fn label_shapes(label: String, place: &Rectangle, anchor: Anchor, colour: Colour) -> [Shape; 2] {
-    let x = match anchor {
-        Anchor::Start => place.left,
-        Anchor::Middle => f64::midpoint(place.left, place.right),
-        Anchor::End => place.right,
-    };
-    let text = Text::new(label, [x, place.bottom - LABEL_SIZE * 0.15], anchor, LABEL_SIZE, colour);
-    [Shape::Ground(*place), Shape::Text(text)]
+    Some(label_shapes(label, &place, anchor, LABEL_SIZE, Colour::TEXT))
 }
 
 #[cfg(test)]

@@ -45,6 +45,10 @@ async fn a_wrong_parameter_is_named_with_what_would_be_valid() {
         ("/points/1/spectrum?node=49&window=blackman", "window", "blackman", "`rectangular` or `hann`"),
         ("/points/1/spectrum?node=49&range_hz=0", "range_hz", "0", "greater than 0"),
         ("/points/1/profile?format=xlsx", "format", "xlsx", "`parquet`"),
+        ("/points/1/statics?format=svg", "format", "svg", "`npz`"),
+        ("/points?fields=ordinal,colour", "fields", "colour", "parameters"),
+        ("/table?fields=colour", "fields", "colour", "mud_density"),
+        ("/events?after=-1", "after", "-1", "whole number"),
     ] {
         let problem = bench.get(&format!("/v1/sweeps/{id}{path}")).await.problem(400, "invalid-parameter");
         let error = &problem["errors"][0];

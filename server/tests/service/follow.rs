@@ -132,6 +132,12 @@ async fn sweeps_are_listed_newest_first_in_pages() {
         path = format!("/v1/sweeps?limit=2&cursor={next}");
     }
     assert_eq!(listed, ids);
+    for (filter, expected) in
+        [("state=running", 5), ("state=completed", 0), ("name=3&owner=bob", 1), ("name=x", 0)]
+    {
+        let found = bench.get(&format!("/v1/sweeps?{filter}")).await.json();
+        assert_eq!(found["sweeps"].as_array().unwrap().len(), expected, "{filter}");
+    }
     let of_ann = bench.get("/v1/sweeps?owner=ann").await.json();
     assert_eq!(of_ann["sweeps"].as_array().unwrap().len(), 1);
     assert_eq!(of_ann["sweeps"][0]["name"], "2");

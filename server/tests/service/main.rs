@@ -4,8 +4,11 @@
 
 mod bench;
 mod errors;
+mod events;
+mod files;
 mod follow;
 mod openapi;
+mod pictures;
 mod results;
 mod shutdown;
 mod submit;

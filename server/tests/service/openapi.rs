@@ -45,6 +45,8 @@ fn every_route_is_documented() {
         "post /v1/sweeps/{id}/retry",
         "get /v1/sweeps/{id}/points",
         "get /v1/sweeps/{id}/table",
+        "get /v1/sweeps/{id}/events",
+        "get /v1/sweeps/{id}/export",
         "post /v1/runs",
         "get /v1/scenarios",
         "get /v1/scenarios/{name}",
@@ -58,6 +60,8 @@ fn every_route_is_documented() {
     .map(str::to_owned)
     .into();
     expected.push(format!("get {point}"));
+    expected.push(format!("get {point}/artifacts"));
+    expected.push(format!("get {point}/artifacts/{{name}}"));
     for table in ["profile", "statics", "history", "orbit", "spectrum", "contacts", "energy", "cost"] {
         expected.push(format!("get {point}/{table}"));
     }

@@ -2,7 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, WorkState};
+use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState};
 
 use crate::bench::{
     Bench, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
@@ -147,7 +147,13 @@ async fn the_same_idempotency_key_gives_the_sweep_that_it_made() {
     assert!(matches!(other_body, StoreError::IdempotencyConflict), "{other_body}");
     // Keys are their owner's own.
     submit(&store, &with_key("d", "bert", 2)).await;
-    let ids: Vec<_> = store.sweeps(None, None, 10).await.unwrap().into_iter().map(|sweep| sweep.id).collect();
+    let ids: Vec<_> = store
+        .sweeps(&SweepFilter::default(), None, 10)
+        .await
+        .unwrap()
+        .into_iter()
+        .map(|sweep| sweep.id)
+        .collect();
     assert_eq!(ids, ["d", "a"]);
 }
 
@@ -182,7 +188,13 @@ async fn pages_hold_every_row_once_and_in_order() {
         submit(&store, &drillsweep_store::NewSweep { owner: owner.to_owned(), ..sweep(id, [1]) }).await;
     }
     let ids = async |owner, before, limit| -> Vec<String> {
-        store.sweeps(owner, before, limit).await.unwrap().into_iter().map(|sweep| sweep.id).collect()
+        store
+            .sweeps(&SweepFilter { owner, ..SweepFilter::default() }, before, limit)
+            .await
+            .unwrap()
+            .into_iter()
+            .map(|sweep| sweep.id)
+            .collect()
     };
     assert_eq!(ids(None, None, 2).await, ["t3", "t2"]);
     assert_eq!(ids(None, Some("t2"), 2).await, ["t1", "s"]);

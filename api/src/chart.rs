@@ -1,0 +1,440 @@
+//! Pictures of results: which columns of a table are shown, in which units, under which names.
+//!
+//! Each function takes the very table that is served as JSON or CSV and gives a [`Drawing`] of it.
+
+use indexmap::{IndexMap, IndexSet};
+use serde_json::Value;
+
+use crate::picture::axis::three_digits;
+use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, SweepMap, Upright};
+use crate::problem::ProblemDetails;
+use crate::table::{Column, Table};
+use crate::units;
+
+/// Width of a picture as PNG: twice its natural size, so that it is sharp on fine screens and in print.
+pub const PNG_WIDTH: u32 = 1600;
+
+/// Lines of a spectrum that are named in its picture.
+const NAMED_LINES: usize = 6;
+
+/// Lines nearer to zero frequency than so many bins belong to the mean, whatever the window.
+const MEAN_BINS: f64 = 2.5;
+
+/// Where and how the hole stands about a node, for the picture of its orbit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hole {
+    /// The radius at which the string touches the wall \[m\].
+    pub clearance: Option<f64>,
+    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    pub low_side: Option<f64>,
+}
+
+/// The title of a picture: what it shows, and at which parameters.
+pub fn caption(what: &str, parameters: &IndexMap<String, f64>) -> String {
+    let value = |(name, value): (&String, &f64)| {
+        let unit =
+            units::unit(name).filter(|unit| *unit != "1").map_or_else(String::new, |unit| format!(" {unit}"));
+        format!(", {} {}{unit}", words(name), three_digits(*value))
+    };
+    let values: String = parameters.iter().map(value).collect();
+    format!("{what}{values}")
+}
+
+/// Values along the string, depth downwards: C_f, or the first of the `fields` that are given.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn profile(
+    table: &Table,
+    fields: Option<&[String]>,
+    title: &str,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let fallback = if table.columns.contains_key("friction_coefficient") {
+        "friction_coefficient"
+    } else {
+        "eccentricity"
+    };
+    let names: Vec<&str> = match fields {
+        Some(fields) => fields.iter().map(String::as_str).collect(),
+        None => vec![fallback],
+    };
+    let (top, bottom) = (numbers(table, "measured_depth_top")?, numbers(table, "measured_depth_bottom")?);
+    let shown = Shown::of(table, &names)?;
+    let line = |(name, values): (&str, Vec<f64>)| Line {
+        name: words(name),
+        // A value holds for its whole element.
+        points: values
+            .iter()
+            .enumerate()
+            .flat_map(|(e, value)| [[*value, top[e]], [*value, bottom[e]]])
+            .collect(),
+        is_marked: false,
+    };
+    let plot = LinePlot {
+        title: title.to_owned(),
+        x_label: shown.label(),
+        y_label: "measured depth [m]".to_owned(),
+        lines: shown.columns.into_iter().map(line).collect(),
+        upright: Upright::Depth,
+        ..LinePlot::default()
+    };
+    Ok(plot.drawing())
+}
+
+/// Columns of a history over time: u and v, or the `fields` that are given.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn history(
+    table: &Table,
+    fields: Option<&[String]>,
+    title: &str,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let is_lateral = |name: &&str| {
+        let number = name.strip_prefix("u_").or_else(|| name.strip_prefix("v_"));
+        number.is_some_and(|number| number.parse::<u32>().is_ok())
+    };
+    let names: Vec<&str> = match fields {
+        Some(fields) => fields.iter().map(String::as_str).collect(),
+        None => table.columns.keys().map(String::as_str).filter(is_lateral).collect(),
+    };
+    let time = numbers(table, "time")?;
+    let shown = Shown::of(table, &names)?;
+    let y_label = shown.label();
+    let line = |(name, values): (&str, Vec<f64>)| Line {
+        name: words(name),
+        points: time.iter().zip(values).map(|(time, value)| [*time, value]).collect(),
+        is_marked: false,
+    };
+    let plot = LinePlot {
+        title: title.to_owned(),
+        subtitle: node_of(table),
+        x_label: "time [s]".to_owned(),
+        y_label,
+        lines: shown.columns.into_iter().map(line).collect(),
+        ..LinePlot::default()
+    };
+    Ok(plot.drawing())
+}
+
+/// The path of a node across its hole.
+///
+/// # Errors
+/// When the table is not an orbit.
+pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
+    let (time, u, v) = (numbers(table, "time")?, numbers(table, "u")?, numbers(table, "v")?);
+    let window = match (time.first(), time.last()) {
+        (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
+        _ => String::new(),
+    };
+    let plot = OrbitPlot {
+        title: title.to_owned(),
+        subtitle: format!("{}{window}; the mark is the end", node_of(table)),
+        path: u.iter().zip(v).map(|(u, v)| [1e3 * u, 1e3 * v]).collect(),
+        wall: hole.clearance.map(|clearance| 1e3 * clearance),
+        low_side: hole.low_side,
+        unit: "mm".to_owned(),
+    };
+    Ok(plot.drawing())
+}
+
+/// The full spectrum of a node, with its highest lines named. The mean position is left out: it would dwarf the rest.
+///
+/// # Errors
+/// When the table is not a spectrum.
+pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
+    let (frequency, amplitude) = (numbers(table, "frequency")?, numbers(table, "amplitude")?);
+    let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
+    let mean_width = MEAN_BINS * attribute("resolution").unwrap_or(0.0);
+    let is_motion = |frequency: f64| frequency.abs() > mean_width;
+    let points = frequency.iter().zip(amplitude).map(|(frequency, amplitude)| {
+        [*frequency, if is_motion(*frequency) { 1e3 * amplitude } else { f64::NAN }]
+    });
+    let peaks = table.attributes.get("peaks").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let label = |peak: &Value| {
+        let (frequency, amplitude) = (peak["frequency"].as_f64()?, 1e3 * peak["amplitude"].as_f64()?);
+        let text = format!("{frequency:+.2} Hz, {amplitude:.2} mm").replace('-', "−");
+        is_motion(frequency).then_some(Label { at: [frequency, amplitude], text })
+    };
+    let window = table.attributes.get("window").and_then(Value::as_str).unwrap_or_default();
+    let plot = LinePlot {
+        title: title.to_owned(),
+        subtitle: format!(
+            "{}, {} samples, {window} window; backward whirl at the left, forward at the right, without the mean",
+            node_of(table),
+            attribute("samples").unwrap_or(0.0)
+        ),
+        x_label: "frequency [Hz]".to_owned(),
+        y_label: "amplitude [mm]".to_owned(),
+        lines: vec![Line { points: points.collect(), ..Line::default() }],
+        upright: Upright::FromZero,
+        labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
+    };
+    Ok(plot.drawing())
+}
+
+/// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
+/// over two a map; over more a map over the first two, for which each place shows its last point.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them, or none is given.
+pub fn sweep(
+    table: &Table,
+    parameters: &IndexSet<String>,
+    fields: Option<&[String]>,
+    title: &str,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let fields = fields.unwrap_or_default();
+    let Some(first) = fields.first() else {
+        let detail = format!(
+            "a picture needs the column that it shows; there are {}",
+            numeric(table).filter(|name| !parameters.contains(*name)).collect::<Vec<_>>().join(", ")
+        );
+        return Err(ProblemDetails::invalid_parameter("fields", None, detail).into());
+    };
+    let varied: Vec<&str> =
+        parameters.iter().map(String::as_str).filter(|name| is_varied(table, name)).collect();
+    let (x, y) = match varied.as_slice() {
+        [] => ("ordinal", None),
+        [only] => (*only, None),
+        [first, second, ..] => (*first, Some(*second)),
+    };
+    let xs = numbers(table, x)?;
+    let Some(y) = y else {
+        let names: Vec<&str> = fields.iter().map(String::as_str).collect();
+        let shown = Shown::of(table, &names)?;
+        let y_label = shown.label();
+        let line = |(name, values): (&str, Vec<f64>)| {
+            let mut points: Vec<[f64; 2]> = xs.iter().zip(values).map(|(x, value)| [*x, value]).collect();
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Line { name: words(name), points, is_marked: true }
+        };
+        let plot = LinePlot {
+            title: title.to_owned(),
+            x_label: with_unit(x),
+            y_label,
+            lines: shown.columns.into_iter().map(line).collect(),
+            ..LinePlot::default()
+        };
+        return Ok(plot.drawing());
+    };
+    let ys = numbers(table, y)?;
+    let mut shown = Shown::of(table, &[first.as_str()])?;
+    let value_label = shown.label();
+    let (_, values) = shown.columns.swap_remove(0);
+    let points = xs.iter().zip(ys).zip(values).map(|((x, y), value)| MapPoint { x: *x, y, value });
+    let subtitle = match varied.len() {
+        2 => String::new(),
+        more => format!("{} more parameters vary; each place shows one of its points", more - 2),
+    };
+    let plot = SweepMap {
+        title: title.to_owned(),
+        subtitle,
+        x_label: with_unit(x),
+        y_label: with_unit(y),
+        value_label,
+        points: points.collect(),
+    };
+    Ok(plot.drawing())
+}
+
+/// Columns that are shown on one axis, in its unit.
+struct Shown<'t> {
+    columns: Vec<(&'t str, Vec<f64>)>,
+    unit: Option<&'static str>,
+}
+
+impl<'t> Shown<'t> {
+    /// The numeric columns of these names; they must have one unit.
+    fn of(table: &'t Table, names: &[&str]) -> Result<Self, Box<ProblemDetails>> {
+        let mut columns = Vec::new();
+        let mut unit = None;
+        for name in names {
+            let Some((name, _)) = table.columns.get_key_value(*name) else {
+                return Err(no_such_column(table, name));
+            };
+            let of_column = units::unit(name);
+            if columns.is_empty() {
+                unit = of_column;
+            } else if unit != of_column {
+                let detail =
+                    format!("the columns of a picture must have one unit; {name} has another than the first");
+                return Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into());
+            }
+            columns.push((name.as_str(), numbers(table, name)?));
+        }
+        let (factor, unit) = presented(unit, names.first().copied().unwrap_or_default());
+        for (_, values) in &mut columns {
+            values.iter_mut().for_each(|value| *value *= factor);
+        }
+        Ok(Shown { columns, unit })
+    }
+
+    /// What stands at the axis.
+    fn label(&self) -> String {
+        let name = match self.columns.as_slice() {
+            [(only, _)] => words(only),
+            [] => String::new(),
+            _ if self.unit == Some("mm") => "displacement".to_owned(),
+            _ => "value".to_owned(),
+        };
+        match self.unit {
+            Some(unit) => format!("{name} [{unit}]"),
+            None => name,
+        }
+    }
+}
+
+/// The factor and the unit in which engineers read a quantity.
+fn presented(unit: Option<&'static str>, name: &str) -> (f64, Option<&'static str>) {
+    match unit {
+        Some("m") if name.contains("depth") => (1.0, unit),
+        Some("m") => (1e3, Some("mm")),
+        Some("N") => (1e-3, Some("kN")),
+        Some("N m") => (1e-3, Some("kN m")),
+        Some("Pa") => (1e-6, Some("MPa")),
+        Some("1") | None => (1.0, None),
+        Some(_) => (1.0, unit),
+    }
+}
+
+/// A column's name in words.
+fn words(name: &str) -> String {
+    match name {
+        "friction_coefficient" => "friction coefficient C_f".to_owned(),
+        "rotation_damping" => "damping k of rotation".to_owned(),
+        name => name.replace('_', " "),
+    }
+}
+
+fn with_unit(name: &str) -> String {
+    match units::unit(name).filter(|unit| *unit != "1") {
+        Some(unit) => format!("{} [{unit}]", words(name)),
+        None => words(name),
+    }
+}
+
+/// The node that a table is of.
+fn node_of(table: &Table) -> String {
+    let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
+    match (attribute("node"), attribute("measured_depth")) {
+        (Some(node), Some(depth)) => format!("node {node} at {depth:.2} m"),
+        _ => String::new(),
+    }
+}
+
+/// The values of a numeric column; missing ones are not finite.
+fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
+    match table.columns.get(name) {
+        Some(Column::Number(values)) => Ok(values.clone()),
+        Some(Column::Integer(values)) => {
+            Ok(values.iter().map(|value| value.map_or(f64::NAN, |value| value as f64)).collect())
+        }
+        Some(Column::Text(_)) => {
+            let detail = "is a column of texts, which a picture cannot show";
+            Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into())
+        }
+        None => Err(no_such_column(table, name)),
+    }
+}
+
+fn numeric(table: &Table) -> impl Iterator<Item = &str> {
+    table
+        .columns
+        .iter()
+        .filter(|(_, column)| !matches!(column, Column::Text(_)))
+        .map(|(name, _)| name.as_str())
+}
+
+fn is_varied(table: &Table, name: &str) -> bool {
+    numbers(table, name).is_ok_and(|values| values.windows(2).any(|pair| pair[0] != pair[1]))
+}
+
+/// The problem that a table has no such column.
+pub fn no_such_column(table: &Table, name: &str) -> Box<ProblemDetails> {
+    let names: Vec<&str> = table.columns.keys().map(String::as_str).collect();
+    let detail = format!("there is no such column; there are {}", names.join(", "));
+    ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn column(values: &[f64]) -> Column {
+        Column::Number(values.to_vec())
+    }
+
+    #[test]
+    fn columns_of_one_picture_have_one_unit_and_exist() {
+        let table = Table::default()
+            .with("measured_depth_top", column(&[0.0, 10.0]))
+            .with("measured_depth_bottom", column(&[10.0, 20.0]))
+            .with("friction_coefficient", column(&[0.01, 0.02]))
+            .with("torque", column(&[9940.0, 5219.0]))
+            .with("regime", Column::Text(vec![None, None]));
+        let svg = profile(&table, None, "C_f").unwrap().svg();
+        assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
+        assert!(profile(&table, Some(&["torque".to_owned()]), "").unwrap().svg().contains("torque [kN m]"));
+        for fields in [&["torque", "friction_coefficient"][..], &["nothing"], &["regime"]] {
+            let fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
+            let problem = profile(&table, Some(&fields), "").unwrap_err();
+            assert_eq!((problem.status, problem.errors[0].parameter.as_deref()), (400, Some("fields")));
+        }
+    }
+
+    #[test]
+    fn the_mean_of_a_spectrum_is_left_out_and_lines_are_named() {
+        let frequency: Vec<f64> = (-100..=100).map(|k| f64::from(k) * 0.1).collect();
+        let amplitude: Vec<f64> = frequency
+            .iter()
+            .map(|f| {
+                if f.abs() < 0.05 {
+                    0.037
+                } else if (f - 2.0).abs() < 0.05 {
+                    0.003
+                } else {
+                    1e-5
+                }
+            })
+            .collect();
+        let table = Table::default()
+            .with("frequency", column(&frequency))
+            .with("amplitude", column(&amplitude))
+            .attribute("resolution", 0.1)
+            .attribute("samples", 1000)
+            .attribute("window", "hann")
+            .attribute("node", 49)
+            .attribute("measured_depth", 57.73)
+            .attribute(
+                "peaks",
+                json!([{"frequency": 0.0, "amplitude": 0.037}, {"frequency": 2.0, "amplitude": 0.003}]),
+            );
+        let svg = spectrum(&table, "spectrum").unwrap().svg();
+        assert!(svg.contains("+2.00 Hz, 3.00 mm") && svg.contains("node 49 at 57.73 m"), "{svg}");
+        assert!(!svg.contains("37.00 mm") && !svg.contains(">30<"), "the mean does not stretch the axis");
+    }
+
+    #[test]
+    fn a_sweep_is_lines_over_one_parameter_and_a_map_over_two() {
+        let parameters: IndexSet<String> = ["flow_rate".to_owned(), "mud_density".to_owned()].into();
+        let table = |density: &[f64]| {
+            Table::default()
+                .with("ordinal", Column::Integer((1..=4).map(Some).collect()))
+                .with("flow_rate", column(&[0.01, 0.01, 0.04, 0.04]))
+                .with("mud_density", column(density))
+                .with("orbit_radius_rms_49", column(&[0.001, 0.002, 0.003, f64::NAN]))
+        };
+        let fields = ["orbit_radius_rms_49".to_owned()];
+        let map =
+            sweep(&table(&[1200.0, 1500.0, 1200.0, 1500.0]), &parameters, Some(&fields), "").unwrap().svg();
+        assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms 49 [mm]"));
+        assert!(map.contains("flow rate [m3/s]") && map.contains("mud density [kg/m3]"));
+        let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), "").unwrap().svg();
+        assert!(lines.contains(r#"class="series""#) && !lines.contains("mud density"));
+        let problem = sweep(&table(&[1200.0; 4]), &parameters, None, "").unwrap_err();
+        assert!(problem.detail.contains("orbit_radius_rms_49"), "{}", problem.detail);
+    }
+}

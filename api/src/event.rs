@@ -1,0 +1,18 @@
+//! What happens to a sweep, as it happens.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::point::PointState;
+
+/// The data of an event `point`: a result that points of the sweep share has come to a new state.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct PointEvent {
+    /// The points, by their numbers in the sweep.
+    pub ordinals: Vec<u32>,
+    /// Where they stand now.
+    pub state: PointState,
+    /// When it happened.
+    pub at: Timestamp,
+}

@@ -1,0 +1,81 @@
+//! What stands above a plot: its title, and which line is which.
+
+use super::{
+    drawing::{Colour, Shape, Stroke},
+    marker::Marker,
+    text::{self, Anchor, Text, Weight},
+};
+
+const TITLE_SIZE: f64 = 17.0;
+const SUBTITLE_SIZE: f64 = 12.5;
+const LEGEND_SIZE: f64 = 13.0;
+const LEGEND_ROW: f64 = 22.0;
+/// The length of the sample of a series' line in the legend.
+const LEGEND_LINE: f64 = 30.0;
+
+/// A series in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Entry {
+    pub(super) name: String,
+    pub(super) colour: Colour,
+    pub(super) marker: Option<Marker>,
+}
+
+/// Adds the title, cut to one line, and gives what it became and where it ends; an empty one takes no room.
+pub(super) fn title(shapes: &mut Vec<Shape>, title: &str, left: f64, right: f64) -> (String, f64) {
+    let title = text::line(title, TITLE_SIZE, Weight::Bold, right - left);
+    if title.is_empty() {
+        return (title, 12.0);
+    }
+    let baseline = 34.0;
+    let heading = Text::new(title.clone(), [left, baseline], Anchor::Start, TITLE_SIZE, Colour::TEXT);
+    shapes.push(Shape::Text(Text { weight: Weight::Bold, ..heading }));
+    (title, baseline + 12.0)
+}
+
+/// Adds a line of smaller text below the title and gives where it ends; an empty one takes no room.
+pub(super) fn subtitle(shapes: &mut Vec<Shape>, subtitle: &str, left: f64, right: f64, top: f64) -> f64 {
+    let subtitle = text::line(subtitle, SUBTITLE_SIZE, Weight::Regular, right - left);
+    if subtitle.is_empty() {
+        return top;
+    }
+    let at = [left, top + 7.0];
+    shapes.push(Shape::Text(Text::new(subtitle, at, Anchor::Start, SUBTITLE_SIZE, Colour::QUIET_TEXT)));
+    top + 15.0
+}
+
+/// Adds the legend, in as many rows as it needs, and gives where it ends.
+pub(super) fn legend(
+    shapes: &mut Vec<Shape>,
+    entries: impl IntoIterator<Item = Entry>,
+    left: f64,
+    right: f64,
+    top: f64,
+) -> f64 {
+    let mut members = Vec::new();
+    let (mut x, mut middle) = (left, top + LEGEND_ROW / 2.0);
+    for Entry { name, colour, marker } in entries {
+        let text_start = LEGEND_LINE + 7.0;
+        let name = text::line(&name, LEGEND_SIZE, Weight::Regular, right - left - text_start);
+        let width = text_start + text::room(&name, LEGEND_SIZE, Weight::Regular);
+        if x > left && x + width > right {
+            (x, middle) = (left, middle + LEGEND_ROW);
+        }
+        members
+            .push(Shape::Polyline(vec![[x, middle], [x + LEGEND_LINE, middle]], Stroke::solid(colour, 2.0)));
+        members.extend(marker.map(|marker| Shape::Marker([x + LEGEND_LINE / 2.0, middle], marker, colour)));
+        let at = [x + text_start, middle + LEGEND_SIZE * 0.36];
+        members.push(Shape::Text(Text::new(name, at, Anchor::Start, LEGEND_SIZE, Colour::TEXT)));
+        x += width + 26.0;
+    }
+    if members.is_empty() {
+        return top;
+    }
+    shapes.push(Shape::Group("legend", members));
+    middle + LEGEND_ROW / 2.0
+}
+
+/// What stands in a plot that has nothing to show.
+pub(super) fn no_data(middle: [f64; 2]) -> Shape {
+    Shape::Text(Text::new("no data", middle, Anchor::Middle, TITLE_SIZE, Colour::QUIET_TEXT))
+}

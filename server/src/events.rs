@@ -1,0 +1,192 @@
+//! A sweep as a stream of events (WHATWG HTML section 9.2, server-sent events).
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::{PointEvent, Sweep};
+use serde::Deserialize;
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::time::Instant;
+use utoipa::IntoParams;
+
+use crate::app::App;
+use crate::convert;
+use crate::error::{Error, Result};
+use crate::extract::{Path, Query, value};
+use crate::openapi::Problems;
+use crate::sweeps::{PROGRESS_INTERVAL, load};
+
+const LAST_EVENT_ID: &str = "last-event-id";
+
+/// Events that are read from the store at once.
+const PAGE: i64 = 500;
+
+/// How long a client waits before it connects again.
+const RETRY: Duration = Duration::from_secs(2);
+
+/// From where on a stream tells.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EventsQuery {
+    /// As the header `Last-Event-ID`, for clients that cannot set headers; the header wins.
+    #[serde(default, deserialize_with = "value::whole")]
+    after: Option<u64>,
+}
+
+/// Follow a sweep: a stream of events
+///
+/// Events `point` (data: `PointEvent`) tell of points that came to a new state, events `sweep` (data: `Sweep`, without
+/// its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and every two seconds
+/// while points make progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at the
+/// first that is kept. It ends when every point is final; who then connects again is answered 204, which ends the
+/// matter for a browser's EventSource.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/events",
+    tag = "sweeps",
+    operation_id = "follow_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        EventsQuery,
+        ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
+    ),
+    responses(
+        (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
+        (status = 204, description = "There is nothing left to tell"),
+        Problems
+    )
+)]
+pub(crate) async fn follow(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(query): Query<EventsQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let after = match headers.get(LAST_EVENT_ID) {
+        None => query.after,
+        Some(value) => {
+            let text = value.to_str().unwrap_or_default();
+            let number = text.parse().map_err(|_| {
+                Error::parameter("Last-Event-ID", Some(text), "must be the `id` of an event: a whole number")
+            })?;
+            Some(number)
+        }
+    };
+    let Some(version) = app.store.sweep_version(&id).await? else { return Err(convert::no_such_sweep(&id)) };
+    let sequence = after.map_or(version, |after| i64::try_from(after).unwrap_or(i64::MAX));
+    if after.is_some()
+        && load(&app, &id).await?.finished.is_some()
+        && app.store.events(&id, sequence, 1).await?.is_empty()
+    {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    }
+    let Ok(permit) = app.streams.clone().try_acquire_owned() else {
+        return Err(Error::unavailable("all event streams are taken"));
+    };
+    let follower = Follower {
+        app,
+        id,
+        sequence,
+        seen: None,
+        version: None,
+        pending: VecDeque::new(),
+        has_ended: false,
+        _permit: permit,
+    };
+    let stream = futures::stream::unfold(follower, Follower::next);
+    Ok(Sse::new(stream).keep_alive(KeepAlive::default()).into_response())
+}
+
+/// One client's place in the events of a sweep. It holds nothing of the store between two looks, and is only asked for
+/// the next event when the client has taken the last: a slow client costs nothing but its place.
+struct Follower {
+    app: App,
+    id: String,
+    /// The number of the last event that was told.
+    sequence: i64,
+    /// The sweep as it was last told, and when it was read.
+    seen: Option<(Sweep, Instant)>,
+    version: Option<i64>,
+    pending: VecDeque<Event>,
+    has_ended: bool,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Follower {
+    async fn next(mut self) -> Option<(std::result::Result<Event, Infallible>, Self)> {
+        let mut stopping = self.app.stopping.clone();
+        loop {
+            if *stopping.borrow() {
+                return None;
+            }
+            if let Some(event) = self.pending.pop_front() {
+                return Some((Ok(event), self));
+            }
+            if self.has_ended {
+                return None;
+            }
+            if let Err(error) = self.look().await {
+                tracing::warn!(
+                    ?error,
+                    sweep = self.id,
+                    "an event stream ends early; its client may come back"
+                );
+                return None;
+            }
+            if self.pending.is_empty() && !self.has_ended {
+                tokio::select! {
+                    () = tokio::time::sleep(self.app.config.poll_interval) => {}
+                    // An error means that the service is gone.
+                    _ = stopping.wait_for(|stopping| *stopping) => return None,
+                }
+            }
+        }
+    }
+
+    /// Reads what is new.
+    async fn look(&mut self) -> Result<()> {
+        let Some(version) = self.app.store.sweep_version(&self.id).await? else {
+            // It was deleted.
+            self.has_ended = true;
+            return Ok(());
+        };
+        let is_stale = |(_, read): &(Sweep, Instant)| read.elapsed() >= PROGRESS_INTERVAL;
+        if self.version == Some(version) && !self.seen.as_ref().is_none_or(is_stale) {
+            return Ok(());
+        }
+        let events = self.app.store.events(&self.id, self.sequence, PAGE).await?;
+        for event in &events {
+            self.sequence = event.seq;
+            let data = PointEvent {
+                ordinals: event.ordinals.clone(),
+                state: convert::point_state(event.state),
+                at: convert::timestamp(event.at)?,
+            };
+            self.push("point", &data)?;
+        }
+        if events.len() as i64 == PAGE {
+            return Ok(());
+        }
+        // The version was read before the events: all up to it have been told.
+        self.sequence = self.sequence.max(version);
+        let sweep = Sweep { request: None, ..load(&self.app, &self.id).await? };
+        self.has_ended = sweep.finished.is_some();
+        if self.seen.as_ref().is_none_or(|(seen, _)| *seen != sweep) {
+            self.push("sweep", &sweep)?;
+        }
+        (self.version, self.seen) = (Some(version), Some((sweep, Instant::now())));
+        Ok(())
+    }
+
+    fn push(&mut self, name: &str, data: &impl serde::Serialize) -> Result<()> {
+        let event = Event::default().event(name).id(self.sequence.to_string()).retry(RETRY);
+        self.pending.push_back(event.json_data(data).map_err(|error| Error::internal(&error))?);
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+//! A whole sweep as one zip archive, written while it is sent.
+
+use std::io::{self, Write};
+
+use axum::body::{Body, Bytes};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::view::points;
+use drillsweep_store::{Artifact, BlobStore, Store};
+use serde::Deserialize;
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+use utoipa::IntoParams;
+use zip::write::{SimpleFileOptions, StreamWriter};
+use zip::{CompressionMethod, ZipWriter};
+
+use crate::app::App;
+use crate::convert;
+use crate::error::{Error, Result};
+use crate::extract::{Path, Query, value};
+use crate::openapi::Problems;
+
+/// Bytes that are sent at once.
+const CHUNK: usize = 256 << 10;
+
+/// Chunks that may wait for the client; then the writing waits.
+const WAITING_CHUNKS: usize = 4;
+
+/// Points whose files are looked up at once.
+const PAGE: i64 = 200;
+
+/// What an archive holds.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ExportQuery {
+    /// Names of the files of each point, separated by commas; absent means all, empty means none.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>, example = "profile,statics")]
+    artifacts: Option<Vec<String>>,
+}
+
+/// A whole sweep as one archive
+///
+/// A zip file with `sweep.json` (what was asked for, and how it stands), `table.csv` (a row a point) and the files of
+/// every point that has a result, as `points/1/history.parquet`. It is written while it is sent: its size is not known
+/// beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/export",
+    tag = "sweeps",
+    operation_id = "export_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ExportQuery),
+    responses((status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip"), Problems)
+)]
+pub(crate) async fn export(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(query): Query<ExportQuery>,
+) -> Result<Response> {
+    let sweep = crate::sweeps::load(&app, &id).await?;
+    let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
+    let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
+    let archive =
+        Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
+    tokio::task::spawn_blocking(move || {
+        let mut sink = Sink { sender, buffer: Vec::with_capacity(CHUNK) };
+        if let Err(error) = archive.write(&mut sink, &sweep) {
+            // The client sees a body that breaks off; one that has gone away needs no word in the log.
+            if error.kind() != io::ErrorKind::BrokenPipe {
+                tracing::error!(%error, sweep = archive.id, "an export broke off");
+            }
+            let _ = sink.sender.blocking_send(Err(error));
+        }
+    });
+    let body = Body::from_stream(futures::stream::unfold(receiver, async |mut receiver| {
+        receiver.recv().await.map(|chunk| (chunk, receiver))
+    }));
+    let name = format!("attachment; filename=\"sweep-{id}.zip\"");
+    let headers = [(header::CONTENT_TYPE, "application/zip".to_owned()), (header::CONTENT_DISPOSITION, name)];
+    Ok((headers, body).into_response())
+}
+
+/// Chunks on their way to the client.
+struct Sink {
+    sender: mpsc::Sender<io::Result<Bytes>>,
+    buffer: Vec<u8>,
+}
+
+impl Sink {
+    fn send(&mut self) -> io::Result<()> {
+        let chunk = std::mem::replace(&mut self.buffer, Vec::with_capacity(CHUNK));
+        self.sender.blocking_send(Ok(chunk.into())).map_err(|_| io::ErrorKind::BrokenPipe.into())
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.buffer.extend_from_slice(bytes);
+        if self.buffer.len() >= CHUNK {
+            self.send()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
+
+/// An archive to be written by a thread that may wait.
+struct Archive {
+    store: Store,
+    id: String,
+    wanted: Option<Vec<String>>,
+    handle: Handle,
+}
+
+impl Archive {
+    fn write(&self, sink: &mut Sink, sweep: &[u8]) -> io::Result<()> {
+        let mut zip = ZipWriter::new_stream(&mut *sink);
+        let text = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+        zip.start_file("sweep.json", text)?;
+        zip.write_all(sweep)?;
+        let records = self.handle.block_on(self.store.table_rows(&self.id)).map_err(io::Error::other)?;
+        let rows: Vec<_> =
+            records.iter().map(convert::point_summary).collect::<Result<_>>().map_err(failed)?;
+        zip.start_file("table.csv", text.large_file(true))?;
+        zip.write_all(points::points(&rows).csv().as_bytes())?;
+        if self.wanted.as_ref().is_none_or(|wanted| !wanted.is_empty()) {
+            self.write_points(&mut zip)?;
+        }
+        zip.finish()?;
+        sink.send()
+    }
+
+    fn write_points(&self, zip: &mut Zip<'_>) -> io::Result<()> {
+        let mut after = 0;
+        loop {
+            let page = self.store.point_artifacts(&self.id, after, PAGE);
+            let page = self.handle.block_on(page).map_err(io::Error::other)?;
+            let Some((last, _)) = page.last() else { return Ok(()) };
+            after = *last;
+            for (ordinal, artifacts) in &page {
+                for artifact in artifacts {
+                    if self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&artifact.name)) {
+                        self.write_artifact(zip, *ordinal, artifact)?;
+                    }
+                }
+            }
+        }
+    }
+
+    fn write_artifact(&self, zip: &mut Zip<'_>, ordinal: i64, artifact: &Artifact) -> io::Result<()> {
+        let blobs: &BlobStore = self.store.blobs();
+        let blob = artifact.blob.parse().map_err(io::Error::other)?;
+        let bytes = self.handle.block_on(blobs.get(blob)).map_err(io::Error::other)?;
+        let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
+        // Parquet is compressed already.
+        let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        zip.start_file(
+            format!("points/{ordinal}/{}.{extension}", artifact.name),
+            stored.large_file(bytes.len() > 1 << 31),
+        )?;
+        zip.write_all(&bytes)
+    }
+}
+
+fn failed(error: Error) -> io::Error {
+    io::Error::other(error.into_problem().detail)
+}

@@ -1,0 +1,136 @@
+//! The files of a point's result as they are stored: whole or in ranges, and not again to those who have them.
+
+use axum::Json;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::{ArtifactEntry, ArtifactList, ProblemKind};
+use headers::{ETag, HeaderMapExt, IfNoneMatch, IfRange};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use crate::app::App;
+use crate::artifact;
+use crate::error::{Error, Result};
+use crate::extract::Path;
+use crate::openapi::Problems;
+use crate::results::PointPath;
+
+/// Which file.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct ArtifactPath {
+    /// Identifier of the sweep.
+    id: String,
+    /// Number of the point in the sweep, from 1.
+    #[param(minimum = 1)]
+    n: u32,
+    /// Name of the file, as the list of files has it.
+    #[param(example = "history")]
+    name: String,
+}
+
+/// The files of a point's result
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/artifacts",
+    tag = "points",
+    operation_id = "list_artifacts",
+    params(PointPath),
+    responses((status = 200, description = "Every file, by name", body = ArtifactList), Problems)
+)]
+pub(crate) async fn list(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+) -> Result<Json<ArtifactList>> {
+    let key = artifact::result_key(&app.store, &id, n).await?;
+    let entry = |artifact: drillsweep_store::Artifact| ArtifactEntry {
+        link: format!("/v1/sweeps/{id}/points/{n}/artifacts/{}", artifact.name),
+        name: artifact.name,
+        media_type: artifact.media_type,
+        bytes: artifact.bytes.unsigned_abs(),
+        rows: artifact.row_count.unsigned_abs(),
+        hash: artifact.blob,
+    };
+    let artifacts = app.store.artifacts(&key).await?.into_iter().map(entry).collect();
+    Ok(Json(ArtifactList { artifacts }))
+}
+
+/// One file of a point's result, byte for byte
+///
+/// Its `ETag` is the BLAKE3 hash of its content. `Range` brings one range of bytes; of several ranges asked for at once
+/// the whole file is the answer, as RFC 9110 allows.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/artifacts/{name}",
+    tag = "points",
+    operation_id = "get_artifact",
+    params(
+        ArtifactPath,
+        ("Range" = Option<String>, Header, description = "Which bytes, such as `bytes=0-1023`."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still right."),
+        ("If-Range" = Option<String>, Header, description = "The `ETag` under which `Range` holds."),
+    ),
+    responses(
+        (status = 200, description = "The file", content(
+            (Vec<u8> = "application/vnd.apache.parquet"),
+            (serde_json::Value = "application/json")
+        )),
+        (status = 206, description = "The range of it", content(
+            (Vec<u8> = "application/vnd.apache.parquet"),
+            (Vec<u8> = "application/json")
+        )),
+        (status = 304, description = "The copy is right"),
+        Problems
+    )
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Path(ArtifactPath { id, n, name }): Path<ArtifactPath>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let key = artifact::result_key(&app.store, &id, n).await?;
+    let artifact = artifact::find(&app.store, &key, &name).await?;
+    let length = artifact.bytes.unsigned_abs();
+    let tag = format!("\"{}\"", artifact.blob);
+    let etag: ETag = tag.parse().map_err(|_| Error::internal("a blob's name that is no entity tag"))?;
+    let tag = HeaderValue::try_from(tag).map_err(|error| Error::internal(&error))?;
+    if headers.typed_get::<IfNoneMatch>().is_some_and(|known| !known.precondition_passes(&etag)) {
+        return Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, tag)]).into_response());
+    }
+    let is_current = headers.typed_get::<IfRange>().is_none_or(|known| !known.is_modified(Some(&etag), None));
+    let range = headers.get(header::RANGE).filter(|_| is_current).and_then(|value| value.to_str().ok());
+    let blob = artifact.blob.parse()?;
+    let media_type = HeaderValue::try_from(&artifact.media_type).map_err(|error| Error::internal(&error))?;
+    let usual: [(HeaderName, HeaderValue); 4] = [
+        (header::CONTENT_TYPE, media_type),
+        (header::ETAG, tag),
+        (header::ACCEPT_RANGES, HeaderValue::from_static("bytes")),
+        // The point may be computed anew; asking whether the copy is right costs little.
+        (header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache")),
+    ];
+    // What is not a range of bytes is to be ignored (RFC 9110 section 14.2).
+    let Some(ranges) = range.and_then(|range| http_range_header::parse_range_header(range).ok()) else {
+        return Ok((usual, Body::from(app.store.blobs().get(blob).await?)).into_response());
+    };
+    let ranges = match ranges.validate(length) {
+        Ok(ranges) => ranges,
+        Err(_) => return Ok(not_satisfiable(length)),
+    };
+    let [range] = ranges.as_slice() else {
+        return Ok((usual, Body::from(app.store.blobs().get(blob).await?)).into_response());
+    };
+    let bytes = app.store.blobs().get_range(blob, *range.start()..range.end() + 1).await?;
+    let place = format!("bytes {}-{}/{length}", range.start(), range.end());
+    Ok((StatusCode::PARTIAL_CONTENT, usual, [(header::CONTENT_RANGE, place)], bytes).into_response())
+}
+
+fn not_satisfiable(length: u64) -> Response {
+    let detail = format!("the file has {length} bytes, none of them in the range");
+    let mut response = Error::new(ProblemKind::RangeNotSatisfiable, detail).into_response();
+    if let Ok(place) = HeaderValue::try_from(format!("bytes */{length}")) {
+        response.headers_mut().insert(header::CONTENT_RANGE, place);
+    }
+    response
+}

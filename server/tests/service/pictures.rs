@@ -1,0 +1,77 @@
+//! Pictures of results, arrays for NumPy, and chosen columns.
+
+use std::io::{Cursor, Read};
+
+use axum::body::Body;
+use axum::http::{Request, header};
+use serde_json::json;
+
+use crate::bench::Bench;
+
+async fn finished() -> (Bench, String) {
+    let bench = Bench::new().await;
+    let axes = json!({"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}});
+    let id =
+        bench.submit(json!({"preset": "paper-200m", "name": "flow against density", "axes": axes})).await;
+    for _ in 0..4 {
+        bench.succeed().await;
+    }
+    (bench, format!("/v1/sweeps/{id}"))
+}
+
+#[tokio::test]
+async fn results_are_shown_as_drawings_and_as_pixels() {
+    let (bench, path) = finished().await;
+    for (query, words) in [
+        ("points/1/orbit?node=49&from=2&to=8", "Orbit, flow rate 0.01 m3/s, mud density 1200 kg/m3"),
+        ("points/1/orbit?node=49&from=2&to=8", "node 49 at 57.73 m, 2.00 to 8.00 s"),
+        ("points/1/spectrum?node=49&from=2&to=8&range_hz=5&peaks=3", "+2.00 Hz, 30.00 mm"),
+        ("points/1/history?node=49&from=2&to=3", "u 49"),
+        ("table?fields=density_seen", "flow against density"),
+    ] {
+        let svg = bench.get(&format!("{path}/{query}&format=svg").replace("&&", "&")).await;
+        assert_eq!(svg.headers[header::CONTENT_TYPE], "image/svg+xml", "{}", svg.text());
+        assert!(svg.text().contains(words), "{words} in {}", svg.text());
+        let accepts = Request::get(format!("{path}/{query}")).header(header::ACCEPT, "image/png");
+        let png = bench.send(accepts.body(Body::empty()).unwrap()).await;
+        assert_eq!(png.headers[header::CONTENT_TYPE], "image/png");
+        assert!(png.body.starts_with(b"\x89PNG\r\n\x1a\n"));
+    }
+    let problem = bench.get(&format!("{path}/table?format=png")).await.problem(400, "invalid-parameter");
+    assert!(problem["detail"].as_str().unwrap().contains("density_seen"), "{problem}");
+    // Such a profile has no depths to be shown over.
+    bench.get(&format!("{path}/points/1/profile?format=svg")).await.problem(400, "invalid-parameter");
+}
+
+#[tokio::test]
+async fn columns_can_be_chosen() {
+    let (bench, path) = finished().await;
+    let table = bench.get(&format!("{path}/table?fields=density_seen,ordinal")).await.json();
+    assert_eq!(
+        table["columns"],
+        json!({"density_seen": [1200.0, 1500.0, 1200.0, 1500.0], "ordinal": [1, 2, 3, 4]})
+    );
+    let csv = bench.get(&format!("{path}/points/1/history?fields=time,u_10&to=0.002&format=csv")).await;
+    assert_eq!(csv.text(), "time,u_10\n0.0,0.01\n0.001,0.01\n");
+    let points = bench.get(&format!("{path}/points?fields=state,ordinal&limit=1")).await.json();
+    assert_eq!(points["points"], json!([{"state": "succeeded", "ordinal": 1}]));
+    assert!(points["next"].is_string());
+}
+
+#[tokio::test]
+async fn tables_are_served_as_arrays() {
+    let (bench, path) = finished().await;
+    let npz = bench.get(&format!("{path}/points/1/orbit?node=49&from=2&to=3&format=npz")).await;
+    assert_eq!(npz.headers[header::CONTENT_TYPE], "application/x-npz");
+    let mut archive = zip::ZipArchive::new(Cursor::new(npz.body.to_vec())).unwrap();
+    let mut bytes = Vec::new();
+    archive.by_name("u.npy").unwrap().read_to_end(&mut bytes).unwrap();
+    let json = bench.get(&format!("{path}/points/1/orbit?node=49&from=2&to=3")).await.json();
+    let expected: Vec<u8> = json["columns"]["u"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|value| value.as_f64().unwrap().to_le_bytes())
+        .collect();
+    assert_eq!(bytes[bytes.len() - expected.len()..], expected);
+}

@@ -160,7 +160,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
     let plot = LinePlot {
         title: title.to_owned(),
         subtitle: format!(
-            "{}, {} samples, {window} window; backward whirl at the left, forward at the right, without the mean",
+            "{}, {} samples, {window} window, without the mean; + forward, − backward whirl",
             node_of(table),
             attribute("samples").unwrap_or(0.0)
         ),

@@ -2,6 +2,7 @@
 
 use drillsweep_sim::scenario::Scenario;
 use indexmap::IndexMap;
+use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -107,6 +108,9 @@ pub struct ArtifactEntry {
     pub rows: u64,
     /// BLAKE3 hash of its content, its `ETag`.
     pub hash: String,
+    /// When it was given up, having reached its age.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expired: Option<Timestamp>,
     /// Where it is.
     pub link: String,
 }

@@ -48,6 +48,8 @@ pub enum ProblemKind {
     NoResult,
     /// The run did not produce this table.
     NoSuchTable,
+    /// The table was there and has reached its age.
+    Expired,
     /// The sweep's state does not allow the operation.
     Conflict,
     /// The idempotency key was used with another request.
@@ -81,6 +83,7 @@ impl ProblemKind {
         ProblemKind::NodeNotRecorded,
         ProblemKind::NoResult,
         ProblemKind::NoSuchTable,
+        ProblemKind::Expired,
         ProblemKind::Conflict,
         ProblemKind::IdempotencyKeyReused,
         ProblemKind::Unavailable,
@@ -130,6 +133,7 @@ impl ProblemKind {
             ProblemKind::NodeNotRecorded => ("node-not-recorded", "The node was not recorded", 422),
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
+            ProblemKind::Expired => ("expired", "The table was kept for its time", 410),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
             ProblemKind::IdempotencyKeyReused => {
                 ("idempotency-key-reused", "The idempotency key belongs to another request", 422)

@@ -4,6 +4,7 @@ mod check;
 mod client;
 mod cost;
 mod fetch;
+mod gc;
 mod health;
 mod modes;
 mod plan;
@@ -70,6 +71,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Delete what has reached its age, and blobs that belong to nothing.
+    Gc(gc::GcArguments),
     /// Make, list and revoke tokens.
     #[command(subcommand)]
     Token(token::TokenCommand),
@@ -107,6 +110,7 @@ fn main() -> anyhow::Result<()> {
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Soak(arguments) => soak::soak(&arguments),
+        Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),
         Command::Check(arguments) => check::check(&arguments),

@@ -27,7 +27,14 @@ async fn load_of(store: &Store, key: &WorkKey, name: &str) -> Result<Bytes> {
 pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Artifact> {
     let mut artifacts = store.artifacts(key).await?;
     if let Some(index) = artifacts.iter().position(|artifact| artifact.name == name) {
-        return Ok(artifacts.swap_remove(index));
+        let artifact = artifacts.swap_remove(index);
+        let Some(expired) = artifact.expired else { return Ok(artifact) };
+        let expired = convert::timestamp(expired)?;
+        let detail = format!(
+            "the table {name} reached its age and was given up at {expired}; the summary is kept, and a scenario that \
+             differs in anything brings a new run"
+        );
+        return Err(Error::new(ProblemKind::Expired, detail));
     }
     let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
     let detail = format!("the run has no table {name}; it has {}", names.join(", "));

@@ -12,6 +12,7 @@ use utoipa::IntoParams;
 
 use crate::app::App;
 use crate::artifact;
+use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::Path;
 use crate::openapi::Problems;
@@ -45,15 +46,18 @@ pub(crate) async fn list(
     Path(PointPath { id, n }): Path<PointPath>,
 ) -> Result<Json<ArtifactList>> {
     let key = artifact::result_key(&app.store, &id, n).await?;
-    let entry = |artifact: drillsweep_store::Artifact| ArtifactEntry {
-        link: format!("/v1/sweeps/{id}/points/{n}/artifacts/{}", artifact.name),
-        name: artifact.name,
-        media_type: artifact.media_type,
-        bytes: artifact.bytes.unsigned_abs(),
-        rows: artifact.row_count.unsigned_abs(),
-        hash: artifact.blob,
+    let entry = |artifact: drillsweep_store::Artifact| {
+        Ok(ArtifactEntry {
+            link: format!("/v1/sweeps/{id}/points/{n}/artifacts/{}", artifact.name),
+            name: artifact.name,
+            media_type: artifact.media_type,
+            bytes: artifact.bytes.unsigned_abs(),
+            rows: artifact.row_count.unsigned_abs(),
+            hash: artifact.blob,
+            expired: artifact.expired.map(convert::timestamp).transpose()?,
+        })
     };
-    let artifacts = app.store.artifacts(&key).await?.into_iter().map(entry).collect();
+    let artifacts = app.store.artifacts(&key).await?.into_iter().map(entry).collect::<Result<_>>()?;
     Ok(Json(ArtifactList { artifacts }))
 }
 

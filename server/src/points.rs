@@ -108,6 +108,10 @@ pub(crate) async fn show(
         return Err(convert::no_such_point(&app.store, &id, n).await?);
     };
     let artifacts = app.store.artifacts(&record.work_key).await?;
-    let tables = artifacts.into_iter().map(|artifact| artifact.name).collect();
+    let tables = artifacts
+        .into_iter()
+        .filter(|artifact| artifact.expired.is_none())
+        .map(|artifact| artifact.name)
+        .collect();
     Ok(Json(convert::point_detail(&id, &record, tables)?))
 }

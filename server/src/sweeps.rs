@@ -10,7 +10,8 @@ use axum::{Extension, Json};
 use drillsweep_api::chart;
 use drillsweep_api::view::points;
 use drillsweep_api::{
-    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, SweepState, expand,
+    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, SweepState,
+    expand,
 };
 use drillsweep_store::{SubmitOutcome, SweepFilter};
 use serde::Deserialize;

@@ -1,16 +1,21 @@
 //! Arrays, by the hash of their bytes.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
+use std::time::UNIX_EPOCH;
 
 use bytes::Bytes;
+use futures::TryStreamExt;
 use object_store::local::LocalFileSystem;
 use object_store::path::Path as ObjectPath;
-use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
+use object_store::{ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
 
 use crate::error::{Result, StoreError};
+
+/// The folder of scratch objects.
+const SCRATCH: &str = "probe";
 
 /// A blob's name: the BLAKE3 hash of its bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -21,6 +26,23 @@ pub struct BlobId(blake3::Hash);
 #[derive(Debug, Clone)]
 pub struct BlobStore {
     objects: Arc<dyn ObjectStore>,
+    directory: PathBuf,
+}
+
+/// An object as it lies in the store.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct StoredObject {
+    path: ObjectPath,
+    pub(crate) bytes: u64,
+}
+
+impl StoredObject {
+    /// The name of the blob that it is; none of a scratch object.
+    pub(crate) fn blob(&self) -> Option<String> {
+        let name = self.path.filename()?;
+        let id: BlobId = name.parse().ok()?;
+        (id.path() == self.path).then(|| name.to_owned())
+    }
 }
 
 impl BlobStore {
@@ -28,7 +50,7 @@ impl BlobStore {
         std::fs::create_dir_all(directory)
             .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
         let objects = LocalFileSystem::new_with_prefix(directory)?.with_fsync(true);
-        Ok(Self { objects: Arc::new(objects) })
+        Ok(Self { objects: Arc::new(objects), directory: directory.to_owned() })
     }
 
     /// Writes a blob, durably, unless it is there.
@@ -64,9 +86,49 @@ impl BlobStore {
         Ok(self.objects.get_range(&id.path(), bytes).await?)
     }
 
+    /// Whether a blob is there.
+    pub(crate) async fn contains(&self, id: BlobId) -> Result<bool> {
+        match self.objects.head(&id.path()).await {
+            Ok(_) => Ok(true),
+            Err(object_store::Error::NotFound { .. }) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Blobs and scratch objects that were written before a time \[ms since the epoch\]. Files of others are not among
+    /// them.
+    pub(crate) async fn objects_before(&self, cutoff: i64) -> Result<Vec<StoredObject>> {
+        let is_old = async |meta: ObjectMeta| {
+            let object = StoredObject { path: meta.location, bytes: meta.size };
+            let is_ours = object.blob().is_some() || object.path.prefix_matches(&ObjectPath::from(SCRATCH));
+            Ok((is_ours && meta.last_modified.timestamp_millis() < cutoff).then_some(object))
+        };
+        Ok(self.objects.list(None).try_filter_map(is_old).try_collect().await?)
+    }
+
+    /// Deletes an object; one that is gone already is no matter.
+    pub(crate) async fn delete(&self, object: &StoredObject) -> Result<()> {
+        match self.objects.delete(&object.path).await {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished, as a
+    /// killed worker leaves them; they are deleted if so wanted. The object store does not list them.
+    pub(crate) async fn unfinished_uploads(&self, cutoff: i64, is_deleting: bool) -> Result<Vec<u64>> {
+        let directory = self.directory.clone();
+        let failed = |source| StoreError::Directory { path: self.directory.display().to_string(), source };
+        let walking = tokio::task::spawn_blocking(move || {
+            let mut sizes = Vec::new();
+            visit_unfinished(&directory, cutoff, is_deleting, &mut sizes).map(|()| sizes)
+        });
+        walking.await.map_err(std::io::Error::other).flatten().map_err(failed)
+    }
+
     /// Writes, reads and deletes a scratch object: a full or read-only disk shows here.
     pub(crate) async fn probe(&self, content: Bytes) -> Result<()> {
-        let path = ObjectPath::from(format!("probe/{}", blake3::hash(&content).to_hex()));
+        let path = ObjectPath::from(format!("{SCRATCH}/{}", blake3::hash(&content).to_hex()));
         self.objects.put(&path, PutPayload::from(content.clone())).await?;
         let read = self.objects.get(&path).await?.bytes().await?;
         self.objects.delete(&path).await?;
@@ -75,6 +137,36 @@ impl BlobStore {
         }
         Ok(())
     }
+}
+
+fn visit_unfinished(
+    directory: &Path,
+    cutoff: i64,
+    is_deleting: bool,
+    sizes: &mut Vec<u64>,
+) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(directory)? {
+        let entry = entry?;
+        let metadata = entry.metadata()?;
+        if metadata.is_dir() {
+            visit_unfinished(&entry.path(), cutoff, is_deleting, sizes)?;
+            continue;
+        }
+        let modified = metadata.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default();
+        let is_old = i64::try_from(modified.as_millis()).is_ok_and(|modified| modified < cutoff);
+        // `object_store` uploads to the object's path with `#` and a number after it.
+        let name = entry.file_name();
+        let is_upload = name.to_str().and_then(|name| name.rsplit_once('#')).is_some_and(|(_, number)| {
+            !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+        });
+        if is_old && is_upload {
+            if is_deleting {
+                std::fs::remove_file(entry.path())?;
+            }
+            sizes.push(metadata.len());
+        }
+    }
+    Ok(())
 }
 
 impl BlobId {

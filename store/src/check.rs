@@ -46,10 +46,11 @@ impl Store {
         }
         let results: i64 = sqlx::query_scalar("SELECT count(*) FROM result").fetch_one(&self.pool).await?;
         report.results = results.unsigned_abs();
-        let blobs: Vec<(String, i64)> =
-            sqlx::query_as("SELECT blob, max(bytes) FROM artifact GROUP BY blob ORDER BY blob")
-                .fetch_all(&self.pool)
-                .await?;
+        let blobs: Vec<(String, i64)> = sqlx::query_as(
+            "SELECT blob, max(bytes) FROM artifact WHERE expired IS NULL GROUP BY blob ORDER BY blob",
+        )
+        .fetch_all(&self.pool)
+        .await?;
         for (id, bytes) in blobs {
             report.blobs += 1;
             report.bytes += bytes.unsigned_abs();

@@ -20,6 +20,9 @@ pub enum StoreError {
     /// The object store failed.
     #[error("object store: {0}")]
     Blob(#[from] object_store::Error),
+    /// A result names a blob that is not there, or not any more: it must be written again.
+    #[error("the blob {0} of a result is not there")]
+    BlobMissing(String),
     /// A directory could not be made, or the database's lock file not taken.
     #[error("{path}: {source}")]
     Directory {

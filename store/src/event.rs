@@ -25,7 +25,8 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
-        let rows: Vec<(i64, String, Vec<u8>, i64, Option<String>)> = sqlx::query_as(
+        type Row = (i64, String, Vec<u8>, i64, Option<String>);
+        let rows: Vec<Row> = sqlx::query_as(
             "SELECT seq, kind, work_key, at,
                     (SELECT group_concat(p.ordinal) FROM point p
                      WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id)

@@ -59,6 +59,8 @@ pub struct Artifact {
     pub bytes: i64,
     /// Rows of the table.
     pub row_count: i64,
+    /// When its blob was given up \[ms since the epoch\].
+    pub expired: Option<i64>,
 }
 
 #[derive(FromRow)]
@@ -168,12 +170,12 @@ impl Store {
             artifact: Artifact,
         }
         let rows: Vec<Row> = sqlx::query_as(
-            "SELECT p.ordinal, a.name, a.media_type, a.blob, a.bytes, a.row_count
+            "SELECT p.ordinal, a.name, a.media_type, a.blob, a.bytes, a.row_count, a.expired
              FROM (SELECT ordinal, work_key FROM point
                    WHERE sweep_id = ?1 AND ordinal > ?2
                      AND EXISTS (SELECT 1 FROM artifact WHERE artifact.work_key = point.work_key)
                    ORDER BY ordinal LIMIT ?3) AS p
-             JOIN artifact a ON a.work_key = p.work_key
+             JOIN artifact a ON a.work_key = p.work_key AND a.expired IS NULL
              ORDER BY p.ordinal, a.name",
         )
         .bind(sweep_id)
@@ -192,7 +194,7 @@ impl Store {
     /// When the database fails.
     pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
         Ok(sqlx::query_as(
-            "SELECT name, media_type, blob, bytes, row_count FROM artifact WHERE work_key = ?1 ORDER BY name",
+            "SELECT name, media_type, blob, bytes, row_count, expired FROM artifact WHERE work_key = ?1 ORDER BY name",
         )
         .bind(key.as_slice())
         .fetch_all(&self.pool)

@@ -4,7 +4,7 @@ use sqlx::SqliteExecutor;
 
 use crate::blob::BlobId;
 use crate::connection::{Store, now};
-use crate::error::Result;
+use crate::error::{Result, StoreError};
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
@@ -193,6 +193,10 @@ impl Store {
             .execute(&mut *tx)
             .await?;
         for artifact in artifacts {
+            // Under the lock that blobs are deleted under: it stays.
+            if !self.blobs().contains(artifact.blob).await? {
+                return Err(StoreError::BlobMissing(artifact.blob.to_string()));
+            }
             sqlx::query(
                 "INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
             )

@@ -254,7 +254,7 @@ mod tests {
         let (first, last) = (lines[0][0], lines[0][lines[0].len() - 1]);
         let time = |x: f64| 59.999 * (x - first[0]) / (last[0] - first[0]);
         assert!((time(top[0]) - 31.415).abs() < 0.1 && (time(bottom[0]) - 27.182).abs() < 0.1);
-        assert!(texts(&svg).iter().all(|text| !text.is_empty()), "no legend for one line without a name");
+        assert!(!svg.contains("legend"), "one line without a name needs none");
     }
 
     #[test]

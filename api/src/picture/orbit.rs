@@ -1,6 +1,6 @@
 //! The orbit of one node in its hole.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use super::{
     Drawing, PictureError, PlotAxis,
@@ -100,7 +100,7 @@ impl OrbitPlot {
                 position([wall * cos, wall * sin])
             });
             let circle = Shape::Polyline(circle.collect(), Stroke::dashed(Colour::QUIET_TEXT, 1.3));
-            let [x, y] = position([wall * 0.7071, wall * 0.7071]);
+            let [x, y] = position([wall * FRAC_1_SQRT_2, wall * FRAC_1_SQRT_2]);
             let text =
                 Text::new("string touches wall", [x + 6.0, y - 6.0], Anchor::Start, 11.5, Colour::QUIET_TEXT);
             let fits = area.right - x > 130.0;

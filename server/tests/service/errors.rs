@@ -81,7 +81,7 @@ async fn a_body_that_is_too_large_or_of_another_type_is_refused() {
 async fn a_table_is_not_served_in_formats_that_there_are_not() {
     let bench = Bench::new().await;
     let id = bench.submit(json!({"preset": "paper-200m"})).await;
-    let request = Request::get(format!("/v1/sweeps/{id}/table")).header(header::ACCEPT, "image/png");
+    let request = Request::get(format!("/v1/sweeps/{id}/table")).header(header::ACCEPT, "image/webp");
     bench.send(request.body(Body::empty()).unwrap()).await.problem(406, "not-acceptable");
 }
 

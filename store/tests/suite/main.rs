@@ -12,6 +12,7 @@ mod counts;
 mod fairness;
 mod lease;
 mod probe;
+mod retention;
 mod submit;
 mod table;
 mod token;

@@ -1,0 +1,236 @@
+//! What is kept, for how long, and how its space comes back.
+//!
+//! Rows say what is wanted; blobs that no row names are deleted after a grace time. Every deletion and every row that
+//! names a blob happens under the database's write lock, and a result is stored only if its blobs are there: so a blob
+//! that a worker has just found to exist cannot vanish behind its back.
+
+use std::collections::{BTreeMap, HashSet};
+use std::time::Duration;
+
+use sqlx::{Sqlite, Transaction};
+
+use crate::blob::StoredObject;
+use crate::connection::{Store, now};
+use crate::error::Result;
+
+/// Blobs that are deleted under one hold of the write lock.
+const BATCH: usize = 100;
+
+/// How long an idempotency key holds \[ms\].
+const IDEMPOTENCY_MS: i64 = 24 * 3_600_000;
+
+/// How long a silent worker stays in the register \[ms\].
+const WORKER_MS: i64 = 24 * 3_600_000;
+
+/// How long what is kept. Sweeps that are pinned keep everything; summaries and the tables of sweeps are kept as long
+/// as their sweeps.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RetentionPolicy {
+    /// Age at which the artifacts of a name expire.
+    pub artifact_ages: BTreeMap<String, Duration>,
+    /// Age at which all other artifacts expire.
+    pub other_artifacts: Duration,
+    /// Age at which events are forgotten.
+    pub events: Duration,
+    /// Age below which a blob is not deleted, though no row names it: a result may be on its way to its row.
+    pub blob_grace: Duration,
+}
+
+/// What was deleted, or would be.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Garbage {
+    /// Sweeps whose time had come.
+    pub sweeps: u64,
+    /// Results that belonged to no sweep any more.
+    pub results: u64,
+    /// Artifacts that reached their age; their results keep their summaries.
+    pub artifacts: u64,
+    /// Events.
+    pub events: u64,
+    /// Blobs.
+    pub blobs: u64,
+    /// Size of the blobs.
+    pub blob_bytes: u64,
+    /// Parts of uploads that were never finished.
+    pub unfinished_uploads: u64,
+    /// Size of these parts.
+    pub unfinished_bytes: u64,
+}
+
+impl Store {
+    /// Deletes what need not be kept, and tells what it was; a dry run only tells.
+    ///
+    /// # Errors
+    /// When the database or the object store fails; what was deleted until then stays deleted.
+    pub async fn collect_garbage(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
+        let mut garbage = Garbage::default();
+        let mut tx = self.write().await?;
+        let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
+            .bind(self.clock_offset_ms)
+            .fetch_one(&mut *tx)
+            .await?;
+        garbage.sweeps = delete_expired_sweeps(&mut tx, now).await?;
+        garbage.results = delete_unwanted_work(&mut tx).await?;
+        garbage.artifacts = expire_artifacts(&mut tx, policy, now).await?;
+        garbage.events = delete_old_rows(&mut tx, policy, now).await?;
+        let named: HashSet<String> =
+            sqlx::query_scalar("SELECT DISTINCT blob FROM artifact WHERE expired IS NULL")
+                .fetch_all(&mut *tx)
+                .await?
+                .into_iter()
+                .collect();
+        if is_dry_run {
+            tx.rollback().await?;
+        } else {
+            tx.commit().await?;
+        }
+
+        let cutoff = now.saturating_sub(milliseconds(policy.blob_grace));
+        let unnamed = self.blobs().objects_before(cutoff).await?;
+        let unnamed: Vec<StoredObject> = unnamed
+            .into_iter()
+            .filter(|object| object.blob().is_none_or(|blob| !named.contains(&blob)))
+            .collect();
+        for batch in unnamed.chunks(BATCH) {
+            let deleted = if is_dry_run { batch.to_vec() } else { self.delete_unnamed(batch).await? };
+            garbage.blobs += deleted.len() as u64;
+            garbage.blob_bytes += deleted.iter().map(|object| object.bytes).sum::<u64>();
+        }
+        let unfinished = self.blobs().unfinished_uploads(cutoff, !is_dry_run).await?;
+        garbage.unfinished_uploads = unfinished.len() as u64;
+        garbage.unfinished_bytes = unfinished.iter().sum();
+        if !is_dry_run {
+            // Pages that were freed go back to the file system with the next checkpoint of the log.
+            sqlx::query("PRAGMA wal_checkpoint(TRUNCATE)").fetch_all(&self.pool).await?;
+        }
+        Ok(garbage)
+    }
+
+    /// Keeps a sweep and all that belongs to it from expiring, or not any more. False if there is no such sweep.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn pin_sweep(&self, id: &str, is_pinned: bool) -> Result<bool> {
+        let changed = sqlx::query("UPDATE sweep SET pinned = ?2, version = version + 1 WHERE id = ?1")
+            .bind(id)
+            .bind(is_pinned)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
+        Ok(changed == 1)
+    }
+
+    /// Sets when a sweep is deleted \[ms since the epoch\]: at the first collection after it, if all its points are
+    /// final and it is not pinned; none means never. False if there is no such sweep.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn expire_sweep_at(&self, id: &str, expires: Option<i64>) -> Result<bool> {
+        let changed = sqlx::query("UPDATE sweep SET expires = ?2, version = version + 1 WHERE id = ?1")
+            .bind(id)
+            .bind(expires)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
+        Ok(changed == 1)
+    }
+
+    /// Deletes those of the objects that no row names now, under the lock that rows are written under.
+    async fn delete_unnamed(&self, objects: &[StoredObject]) -> Result<Vec<StoredObject>> {
+        let mut tx = self.write().await?;
+        let mut deleted = Vec::new();
+        for object in objects {
+            let is_named: i64 = sqlx::query_scalar(
+                "SELECT EXISTS (SELECT 1 FROM artifact WHERE blob = ?1 AND expired IS NULL)",
+            )
+            .bind(object.blob())
+            .fetch_one(&mut *tx)
+            .await?;
+            if is_named == 0 {
+                self.blobs().delete(object).await?;
+                deleted.push(object.clone());
+            }
+        }
+        tx.rollback().await?;
+        Ok(deleted)
+    }
+}
+
+/// Sweeps take their points, events and idempotency keys along.
+async fn delete_expired_sweeps(tx: &mut Transaction<'static, Sqlite>, now: i64) -> Result<u64> {
+    Ok(sqlx::query("DELETE FROM sweep WHERE pinned = 0 AND expires <= ?1 AND finished IS NOT NULL")
+        .bind(now)
+        .execute(&mut **tx)
+        .await?
+        .rows_affected())
+}
+
+/// Work that is final and that no point wants, with its result and artifacts.
+async fn delete_unwanted_work(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
+    let results = sqlx::query(
+        "DELETE FROM result WHERE NOT EXISTS (SELECT 1 FROM point WHERE point.work_key = result.work_key)",
+    )
+    .execute(&mut **tx)
+    .await?
+    .rows_affected();
+    sqlx::query(
+        "DELETE FROM work WHERE state IN ('done', 'failed', 'dead', 'cancelled')
+           AND NOT EXISTS (SELECT 1 FROM point WHERE point.work_key = work.key)
+           AND NOT EXISTS (SELECT 1 FROM result WHERE result.work_key = work.key)",
+    )
+    .execute(&mut **tx)
+    .await?;
+    Ok(results)
+}
+
+/// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
+async fn expire_artifacts(
+    tx: &mut Transaction<'static, Sqlite>,
+    policy: &RetentionPolicy,
+    now: i64,
+) -> Result<u64> {
+    let names: Vec<String> = sqlx::query_scalar("SELECT DISTINCT name FROM artifact WHERE expired IS NULL")
+        .fetch_all(&mut **tx)
+        .await?;
+    let mut expired = 0;
+    for name in names {
+        let age = policy.artifact_ages.get(&name).unwrap_or(&policy.other_artifacts);
+        expired += sqlx::query(
+            "UPDATE artifact SET expired = ?2 WHERE name = ?1 AND expired IS NULL
+               AND work_key IN (SELECT work_key FROM result WHERE created <= ?3)
+               AND NOT EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
+                               WHERE p.work_key = artifact.work_key AND (s.pinned <> 0 OR s.created > ?3))",
+        )
+        .bind(&name)
+        .bind(now)
+        .bind(now.saturating_sub(milliseconds(*age)))
+        .execute(&mut **tx)
+        .await?
+        .rows_affected();
+    }
+    Ok(expired)
+}
+
+/// Events, idempotency keys and workers that nobody will ask for; tells the number of events.
+async fn delete_old_rows(
+    tx: &mut Transaction<'static, Sqlite>,
+    policy: &RetentionPolicy,
+    now: i64,
+) -> Result<u64> {
+    let events = sqlx::query("DELETE FROM event WHERE at <= ?1")
+        .bind(now.saturating_sub(milliseconds(policy.events)))
+        .execute(&mut **tx)
+        .await?
+        .rows_affected();
+    for (query, age) in [
+        ("DELETE FROM idempotency WHERE created <= ?1", IDEMPOTENCY_MS),
+        ("DELETE FROM worker WHERE last_seen <= ?1", WORKER_MS),
+    ] {
+        sqlx::query(query).bind(now - age).execute(&mut **tx).await?;
+    }
+    Ok(events)
+}
+
+fn milliseconds(age: Duration) -> i64 {
+    i64::try_from(age.as_millis()).unwrap_or(i64::MAX)
+}

@@ -1,0 +1,156 @@
+//! Retention: what expires, what stays, and that the space comes back.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use drillsweep_store::{Garbage, RetentionPolicy, Role, Store, StoreError};
+
+use crate::bench::{Bench, claim, finish, key, point_record, submit, sweep};
+
+const HOUR: u64 = 3_600;
+const DAY: u64 = 24 * HOUR;
+const DAY_MS: i64 = DAY as i64 * 1_000;
+
+/// Histories for 30 days, all else for a year.
+fn policy() -> RetentionPolicy {
+    RetentionPolicy {
+        artifact_ages: BTreeMap::from([("history".to_owned(), Duration::from_secs(30 * DAY))]),
+        other_artifacts: Duration::from_secs(365 * DAY),
+        events: Duration::from_secs(30 * DAY),
+        blob_grace: Duration::from_secs(DAY),
+    }
+}
+
+async fn collect(store: &Store) -> Garbage {
+    let told = store.collect_garbage(&policy(), true).await.unwrap();
+    let done = store.collect_garbage(&policy(), false).await.unwrap();
+    assert_eq!(told, done, "a dry run tells what is then done");
+    assert_eq!(
+        store.collect_garbage(&policy(), false).await.unwrap(),
+        Garbage::default(),
+        "and once is enough"
+    );
+    done
+}
+
+fn bytes_of_blobs(bench: &Bench) -> u64 {
+    fn size(directory: &Path) -> u64 {
+        let entries = std::fs::read_dir(directory).unwrap().map(Result::unwrap);
+        entries
+            .map(
+                |entry| {
+                    if entry.path().is_dir() { size(&entry.path()) } else { entry.metadata().unwrap().len() }
+                },
+            )
+            .sum()
+    }
+    size(&bench.config(Role::Server, 0).blob_directory)
+}
+
+#[tokio::test]
+async fn a_blob_that_no_row_names_goes_after_its_grace() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    let named = bytes_of_blobs(&bench);
+    let orphan = store.blobs().put(vec![7; 1_000]).await.unwrap();
+    assert_eq!(collect(&bench.after(DAY_MS / 2).await).await, Garbage::default());
+    let found = collect(&bench.after(DAY_MS + 60_000).await).await;
+    assert_eq!(found, Garbage { blobs: 1, blob_bytes: 1_000, ..Garbage::default() });
+    assert!(store.blobs().get(orphan).await.is_err());
+    assert_eq!(bytes_of_blobs(&bench), named);
+}
+
+#[tokio::test]
+async fn what_a_killed_upload_left_goes_too_and_strange_files_stay() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    let directory = bench.config(Role::Server, 0).blob_directory;
+    std::fs::create_dir_all(directory.join("ab/cd")).unwrap();
+    std::fs::write(directory.join("ab/cd/abcd0123#1"), b"half").unwrap();
+    std::fs::write(directory.join("README"), b"not ours").unwrap();
+    drop(store);
+    let found = collect(&bench.after(2 * DAY_MS).await).await;
+    assert_eq!(found, Garbage { unfinished_uploads: 1, unfinished_bytes: 4, ..Garbage::default() });
+    assert_eq!(bytes_of_blobs(&bench), 8);
+}
+
+#[tokio::test]
+async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("old", [1, 2, 3])).await;
+    for _ in 0..3 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    submit(&bench.after(20 * DAY_MS).await, &sweep("young", [2])).await;
+    submit(&store, &sweep("pinned", [3])).await;
+    assert!(store.pin_sweep("pinned", true).await.unwrap());
+    assert!(!store.pin_sweep("none", true).await.unwrap());
+    let before = bytes_of_blobs(&bench);
+
+    let later = bench.after(31 * DAY_MS).await;
+    let found = collect(&later).await;
+    assert_eq!((found.artifacts, found.blobs, found.blob_bytes), (1, 1, 32));
+    assert_eq!(bytes_of_blobs(&bench), before - 32);
+    for (number, is_expired) in [(1, true), (2, false), (3, false)] {
+        let artifact = &later.artifacts(&key(number)).await.unwrap()[0];
+        assert_eq!(artifact.expired.is_some(), is_expired, "{number}");
+        assert_eq!(later.blobs().get(artifact.blob.parse().unwrap()).await.is_err(), is_expired);
+    }
+    assert!(point_record(&later, "old", 1).await.summary_json.is_some(), "the summary stays");
+
+    assert!(later.pin_sweep("pinned", false).await.unwrap());
+    let found = collect(&bench.after(51 * DAY_MS).await).await;
+    assert_eq!((found.artifacts, found.blobs), (2, 2));
+    assert_eq!(bytes_of_blobs(&bench), before - 3 * 32);
+}
+
+#[tokio::test]
+async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("goes", [1, 2])).await;
+    submit(&store, &sweep("stays", [2])).await;
+    submit(&store, &sweep("unfinished", [9])).await;
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    let now = store.now_ms().await.unwrap();
+    for id in ["goes", "unfinished"] {
+        assert!(store.expire_sweep_at(id, Some(now + DAY_MS)).await.unwrap());
+    }
+    assert_eq!(collect(&bench.after(DAY_MS / 2).await).await.sweeps, 0);
+    let found = collect(&bench.after(2 * DAY_MS).await).await;
+    assert_eq!((found.sweeps, found.results, found.blobs), (1, 1, 1));
+    assert_eq!(store.sweep("goes").await.unwrap(), None);
+    assert!(store.sweep("unfinished").await.unwrap().is_some());
+    assert!(point_record(&store, "stays", 1).await.summary_json.is_some());
+    // What was forgotten can be asked for again.
+    submit(&store, &sweep("again", [1])).await;
+    submit(&store, &sweep("more", [9])).await;
+    assert!(store.sweep("again").await.unwrap().unwrap().finished.is_none());
+}
+
+#[tokio::test]
+async fn no_row_names_a_blob_that_is_gone() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    // The worker finds the blob of an earlier result, and the collector takes it before the row is written.
+    let claim = claim(&store, "w").await;
+    let blob = store.blobs().put(claim.lease.key.to_vec()).await.unwrap();
+    assert_eq!(bench.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap().blobs, 1);
+    let artifact = drillsweep_store::NewArtifact {
+        name: "history".to_owned(),
+        media_type: "application/vnd.apache.parquet".to_owned(),
+        blob,
+        bytes: 32,
+        row_count: 7,
+    };
+    let refused = store.finish_done(&claim.lease, "{}", "{}", &[artifact]).await;
+    assert!(matches!(refused, Err(StoreError::BlobMissing(_))), "{refused:?}");
+    // It still holds the lease, and writes the blob again.
+    assert!(finish(&store, &claim).await);
+}

@@ -29,6 +29,18 @@ pub enum Axis {
         #[schema(inline)]
         scale: Scale,
     },
+    /// `{"from", "to", "scale"}`: anything between, where the design draws the values (Latin hypercube, Sobol).
+    #[schema(title = "AxisInterval")]
+    Interval {
+        /// Lower or upper end.
+        from: f64,
+        /// The other end.
+        to: f64,
+        /// How the values are spread.
+        #[serde(default)]
+        #[schema(inline)]
+        scale: Scale,
+    },
 }
 
 /// Spacing of the values between the ends of a range.
@@ -43,26 +55,33 @@ pub enum Scale {
 }
 
 impl Axis {
-    /// The number of values, without forming them.
-    pub fn count(&self) -> usize {
+    /// The number of values, without forming them; none where the design draws them.
+    pub fn count(&self) -> Option<usize> {
         match self {
-            Axis::Values { values } => values.len(),
-            Axis::Range { count, .. } => *count as usize,
+            Axis::Values { values } => Some(values.len()),
+            Axis::Range { count, .. } => Some(*count as usize),
+            Axis::Interval { .. } => None,
         }
     }
 
-    /// The value of index `i` (from 0). This is the only place where swept values are formed, so that two
-    /// requests for the same range name the same points to the last bit.
+    /// The value of index `i` (from 0, below the count). Here and in [`Axis::at`] swept values are formed, and nowhere
+    /// else, so that two requests for the same range name the same points to the last bit.
     pub fn value(&self, i: usize) -> f64 {
         match self {
             Axis::Values { values } => values[i],
             Axis::Range { to, count, .. } if i + 1 == *count as usize => *to,
-            Axis::Range { from, to, count, scale } => {
-                let fraction = (i as f64, f64::from(count - 1));
-                match scale {
-                    Scale::Linear => from + (to - from) * fraction.0 / fraction.1,
-                    Scale::Log => from * (to / from).powf(fraction.0 / fraction.1),
-                }
+            Axis::Range { from, to, count, scale } => scale.between(*from, *to, i as f64, f64::from(count - 1)),
+            Axis::Interval { from, to, scale } => scale.between(*from, *to, i as f64, 1.0),
+        }
+    }
+
+    /// The value at `fraction` of the axis, 0 to 1 without the end: of an interval the value there, of a list the
+    /// entry there, so that each is as likely as the others.
+    pub fn at(&self, fraction: f64) -> f64 {
+        match self {
+            Axis::Values { values } => values[((fraction * values.len() as f64) as usize).min(values.len() - 1)],
+            Axis::Range { from, to, scale, .. } | Axis::Interval { from, to, scale } => {
+                scale.between(*from, *to, fraction, 1.0)
             }
         }
     }
@@ -76,8 +95,8 @@ impl Axis {
                 problems.push(("/values", serde_json::json!([]), "must list at least one value".to_owned()));
             }
             Axis::Values { .. } => {}
-            Axis::Range { from, to, count, scale } => {
-                if *count < 2 {
+            Axis::Range { from, to, scale, .. } | Axis::Interval { from, to, scale } => {
+                if let Axis::Range { count: count @ 0..2, .. } = self {
                     let detail = "must be 2 or more; a single value is written {\"values\": [x]}".to_owned();
                     problems.push(("/count", (*count).into(), detail));
                 }
@@ -101,7 +120,18 @@ impl Axis {
             Axis::Values { .. } => format!("/values/{i}"),
             Axis::Range { .. } if i == 0 => "/from".to_owned(),
             Axis::Range { count, .. } if i + 1 == *count as usize => "/to".to_owned(),
-            Axis::Range { .. } => String::new(),
+            Axis::Range { .. } | Axis::Interval { .. } => String::new(),
+        }
+    }
+}
+
+impl Scale {
+    /// The value at `part` of `whole` between the ends. The power is the pure one of `libm`, since a system's own may
+    /// differ from another's in the last bit.
+    fn between(self, from: f64, to: f64, part: f64, whole: f64) -> f64 {
+        match self {
+            Scale::Linear => from + (to - from) * part / whole,
+            Scale::Log => from * libm::pow(to / from, part / whole),
         }
     }
 }
@@ -132,19 +162,12 @@ impl TryFrom<AxisFields> for Axis {
             AxisFields { from: Some(from), to: Some(to), count: Some(count), scale, .. } => {
                 Ok(Axis::Range { from, to, count, scale: scale.unwrap_or_default() })
             }
-            AxisFields { from, to, count, .. } => {
-                let given = [("from", from.is_some()), ("to", to.is_some()), ("count", count.is_some())];
-                let missing: Vec<_> = given
-                    .iter()
-                    .filter(|(_, is_given)| !is_given)
-                    .map(|(name, _)| format!("`{name}`"))
-                    .collect();
-                Err(if missing.len() == given.len() {
-                    "an axis needs `values`, or `from`, `to` and `count`".to_owned()
-                } else {
-                    format!("a range needs {} too", missing.join(" and "))
-                })
+            AxisFields { from: Some(from), to: Some(to), count: None, scale, .. } => {
+                Ok(Axis::Interval { from, to, scale: scale.unwrap_or_default() })
             }
+            AxisFields { from: Some(_), .. } => Err("a range needs `to` too".to_owned()),
+            AxisFields { to: Some(_), .. } => Err("a range needs `from` too".to_owned()),
+            AxisFields { .. } => Err("an axis needs `values`, or `from`, `to` and `count`".to_owned()),
         }
     }
 }
@@ -159,7 +182,7 @@ mod tests {
     }
 
     fn values(axis: &Axis) -> Vec<f64> {
-        (0..axis.count()).map(|i| axis.value(i)).collect()
+        (0..axis.count().unwrap()).map(|i| axis.value(i)).collect()
     }
 
     #[test]
@@ -176,6 +199,27 @@ mod tests {
             assert!((value / expected - 1.0).abs() < 4.0 * f64::EPSILON, "{value} instead of {expected}");
         }
     }
+
+    #[test]
+    fn a_fraction_of_an_interval_keeps_its_scale_and_of_a_list_picks_an_entry() {
+        let linear = parse(r#"{"from": 1200, "to": 2000}"#).unwrap();
+        assert_eq!([0.0, 0.25, 0.5].map(|fraction| linear.at(fraction)), [1200.0, 1400.0, 1600.0]);
+        let log = parse(r#"{"from": 1e-2, "to": 1e2, "scale": "log"}"#).unwrap();
+        assert!((log.at(0.5) - 1.0).abs() < 1e-15, "{}", log.at(0.5));
+        let list = parse(r#"{"values": [7, 8, 9]}"#).unwrap();
+        let picked = [0.0, 0.33, 0.34, 0.66, 0.67, 0.999].map(|fraction| list.at(fraction));
+        assert_eq!(picked, [7.0, 7.0, 8.0, 8.0, 9.0, 9.0]);
+    }
+
+    #[test]
+    fn values_of_a_scale_have_these_bits() {
+        let log = parse(r#"{"from": 0.01, "to": 0.06, "count": 4, "scale": "log"}"#).unwrap();
+        let bits: Vec<_> = values(&log).into_iter().map(f64::to_bits).collect();
+        assert_eq!(bits, LOG_BITS);
+    }
+
+    /// Of 0.01 (6)^(i / 3), by `libm` 0.2.
+    const LOG_BITS: [u64; 4] = [4576918229304087675, 4580894714928274227, 4584919399700666857, 4588807732320345784];
 
     proptest! {
         #[test]

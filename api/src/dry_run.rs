@@ -46,18 +46,18 @@ pub struct PlannedPoint {
 impl DryRun {
     /// What an expanded request would become: `known` of its points have a result, `speed_json` is what a worker measured
     /// last, and `workers` are there to share the rest.
-    pub fn new(expansion: Expansion, known: u64, speed_json: Option<&str>, workers: usize) -> Self {
+    pub fn new(expansion: &Expansion, known: u64, speed_json: Option<&str>, workers: usize) -> Self {
         // A speed that another version has written is as good as none.
         let speed: Option<MachineSpeed> = speed_json.and_then(|json| serde_json::from_str(json).ok());
         let total = expansion.points.len();
         let sample = expansion.points.iter().step_by(total.div_ceil(PLANNED_POINTS).max(1));
         let plans: Vec<Plan> =
-            sample.filter_map(|point| Plan::new(&point.scenario, speed.as_ref()).ok()).collect();
+            sample.filter_map(|point| Plan::new(&expansion.scenario(point), speed.as_ref()).ok()).collect();
         let unknown = (total as u64).saturating_sub(known) as f64;
         let cpu_time = mean_cpu_time(&plans).map(|mean| mean * unknown);
-        let planned = |point: SweepPoint| PlannedPoint {
+        let planned = |point: &SweepPoint| PlannedPoint {
             ordinal: point.ordinal,
-            parameters: point.parameters,
+            parameters: expansion.parameters(point),
             key: key_text(&point.key),
         };
         Self {
@@ -66,8 +66,8 @@ impl DryRun {
             plan: plans.into_iter().next(),
             cpu_time,
             wall_time: cpu_time.filter(|_| workers > 0).map(|time| time / workers as f64),
-            points: expansion.points.into_iter().map(planned).collect(),
-            warnings: expansion.warnings,
+            points: expansion.points.iter().map(planned).collect(),
+            warnings: expansion.warnings.clone(),
         }
     }
 }
@@ -92,7 +92,7 @@ mod tests {
         let speed = json!({"statics_per_node": 0.0, "step_per_node":
             [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]],
             "large_mesh_factor": 2.0});
-        let planned = DryRun::new(expansion(), 40, Some(&speed.to_string()), 2);
+        let planned = DryRun::new(&expansion(), 40, Some(&speed.to_string()), 2);
         // 60 points of 120,000 steps of 297 nodes.
         let wanted = 60.0 * 120_000.0 * 297.0 * 3e-7;
         assert!((planned.cpu_time.unwrap() / wanted - 1.0).abs() < 1e-12);
@@ -101,10 +101,10 @@ mod tests {
         assert_eq!(planned.plan.unwrap().accuracies[0].name, "draft");
 
         for speed in [None, Some("of another version")] {
-            let planned = DryRun::new(expansion(), 0, speed, 2);
+            let planned = DryRun::new(&expansion(), 0, speed, 2);
             assert_eq!((planned.cpu_time, planned.wall_time), (None, None));
             assert!(planned.plan.unwrap().effects.iter().all(|effect| effect.active));
         }
-        assert_eq!(DryRun::new(expansion(), 0, Some(&speed.to_string()), 0).wall_time, None);
+        assert_eq!(DryRun::new(&expansion(), 0, Some(&speed.to_string()), 0).wall_time, None);
     }
 }

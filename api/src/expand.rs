@@ -3,23 +3,38 @@
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::scenario::{PRESETS, Problem, Problems, Scenario, ScenarioRequest, Warning};
 use drillsweep_sim::transient::step_problem;
-use indexmap::IndexMap;
-use serde_json::Value;
+use indexmap::{IndexMap, IndexSet};
+use serde_json::{Map, Value, json};
 
 use crate::axis::Axis;
+use crate::design::{SOBOL_AXES, Sobol, latin_hypercube};
 use crate::problem::{FieldProblem, ProblemDetails, pointer_token};
-use crate::request::{AxisName, SweepRequest};
+use crate::request::{AxisName, Design, SweepRequest};
 use crate::service::LIMITS;
+
+/// Problems of one request that are reported at most: a hundred thousand points may each have their own.
+const MOST_PROBLEMS: usize = 100;
+
+/// What a request expands into: one scenario, and what each point changes in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expansion {
+    /// Preset or scenario with the changes of the request. At the swept fields it has the values of point 1.
+    pub base: Scenario,
+    /// The swept parameters, in order.
+    pub axes: Vec<AxisName>,
+    /// The points, by ordinal.
+    pub points: Vec<SweepPoint>,
+    /// What can be simulated but is probably not meant, with JSON Pointers into the request.
+    pub warnings: Vec<FieldProblem>,
+}
 
 /// One point to compute.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepPoint {
-    /// Number of the point in its sweep, from 1, the first axis varying slowest.
+    /// Number of the point in its sweep, from 1.
     pub ordinal: u32,
-    /// The swept parameters in the order of the axes, then the other axes' values of the scenario.
-    pub parameters: IndexMap<String, f64>,
-    /// The scenario to simulate: preset, changes and axes applied.
-    pub scenario: Scenario,
+    /// The values of the swept parameters, in the order of the axes.
+    pub values: Vec<f64>,
     /// Content hash of physics version and scenario: equal keys, equal results.
     pub key: PointKey,
 }
@@ -32,43 +47,80 @@ pub fn key_text(key: &PointKey) -> String {
     blake3::Hash::from_bytes(*key).to_hex().to_string()
 }
 
-/// What a request expands into.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Expansion {
-    /// The points, by ordinal.
-    pub points: Vec<SweepPoint>,
-    /// What can be simulated but is probably not meant, with JSON Pointers into the request.
-    pub warnings: Vec<FieldProblem>,
+impl Expansion {
+    /// The scenario to simulate at a point of this expansion.
+    pub fn scenario(&self, point: &SweepPoint) -> Scenario {
+        let mut scenario = self.base.clone();
+        for (name, &value) in self.axes.iter().zip(&point.values) {
+            // Each of these was made once, when the point was validated.
+            let _ = set_number(&mut scenario, name.scenario_path(), value);
+        }
+        scenario
+    }
+
+    /// What a point changes in the base, by path: with [`compose`] the point's scenario again.
+    pub fn changes(&self, point: &SweepPoint) -> Map<String, Value> {
+        let change = |(name, value): (&AxisName, &f64)| (name.scenario_path().to_owned(), number(*value));
+        self.axes.iter().zip(&point.values).map(change).collect()
+    }
+
+    /// The swept parameters of a point in the order of the axes, then the scenario's other parameters with a name.
+    pub fn parameters(&self, point: &SweepPoint) -> IndexMap<String, f64> {
+        let swept = self.axes.iter().zip(&point.values).map(|(name, value)| (name.as_str().to_owned(), *value));
+        let is_swept = |path: &str| self.axes.iter().any(|name| name.scenario_path() == path);
+        let mud = self.base.mud.as_ref();
+        let others = AxisName::NAMED.into_iter().filter(|(_, path)| !is_swept(path)).filter_map(|(name, _)| {
+            let value = if name == "flow_rate" { mud?.flow_rate } else { mud?.density };
+            Some((name.to_owned(), value))
+        });
+        swept.chain(others).collect()
+    }
+}
+
+/// The scenario of a stored point: its base with its changes, both as JSON text.
+///
+/// # Errors
+/// When either text is not what a release of the same physics version writes.
+pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
+    let mut scenario = Scenario::from_json(base)?;
+    let malformed = |error: serde_json::Error| Problem {
+        path: String::new(),
+        got: String::new(),
+        message: format!("the point's changes cannot be read: {error}"),
+    };
+    let changes: IndexMap<String, f64> = serde_json::from_str(changes).map_err(malformed)?;
+    for (path, value) in changes {
+        set_number(&mut scenario, &path, value)?;
+    }
+    Ok(scenario)
 }
 
 /// The points of a request, every one of them validated.
 ///
-/// Points are ordered like the digits of a counter: the last axis turns fastest, the first slowest.
+/// In a grid points are ordered like the digits of a counter: the last axis turns fastest, the first slowest.
 ///
 /// # Errors
-/// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request.
+/// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request; of very
+/// many the first hundred.
 pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
     let mut problems = Found::default();
-    let mut warnings = Found::default();
-    let mut points = Vec::new();
     check_members(request, &mut problems);
-    let axes_hold = check_axes(request, &mut problems);
-    if let Some(scenario) = resolve(request, &mut problems) {
-        if axes_hold && check_targets(request, &scenario, &mut problems) {
-            points = grid(request, &scenario, &mut problems, &mut warnings);
-        } else {
-            check_without_axes(request, &scenario, &mut problems);
+    let layout = Layout::new(request, &mut problems);
+    let expansion = resolve(request, &mut problems).and_then(|mut base| {
+        let Some(layout) = layout else {
+            check_without_axes(request, &base, &mut problems);
+            return None;
+        };
+        let fields_hold = set_fields(request, &layout, &mut base, &mut problems);
+        if fields_hold {
+            return Some(points(request, &layout, base, &mut problems));
         }
-    }
-    // One point stands for all: the limit is the mesh's, hardly the mud's.
-    if let Some((point, problem)) =
-        points.first().and_then(|point| Some((point, step_problem(&point.scenario)?)))
-    {
-        problems.add(request, &digits(point.ordinal as usize - 1, request), &problem);
-    }
-    match problems.0.is_empty() {
-        true => Ok(Expansion { points, warnings: warnings.into_vec() }),
-        false => Err(Box::new(ProblemDetails::invalid_request(problems.into_vec()))),
+        check_without_axes(request, &base, &mut problems);
+        None
+    });
+    match expansion {
+        Some(expansion) if problems.0.is_empty() => Ok(expansion),
+        _ => Err(Box::new(ProblemDetails::invalid_request(problems.into_vec()))),
     }
 }
 
@@ -82,64 +134,309 @@ pub fn key(scenario: &Scenario) -> PointKey {
     hasher.finalize().into()
 }
 
-fn grid(
-    request: &SweepRequest,
-    base: &Scenario,
-    problems: &mut Found,
-    warnings: &mut Found,
-) -> Vec<SweepPoint> {
-    let total: usize = request.axes.values().map(Axis::count).product();
-    let mut points = Vec::with_capacity(total);
-    for (number, ordinal) in (0..total).zip(1..) {
-        let indices = digits(number, request);
-        let mut scenario = base.clone();
-        for ((name, axis), &index) in request.axes.iter().zip(&indices) {
-            name.set(&mut scenario, axis.value(index));
+/// Sets a numeric field. Whole numbers go by way of the written form, which says what is wrong with others.
+fn set_number(scenario: &mut Scenario, path: &str, value: f64) -> Result<(), Problem> {
+    match scenario.number_mut(path) {
+        Some(number) => *number = value,
+        None => {
+            let refused = |problem: Problem| match problem.got.as_str() {
+                "" => problem,
+                _ => Problem { got: number(value).to_string(), ..problem },
+            };
+            *scenario = scenario.with(path, number(value)).map_err(refused)?;
         }
-        match scenario.validate() {
+    }
+    Ok(())
+}
+
+/// A number as JSON, a whole one without its decimal point.
+fn number(value: f64) -> Value {
+    const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative()) {
+        json!(value as i64)
+    } else {
+        json!(value)
+    }
+}
+
+/// How the points of a request get their values.
+struct Layout<'a> {
+    request: &'a SweepRequest,
+    names: Vec<AxisName>,
+    total: usize,
+    draw: Draw,
+}
+
+enum Draw {
+    /// The values are the axes' or the points' own.
+    Listed,
+    /// Fractions by axis and point.
+    LatinHypercube(Vec<Vec<f64>>),
+    /// Fractions from a sequence, from this point on.
+    Sobol(Sobol, u32),
+}
+
+impl<'a> Layout<'a> {
+    /// Checks design and axes against each other; what is wrong is noted.
+    fn new(request: &'a SweepRequest, problems: &mut Found) -> Option<Self> {
+        let before = problems.0.len();
+        let design = request.design;
+        let names: Vec<AxisName> = match design {
+            Design::List => request.points.first().map(|point| point.keys().cloned().collect()).unwrap_or_default(),
+            _ => request.axes.keys().cloned().collect(),
+        };
+        check_design_members(request, problems);
+        for (name, axis) in &request.axes {
+            let pointer = axis_pointer(name);
+            for (member, got, detail) in axis.problems() {
+                problems.push(format!("{pointer}{member}"), Some(got), detail);
+            }
+            match axis {
+                Axis::Range { count, .. } if design.is_drawn() => {
+                    let detail = "is not given in this design: `samples` says how many points there are";
+                    problems.push(format!("{pointer}/count"), Some((*count).into()), detail);
+                }
+                Axis::Interval { .. } if !design.is_drawn() => {
+                    problems.push(pointer, None, "a range needs `count` too");
+                }
+                _ => {}
+            }
+        }
+        check_names(request, &names, problems);
+        let total = match design {
+            Design::Grid => {
+                request.axes.values().try_fold(1, |total: usize, axis| total.checked_mul(axis.count().unwrap_or(1)))
+            }
+            Design::Zip => Some(request.axes.values().filter_map(Axis::count).max().unwrap_or(1)),
+            Design::List => Some(request.points.len()),
+            Design::LatinHypercube | Design::Sobol => Some(request.samples.unwrap_or(1) as usize),
+        };
+        let limit = LIMITS.points_per_sweep;
+        if total.is_none_or(|total| total > limit) {
+            let (pointer, got) = match design {
+                Design::List => ("/points", json!(request.points.len())),
+                Design::LatinHypercube | Design::Sobol => ("/samples", json!(request.samples)),
+                Design::Grid | Design::Zip => {
+                    let counts = request.axes.values().filter_map(Axis::count).map(|count| count.to_string());
+                    ("/axes", counts.collect::<Vec<_>>().join(" x ").into())
+                }
+            };
+            problems.push(pointer, Some(got), format!("a sweep has at most {limit} points"));
+        }
+        if problems.0.len() > before {
+            return None;
+        }
+        let (total, seed, skip) = (total?, request.seed.unwrap_or(0), request.skip.unwrap_or(0));
+        let draw = match design {
+            Design::Grid | Design::Zip | Design::List => Draw::Listed,
+            Design::LatinHypercube => Draw::LatinHypercube(latin_hypercube(names.len(), total, seed)),
+            Design::Sobol => Draw::Sobol(Sobol::new(names.len(), seed), skip),
+        };
+        Some(Layout { request, names, total, draw })
+    }
+
+    /// The values of point `number`, from 0, in the order of the axes.
+    fn values(&self, number: usize) -> Vec<f64> {
+        let axes = self.request.axes.values();
+        match &self.draw {
+            Draw::Listed if self.request.design == Design::List => {
+                let point = &self.request.points[number];
+                self.names.iter().filter_map(|name| point.get(name).copied()).collect()
+            }
+            Draw::Listed => {
+                axes.zip(self.indices(number)).map(|(axis, index)| axis.value(index)).collect()
+            }
+            Draw::LatinHypercube(fractions) => {
+                axes.zip(fractions).map(|(axis, fractions)| axis.at(fractions[number])).collect()
+            }
+            Draw::Sobol(sobol, skip) => {
+                let number = skip.wrapping_add(number as u32);
+                axes.zip(0..).map(|(axis, index)| axis.at(sobol.fraction(number, index))).collect()
+            }
+        }
+    }
+
+    /// The index on each axis of point `number` of a grid or a zip.
+    fn indices(&self, mut number: usize) -> Vec<usize> {
+        if self.request.design == Design::Zip {
+            return vec![number; self.names.len()];
+        }
+        let digit = |axis: &Axis| {
+            let count = axis.count().unwrap_or(1);
+            let index = number % count;
+            number /= count;
+            index
+        };
+        let mut indices: Vec<usize> = self.request.axes.values().rev().map(digit).collect();
+        indices.reverse();
+        indices
+    }
+
+    /// Where in the request the value of an axis at point `number` is written.
+    fn pointer(&self, number: usize, axis: usize) -> String {
+        let name = &self.names[axis];
+        match (self.request.design, self.request.axes.get(name)) {
+            (Design::List, _) | (_, None) => format!("/points/{number}/{}", pointer_token(name.as_str())),
+            (Design::Grid | Design::Zip, Some(values)) => {
+                format!("{}{}", axis_pointer(name), values.member(self.indices(number)[axis]))
+            }
+            (Design::LatinHypercube | Design::Sobol, Some(_)) => axis_pointer(name),
+        }
+    }
+
+    /// Where in the request a field of the scenario is decided at point `number`, if by an axis.
+    fn place(&self, number: usize, path: &str) -> Option<String> {
+        let axis = self.names.iter().position(|name| name.scenario_path() == path)?;
+        Some(self.pointer(number, axis))
+    }
+
+    /// The first point, and for every axis those with its least and greatest value.
+    fn extremes(&self, points: &[SweepPoint]) -> IndexSet<usize> {
+        let mut extremes = IndexSet::from([0]);
+        for axis in 0..self.names.len() {
+            let by_value = |a: &usize, b: &usize| points[*a].values[axis].total_cmp(&points[*b].values[axis]);
+            extremes.extend((0..points.len()).min_by(by_value));
+            extremes.extend((0..points.len()).max_by(by_value));
+        }
+        extremes
+    }
+}
+
+/// Whether members are given that the design does not know, or not given that it needs.
+fn check_design_members(request: &SweepRequest, problems: &mut Found) {
+    let design = request.design;
+    if design == Design::List {
+        if request.points.is_empty() {
+            problems.push("/points", Some(json!([])), "the design `list` needs at least one point");
+        }
+        if !request.axes.is_empty() {
+            problems.push("/axes", None, "is not given in the design `list`: the points have their values");
+        }
+    } else if !request.points.is_empty() {
+        problems.push("/points", None, "is given in the design `list` only");
+    }
+    match (design.is_drawn(), request.samples) {
+        (true, None | Some(0)) => {
+            problems.push("/samples", request.samples.map(Value::from), "must be given, 1 or more");
+        }
+        (false, Some(samples)) => {
+            let detail = "is given in the designs `latin_hypercube` and `sobol` only";
+            problems.push("/samples", Some(samples.into()), detail);
+        }
+        _ => {}
+    }
+    if let Some(seed) = request.seed.filter(|_| !design.is_drawn()) {
+        let detail = "is given in the designs `latin_hypercube` and `sobol` only";
+        problems.push("/seed", Some(seed.into()), detail);
+    }
+    if let Some(skip) = request.skip {
+        let detail = match design {
+            Design::Sobol => "skip and samples must stay below 4294967296 together",
+            _ => "is given in the design `sobol` only",
+        };
+        if design != Design::Sobol || skip.checked_add(request.samples.unwrap_or(0)).is_none() {
+            problems.push("/skip", Some(skip.into()), detail);
+        }
+    }
+    if design == Design::Zip {
+        let counts: IndexSet<_> = request.axes.values().filter_map(Axis::count).collect();
+        if counts.len() > 1 {
+            let counts: Vec<_> = counts.iter().map(usize::to_string).collect();
+            let detail = "the axes of the design `zip` must have the same number of values";
+            problems.push("/axes", Some(counts.join(" and ").into()), detail);
+        }
+    }
+    if design != Design::Grid && design != Design::List && request.axes.is_empty() {
+        problems.push("/axes", None, "this design needs at least one axis");
+    }
+}
+
+/// Whether every field is swept once, and every listed point has the same parameters.
+fn check_names(request: &SweepRequest, names: &[AxisName], problems: &mut Found) {
+    if names.len() > SOBOL_AXES {
+        let detail = format!("a sweep has at most {SOBOL_AXES} axes");
+        problems.push("/axes", Some(names.len().into()), detail);
+    }
+    for (index, name) in names.iter().enumerate() {
+        if let Some(other) = names[..index].iter().find(|other| other.scenario_path() == name.scenario_path()) {
+            let pointer = match request.design {
+                Design::List => format!("/points/0/{}", pointer_token(name.as_str())),
+                _ => axis_pointer(name),
+            };
+            problems.push(pointer, None, format!("is the same field as {}", other.as_str()));
+        }
+    }
+    for (number, point) in request.points.iter().enumerate() {
+        if point.len() != names.len() || !names.iter().all(|name| point.contains_key(name)) {
+            let names: Vec<_> = names.iter().map(AxisName::as_str).collect();
+            let detail = format!("must have the same parameters as the first point: {}", names.join(", "));
+            problems.push(format!("/points/{number}"), None, detail);
+        }
+    }
+}
+
+fn axis_pointer(name: &AxisName) -> String {
+    format!("/axes/{}", pointer_token(name.as_str()))
+}
+
+/// Sets the swept fields to the values of the first point; false where one of them is no numeric field.
+fn set_fields(request: &SweepRequest, layout: &Layout<'_>, base: &mut Scenario, problems: &mut Found) -> bool {
+    let before = problems.0.len();
+    for (axis, (name, value)) in layout.names.iter().zip(layout.values(0)).enumerate() {
+        if let Err(problem) = set_number(base, name.scenario_path(), value) {
+            let pointer = match request.design {
+                Design::List => layout.pointer(0, axis),
+                _ => axis_pointer(name),
+            };
+            let got = (!problem.got.is_empty()).then(|| number(value));
+            problems.push(pointer, got, format!("{}: {}", problem.path, problem.message));
+        }
+    }
+    problems.0.len() == before
+}
+
+/// All points. The first is validated in full, the others where the axes may have made a difference.
+fn points(request: &SweepRequest, layout: &Layout<'_>, base: Scenario, problems: &mut Found) -> Expansion {
+    let mut warnings = Found::default();
+    let mut points = Vec::with_capacity(layout.total);
+    let mut scenario = base.clone();
+    let paths: Vec<&str> = layout.names.iter().map(AxisName::scenario_path).collect();
+    for (index, ordinal) in (0..layout.total).zip(1..) {
+        let values = layout.values(index);
+        let set = paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let checked = set.map_err(Problems::from).and_then(|()| match index {
+            0 => scenario.validate(),
+            _ => scenario.validate_changes(paths.iter().copied()),
+        });
+        match checked {
             Ok(of_scenario) => {
                 for Warning { path, message } in of_scenario {
                     let problem = Problem { path, got: String::new(), message };
-                    warnings.add(request, &indices, &problem);
+                    warnings.add(request, |path| layout.place(index, path), &problem);
                 }
             }
             Err(Problems(of_scenario)) => {
                 for problem in &of_scenario {
-                    problems.add(request, &indices, problem);
+                    problems.add(request, |path| layout.place(index, path), problem);
+                }
+                if problems.0.len() >= MOST_PROBLEMS {
+                    break;
                 }
                 continue;
             }
         }
-        let (parameters, key) = (parameters(request, &scenario), key(&scenario));
-        points.push(SweepPoint { ordinal, parameters, scenario, key });
+        points.push(SweepPoint { ordinal, values, key: key(&scenario) });
     }
-    points
-}
-
-/// The index on each axis of point `number`, counted from 0.
-fn digits(mut number: usize, request: &SweepRequest) -> Vec<usize> {
-    let mut indices: Vec<usize> = request
-        .axes
-        .values()
-        .rev()
-        .map(|axis| {
-            let index = number % axis.count();
-            number /= axis.count();
-            index
-        })
-        .collect();
-    indices.reverse();
-    indices
-}
-
-fn parameters(request: &SweepRequest, scenario: &Scenario) -> IndexMap<String, f64> {
-    request
-        .axes
-        .keys()
-        .copied()
-        .chain(AxisName::ALL)
-        .filter_map(|name| Some((name.as_str().to_owned(), name.get(scenario)?)))
-        .collect()
+    let expansion = Expansion { base, axes: layout.names.clone(), points, warnings: warnings.into_vec() };
+    // The stability limit of an explicit step takes an equilibrium to find: the extreme points stand for all.
+    if problems.0.is_empty() {
+        for index in layout.extremes(&expansion.points) {
+            if let Some(problem) = step_problem(&expansion.scenario(&expansion.points[index])) {
+                problems.add(request, |path| layout.place(index, path), &problem);
+            }
+        }
+    }
+    expansion
 }
 
 /// The scenario that the axes are applied to: preset or scenario, with the changes of `set`.
@@ -162,7 +459,7 @@ fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Scenario> {
                 Ok(scenario) => return Some(scenario),
                 Err(Problems(of_set)) => {
                     for problem in of_set {
-                        problems.add(request, &[], &problem);
+                        problems.add(request, |_| None, &problem);
                     }
                 }
             }
@@ -188,67 +485,41 @@ fn check_members(request: &SweepRequest, problems: &mut Found) {
     }
 }
 
-/// Whether the axes can be expanded; what is wrong with them is noted.
-fn check_axes(request: &SweepRequest, problems: &mut Found) -> bool {
-    let mut hold = true;
-    for (name, axis) in &request.axes {
-        for (member, got, detail) in axis.problems() {
-            problems.push(format!("/axes/{}{member}", name.as_str()), Some(got), detail);
-            hold = false;
-        }
-    }
-    let total = request.axes.values().try_fold(1usize, |total, axis| total.checked_mul(axis.count()));
-    let limit = LIMITS.points_per_sweep;
-    if total.is_none_or(|total| total > limit) {
-        let counts: Vec<_> = request.axes.values().map(|axis| axis.count().to_string()).collect();
-        let detail = format!("a sweep has at most {limit} points");
-        problems.push("/axes", Some(counts.join(" x ").into()), detail);
-        hold = false;
-    }
-    hold
-}
-
-/// Whether the scenario has the fields that the axes vary.
-fn check_targets(request: &SweepRequest, scenario: &Scenario, problems: &mut Found) -> bool {
-    let missing = request.axes.keys().filter(|name| name.get(scenario).is_none());
-    let before = problems.0.len();
-    for name in missing {
-        problems.push(format!("/axes/{}", name.as_str()), None, "the scenario has no mud to sweep");
-    }
-    problems.0.len() == before
-}
-
 /// The problems of the scenario itself, when the axes cannot be expanded: a sweep's other mistakes are not
 /// kept back until its axes are right. What the axes would replace is not looked at.
 fn check_without_axes(request: &SweepRequest, scenario: &Scenario, problems: &mut Found) {
-    let replaced: Vec<_> = request.axes.keys().map(|name| name.scenario_path()).collect();
     let Err(Problems(of_scenario)) = scenario.validate() else { return };
-    for problem in of_scenario.iter().filter(|problem| !replaced.contains(&problem.path.as_str())) {
-        problems.add(request, &[], problem);
+    let names = request.axes.keys().chain(request.points.iter().flat_map(IndexMap::keys));
+    let replaced: IndexSet<&str> = names.map(AxisName::scenario_path).collect();
+    for problem in of_scenario.iter().filter(|problem| !replaced.contains(problem.path.as_str())) {
+        problems.add(request, |_| None, problem);
     }
 }
 
-/// Distinct problems, in the order in which they were found.
+/// Distinct problems, in the order in which they were found, up to [`MOST_PROBLEMS`].
 #[derive(Default)]
 struct Found(IndexMap<(String, String), Option<Value>>);
 
 impl Found {
     fn push(&mut self, pointer: impl Into<String>, got: Option<Value>, detail: impl Into<String>) {
-        self.0.entry((pointer.into(), detail.into())).or_insert(got);
+        if self.0.len() < MOST_PROBLEMS {
+            self.0.entry((pointer.into(), detail.into())).or_insert(got);
+        }
     }
 
-    /// Notes a problem of a scenario, at the place of the request that decides the field. `indices` are those
-    /// of the point on the axes, none when the axes are not applied.
-    fn add(&mut self, request: &SweepRequest, indices: &[usize], problem: &Problem) {
+    /// Notes a problem of a scenario, at the place of the request that decides the field: `place` knows the axes'.
+    fn add(&mut self, request: &SweepRequest, place: impl Fn(&str) -> Option<String>, problem: &Problem) {
         let got = match problem.got.as_str() {
             "" => None,
             got => Some(serde_json::from_str(got).unwrap_or_else(|_| got.into())),
         };
-        let (pointer, is_inherited) = place(request, indices, &problem.path);
         let message = &problem.message;
-        match is_inherited {
-            false => self.push(pointer, got, message),
-            true => self.push(pointer, got, format!("{}: {message}", problem.path)),
+        if let Some(pointer) = place(&problem.path) {
+            return self.push(pointer, got, message);
+        }
+        match written(request, &problem.path) {
+            (pointer, false) => self.push(pointer, got, message),
+            (pointer, true) => self.push(pointer, got, format!("{}: {message}", problem.path)),
         }
     }
 
@@ -259,14 +530,9 @@ impl Found {
     }
 }
 
-/// Where in a request a field of the scenario is decided, and whether that is the preset that it names
-/// rather than the field itself.
-fn place(request: &SweepRequest, indices: &[usize], path: &str) -> (String, bool) {
-    for ((name, axis), &index) in request.axes.iter().zip(indices) {
-        if name.scenario_path() == path {
-            return (format!("/axes/{}{}", name.as_str(), axis.member(index)), false);
-        }
-    }
+/// Where in a request a field of the scenario is written outside the axes, and whether that is the preset that it
+/// names rather than the field itself.
+fn written(request: &SweepRequest, path: &str) -> (String, bool) {
     let field = scenario_pointer(path);
     // The longest path wins: it was applied last.
     let of_set = request
@@ -317,14 +583,15 @@ mod tests {
             "mud_density": {"from": 1200, "to": 1800, "count": 3}
         }});
         let order = |body| -> Vec<_> {
-            let points = expand(&request(body)).unwrap().points;
-            let values = |point: SweepPoint| {
-                let mud = point.scenario.mud.unwrap();
-                assert_eq!(point.parameters["flow_rate"], mud.flow_rate);
-                assert_eq!(point.parameters["mud_density"], mud.density);
+            let expansion = expand(&request(body)).unwrap();
+            let values = |point: &SweepPoint| {
+                let mud = expansion.scenario(point).mud.unwrap();
+                let parameters = expansion.parameters(point);
+                assert_eq!(parameters["flow_rate"], mud.flow_rate);
+                assert_eq!(parameters["mud_density"], mud.density);
                 (point.ordinal, mud.flow_rate, mud.density)
             };
-            points.into_iter().map(values).collect()
+            expansion.points.iter().map(values).collect()
         };
         assert_eq!(
             order(flow_first),
@@ -343,13 +610,8 @@ mod tests {
                 "mud_density": {"values": [1200, 1500]}, "flow_rate": {"values": [0.01, 0.04]}}}"#,
         )
         .unwrap();
-        let flow_rates: Vec<_> = expand(&density_first)
-            .unwrap()
-            .points
-            .iter()
-            .map(|point| (point.parameters["mud_density"], point.parameters["flow_rate"]))
-            .collect();
-        assert_eq!(flow_rates, [(1200.0, 0.01), (1200.0, 0.04), (1500.0, 0.01), (1500.0, 0.04)]);
+        let values: Vec<_> = expand(&density_first).unwrap().points.into_iter().map(|point| point.values).collect();
+        assert_eq!(values, [[1200.0, 0.01], [1200.0, 0.04], [1500.0, 0.01], [1500.0, 0.04]]);
     }
 
     #[test]
@@ -374,10 +636,10 @@ mod tests {
     fn a_run_is_a_sweep_of_one_point() {
         let run: crate::RunRequest =
             serde_json::from_value(json!({"preset": "paper-200m", "set": {"duration": 65}})).unwrap();
-        let points = expand(&run.into()).unwrap().points;
-        assert_eq!(points.len(), 1);
-        assert_eq!(points[0].ordinal, 1);
-        assert_eq!(points[0].scenario.duration, 65.0);
+        let expansion = expand(&run.into()).unwrap();
+        assert_eq!(expansion.points.len(), 1);
+        assert_eq!(expansion.points[0].ordinal, 1);
+        assert_eq!(expansion.scenario(&expansion.points[0]).duration, 65.0);
     }
 
     #[test]
@@ -455,7 +717,7 @@ mod tests {
     fn a_sweep_has_a_largest_size() {
         let sweep = |count: u32| {
             json!({"preset": "paper-200m", "axes": {
-                "flow_rate": {"from": 0.01, "to": 0.06, "count": 100},
+                "flow_rate": {"from": 0.01, "to": 0.06, "count": 1000},
                 "mud_density": {"from": 1200, "to": 2100, "count": count}
             }})
         };
@@ -486,5 +748,174 @@ mod tests {
         let mut found = pointers(body);
         found.sort();
         assert_eq!(found, ["/set/a~1b", "/set/duration", "/set/mud.flow_rat"]);
+    }
+
+    fn expansion(body: Value) -> Expansion {
+        expand(&request(body)).unwrap_or_else(|problem| panic!("{problem}"))
+    }
+
+    #[test]
+    fn every_numeric_field_is_an_axis_by_its_path() {
+        let expansion = expansion(json!({"preset": "paper-200m", "axes": {
+            "operation.rotation_speed_rpm": {"values": [90, 120]},
+            "contact.reference_length": {"from": 0.5, "to": 1, "count": 2},
+            "ensemble": {"values": [4]},
+            "accuracy.step": {"values": [1e-3, 5e-4]}
+        }}));
+        assert_eq!(expansion.points.len(), 8);
+        for point in &expansion.points {
+            let [speed, length, members, step] = point.values[..] else { panic!("{point:?}") };
+            let scenario = preset("paper-200m")
+                .unwrap()
+                .with("operation.rotation_speed_rpm", json!(speed))
+                .and_then(|scenario| scenario.with("contact.reference_length", json!(length)))
+                .and_then(|scenario| scenario.with("ensemble", json!(members as u32)))
+                .and_then(|scenario| scenario.with("accuracy.step", json!(step)))
+                .unwrap();
+            assert_eq!(expansion.scenario(point), scenario);
+            assert_eq!(point.key, key(&scenario));
+            // What is stored of the point is the point.
+            let changes = Value::Object(expansion.changes(point)).to_string();
+            assert_eq!(compose(&expansion.base.to_json(), &changes).unwrap(), scenario);
+        }
+        let parameters = expansion.parameters(&expansion.points[7]);
+        let names: Vec<&str> = parameters.keys().map(String::as_str).collect();
+        assert_eq!(
+            names,
+            [
+                "operation.rotation_speed_rpm",
+                "contact.reference_length",
+                "ensemble",
+                "accuracy.step",
+                "flow_rate",
+                "mud_density"
+            ]
+        );
+    }
+
+    #[test]
+    fn axes_that_are_no_numeric_fields_are_refused_by_name() {
+        let of = |name: &str| problems(json!({"preset": "paper-200m", "axes": {name: {"values": [1]}}}));
+        for (name, detail) in [
+            ("mud.flowrate", "no such field; mud has"),
+            ("operation.top", "must be"),
+            ("mud", "must be"),
+            ("string.sections[99].length", "8 entries"),
+            ("name", "must be"),
+        ] {
+            let found = of(name);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert_eq!(found[0].0, format!("/axes/{name}"));
+            assert!(found[0].2.contains(detail), "{found:?}");
+        }
+        let half = problems(json!({"preset": "paper-200m", "axes": {"ensemble": {"values": [8, 7.5]}}}));
+        let expected = ("/axes/ensemble/values/1".to_owned(), Some(json!(7.5)));
+        assert_eq!(half.iter().map(|of| (of.0.clone(), of.1.clone())).collect::<Vec<_>>(), [expected], "{half:?}");
+        let twice = json!({"preset": "paper-200m",
+            "axes": {"flow_rate": {"values": [0.01]}, "mud.flow_rate": {"values": [0.02]}}});
+        assert_eq!(pointers(twice), ["/axes/mud.flow_rate"]);
+    }
+
+    #[test]
+    fn what_is_left_out_for_later_points_would_not_have_been_found() {
+        // The second point is bad in the one thing that its axis decides, whichever part of the scenario that is in.
+        for (path, values) in [
+            ("mud.flow_index", [0.5, -0.5]),
+            ("contact.stiffness", [1e6, -1.0]),
+            ("well.hole_diameter", [0.22, 0.1]),
+            ("string.gauges[0].measured_depth", [150.0, 500.0]),
+            ("mesh.collar", [0.5, -1.0]),
+            ("recording.rate_hz", [1000.0, -1.0]),
+            ("duration", [60.0, 0.0]),
+            ("damping.mass_proportional", [0.1, -0.1]),
+            ("accuracy.step", [1e-3, -1e-3]),
+        ] {
+            let body = json!({"preset": "paper-200m", "axes": {path: {"values": values}}});
+            let found = pointers(body);
+            assert!(found.iter().any(|pointer| pointer.starts_with("/")), "{path}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn zip_takes_the_values_of_all_axes_together() {
+        let body = |count: u32| {
+            json!({"preset": "paper-200m", "design": "zip", "axes": {
+                "flow_rate": {"values": [0.01, 0.02, 0.03]},
+                "mud_density": {"from": 1200, "to": 1400, "count": count}
+            }})
+        };
+        let values: Vec<_> = expansion(body(3)).points.into_iter().map(|point| point.values).collect();
+        assert_eq!(values, [[0.01, 1200.0], [0.02, 1300.0], [0.03, 1400.0]]);
+        assert_eq!(pointers(body(4)), ["/axes"]);
+    }
+
+    #[test]
+    fn listed_points_are_taken_as_they_are() {
+        let body = |last: Value| {
+            json!({"preset": "paper-200m", "design": "list", "points": [
+                {"flow_rate": 0.01, "operation.rotation_speed_rpm": 90},
+                {"operation.rotation_speed_rpm": 120, "flow_rate": 0.02},
+                last
+            ]})
+        };
+        let last = json!({"flow_rate": 0.01, "operation.rotation_speed_rpm": 100});
+        let values: Vec<_> = expansion(body(last)).points.into_iter().map(|point| point.values).collect();
+        assert_eq!(values, [[0.01, 90.0], [0.02, 120.0], [0.01, 100.0]]);
+        assert_eq!(pointers(body(json!({"flow_rate": 0.01}))), ["/points/2"]);
+        let bad = json!({"flow_rate": -1, "operation.rotation_speed_rpm": 100});
+        assert_eq!(pointers(body(bad)), ["/points/2/flow_rate"]);
+    }
+
+    #[test]
+    fn drawn_designs_fill_their_intervals_and_go_on_where_they_ended() {
+        let body = |design: &str, samples: u32, skip: Option<u32>| {
+            let mut body = json!({"preset": "paper-200m", "design": design, "samples": samples, "seed": 3, "axes": {
+                "flow_rate": {"from": 0.01, "to": 0.06},
+                "contact.stiffness": {"from": 1e5, "to": 1e7, "scale": "log"},
+                "ensemble": {"values": [7, 8, 9]}
+            }});
+            if let Some(skip) = skip {
+                body["skip"] = json!(skip);
+            }
+            body
+        };
+        for design in ["latin_hypercube", "sobol"] {
+            let points = expansion(body(design, 64, None)).points;
+            assert_eq!(points.len(), 64);
+            let in_lower_half = |axis: usize, middle: f64| {
+                points.iter().filter(|point| point.values[axis] < middle).count()
+            };
+            assert_eq!((in_lower_half(0, 0.035), in_lower_half(1, 1e6)), (32, 32), "{design}");
+            assert!((20..=22).contains(&in_lower_half(2, 8.0)), "{design}");
+        }
+        let whole = expansion(body("sobol", 10, None)).points;
+        let rest = expansion(body("sobol", 6, Some(4))).points;
+        let keys = |points: &[SweepPoint]| points.iter().map(|point| point.key).collect::<Vec<_>>();
+        assert_eq!(keys(&whole[4..]), keys(&rest));
+    }
+
+    #[test]
+    fn members_of_other_designs_are_refused() {
+        let of = |extra: Value| {
+            let mut body = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01]}}});
+            body.as_object_mut().unwrap().extend(extra.as_object().unwrap().clone());
+            pointers(body)
+        };
+        assert_eq!(of(json!({"samples": 3, "seed": 1, "skip": 2})), ["/samples", "/seed", "/skip"]);
+        assert_eq!(of(json!({"points": [{"flow_rate": 0.01}]})), ["/points"]);
+        assert_eq!(of(json!({"design": "sobol"})), ["/samples"]);
+        assert_eq!(of(json!({"design": "latin_hypercube", "samples": 2, "skip": 1})), ["/skip"]);
+        assert_eq!(of(json!({"design": "list", "points": []})), ["/points", "/axes"]);
+        assert_eq!(of(json!({"axes": {"flow_rate": {"from": 0.01, "to": 0.02}}})), ["/axes/flow_rate"]);
+        let counted = json!({"design": "sobol", "samples": 4, "axes": {"flow_rate": {"from": 0.01, "to": 0.02, "count": 3}}});
+        assert_eq!(of(counted), ["/axes/flow_rate/count"]);
+        assert_eq!(of(json!({"design": "zip", "axes": {}})), ["/axes"]);
+        assert_eq!(of(json!({"design": "sobol", "samples": 200_000})), ["/samples"]);
+    }
+
+    #[test]
+    fn of_very_many_problems_the_first_hundred_are_reported() {
+        let body = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": vec![-1.0; 5_000]}}});
+        assert_eq!(problems(body).len(), MOST_PROBLEMS);
     }
 }

@@ -9,6 +9,7 @@
 pub mod axis;
 pub mod chart;
 pub mod cost;
+mod design;
 pub mod dry_run;
 pub mod event;
 pub mod expand;
@@ -27,7 +28,7 @@ pub mod view;
 pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint};
 pub use event::PointEvent;
-pub use expand::{Expansion, PointKey, SweepPoint, expand, key_text};
+pub use expand::{Expansion, PointKey, SweepPoint, compose, expand, key_text};
 pub use point::{
     ArtifactEntry, ArtifactList, FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow,
     PointState, SelectedPointList,

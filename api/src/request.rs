@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use drillsweep_sim::scenario::Scenario;
 use indexmap::IndexMap;
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -38,16 +37,32 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
     pub set: BTreeMap<String, Value>,
-    /// How the axes are combined.
+    /// How the points are made from the axes.
     #[serde(default)]
     pub design: Design,
-    /// The swept parameters, by name. The first axis varies slowest, in the order in which they are written.
+    /// The swept parameters, by name: `flow_rate`, `mud_density`, or the path of any numeric field of the scenario,
+    /// such as `operation.rotation_speed_rpm` or `string.sections[1].count`. In a grid the first axis varies slowest,
+    /// in the order in which they are written.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schema(example = json!({
         "flow_rate": {"values": [0.01, 0.04, 0.06]},
         "mud_density": {"from": 1200, "to": 2100, "count": 4}
     }))]
     pub axes: IndexMap<AxisName, Axis>,
+    /// The points of the design `list`, each with a value for every parameter that the first names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!([]))]
+    pub points: Vec<IndexMap<AxisName, f64>>,
+    /// Number of points of the designs `latin_hypercube` and `sobol`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u32>,
+    /// What these designs are drawn from; 0 unless said otherwise. The same seed draws the same points, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Points at the start of the Sobol sequence to pass over, so that a sweep goes on where another one of the same
+    /// seed ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skip: Option<u32>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
@@ -91,70 +106,55 @@ impl From<RunRequest> for SweepRequest {
     }
 }
 
-/// How the values of the axes are combined into points.
+/// How points are made from the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
     /// Every value of every axis with every value of the others.
     #[default]
     Grid,
+    /// The first values of all axes together, then the second ones, and so on: axes of equal length.
+    Zip,
+    /// The `points` as listed.
+    List,
+    /// `samples` points, on each axis one in each of as many equal parts (McKay, Beckman and Conover 1979). Axes are
+    /// intervals without a count, or lists to pick from.
+    LatinHypercube,
+    /// `samples` points of the Sobol sequence (direction numbers of Joe and Kuo 2008) with a digital shift by the seed:
+    /// spread evenly at any number of points, best at powers of two. Axes as for the Latin hypercube.
+    Sobol,
 }
 
-/// The parameters that can be swept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AxisName {
-    /// Flow rate of the mud, `mud.flow_rate` \[m3/s\].
-    FlowRate,
-    /// Density of the mud, `mud.density` \[kg/m3\].
-    MudDensity,
-}
-
-impl<'de> Deserialize<'de> for AxisName {
-    /// As a string rather than as a variant, so that the name shows up in the path of an error below it.
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let axis = AxisName::ALL.into_iter().find(|axis| axis.as_str() == name);
-        axis.ok_or_else(|| D::Error::unknown_variant(&name, &["flow_rate", "mud_density"]))
+impl Design {
+    /// Whether the design draws values from the axes' intervals, rather than taking the axes' own.
+    pub(crate) fn is_drawn(self) -> bool {
+        matches!(self, Design::LatinHypercube | Design::Sobol)
     }
 }
 
-impl AxisName {
-    /// All axes.
-    pub const ALL: [AxisName; 2] = [AxisName::FlowRate, AxisName::MudDensity];
+/// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
+/// scenario.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(transparent)]
+pub struct AxisName(String);
 
-    /// The name on the wire.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            AxisName::FlowRate => "flow_rate",
-            AxisName::MudDensity => "mud_density",
-        }
+impl AxisName {
+    /// The names of the parameters that have one besides their path, with that path.
+    pub const NAMED: [(&str, &str); 2] = [("flow_rate", "mud.flow_rate"), ("mud_density", "mud.density")];
+
+    /// The name as it is written.
+    pub fn as_str(&self) -> &str {
+        &self.0
     }
 
     /// The path of the scenario's field.
-    pub fn scenario_path(self) -> &'static str {
-        match self {
-            AxisName::FlowRate => "mud.flow_rate",
-            AxisName::MudDensity => "mud.density",
-        }
+    pub fn scenario_path(&self) -> &str {
+        AxisName::NAMED.iter().find(|(name, _)| *name == self.0).map_or(&self.0, |(_, path)| path)
     }
+}
 
-    /// The value of the field in a scenario; none when the hole is dry.
-    pub fn get(self, scenario: &Scenario) -> Option<f64> {
-        let mud = scenario.mud.as_ref()?;
-        Some(match self {
-            AxisName::FlowRate => mud.flow_rate,
-            AxisName::MudDensity => mud.density,
-        })
-    }
-
-    /// Sets the field; a dry hole has none.
-    pub(crate) fn set(self, scenario: &mut Scenario, value: f64) {
-        if let Some(mud) = scenario.mud.as_mut() {
-            match self {
-                AxisName::FlowRate => mud.flow_rate = value,
-                AxisName::MudDensity => mud.density = value,
-            }
-        }
+impl From<&str> for AxisName {
+    fn from(name: &str) -> Self {
+        AxisName(name.to_owned())
     }
 }

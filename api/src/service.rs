@@ -34,8 +34,8 @@ pub struct Limits {
 
 /// The limits in force, but for those of an owner: these are the defaults of what an operator sets.
 pub const LIMITS: Limits = Limits {
-    points_per_sweep: 10_000,
-    body_bytes: 2 << 20,
+    points_per_sweep: 100_000,
+    body_bytes: 16 << 20,
     page_size: 500,
     wait_seconds: 60,
     lowest_priority: -10,

@@ -68,6 +68,9 @@ pub(crate) struct UpArguments {
     /// Seconds that a point stays with a silent worker.
     #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
+    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless said otherwise.
+    #[arg(long, value_parser = parse_span)]
+    point_timeout: Option<Duration>,
 }
 
 #[derive(Args)]
@@ -88,6 +91,13 @@ pub(crate) struct WorkerArguments {
     /// End when there is nothing left to claim.
     #[arg(long)]
     drain: bool,
+    /// End after so long, such as `3h`, `90m` or `600s`; the point under way is suspended, and another worker goes on
+    /// with it.
+    #[arg(long, value_parser = parse_span)]
+    max_runtime: Option<Duration>,
+    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless said otherwise.
+    #[arg(long, value_parser = parse_span)]
+    point_timeout: Option<Duration>,
     /// End when the process that started this one ends.
     #[arg(long, hide = true)]
     with_parent: bool,
@@ -134,6 +144,8 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
     let config = WorkerConfig {
         lease: lease(arguments.lease_seconds)?,
         drain: arguments.drain,
+        max_runtime: arguments.max_runtime,
+        point_timeout: arguments.point_timeout,
         ..WorkerConfig::new(arguments.data.store(Role::Worker))
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -146,6 +158,20 @@ fn lease(seconds: f64) -> anyhow::Result<Duration> {
         "--lease-seconds must be from 1 to 3600, got {seconds}"
     );
     Ok(Duration::from_secs_f64(seconds))
+}
+
+/// A time span: `3h`, `90m`, `600s`, or seconds as a number.
+fn parse_span(text: &str) -> anyhow::Result<Duration> {
+    let units = [("h", 3600.0), ("m", 60.0), ("s", 1.0)];
+    let (digits, scale) = units
+        .into_iter()
+        .find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)))
+        .unwrap_or((text, 1.0));
+    let seconds = digits.trim().parse::<f64>().ok().map(|number| number * scale);
+    seconds
+        .filter(|seconds| *seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .with_context(|| format!("write a time span such as 3h, 90m or 600s, got {text:?}"))
 }
 
 fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
@@ -232,6 +258,9 @@ fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
         .arg(&arguments.data.data)
         .arg("--lease-seconds")
         .arg(arguments.lease_seconds.to_string())
+        .args(arguments.point_timeout.iter().flat_map(|time| {
+            ["--point-timeout".to_owned(), time.as_secs_f64().to_string()]
+        }))
         .stdin(Stdio::null())
         // Ctrl-C reaches the whole group: the parent decides when its workers end.
         .process_group(0);

@@ -3,9 +3,9 @@
 use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::{
     Expansion, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
-    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, key_text,
+    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, compose, key_text,
 };
-use drillsweep_store::{NewPoint, NewSweep, PointRecord, Store, SweepRecord, TableRecord, WorkState};
+use drillsweep_store::{NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState};
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::de::DeserializeOwned;
@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 /// Whose share a sweep counts against when its request does not say.
 const DEFAULT_OWNER: &str = "default";
 
-/// A request and its points as the store takes them; the scenarios are written out in full.
+/// A request and its points as the store takes them.
 pub(crate) fn new_sweep(
     request: &SweepRequest,
     expansion: &Expansion,
@@ -25,10 +25,9 @@ pub(crate) fn new_sweep(
     let new_point = |point: &SweepPoint| {
         Ok(NewPoint {
             ordinal: point.ordinal.into(),
-            parameters_json: write(&point.parameters)?,
+            parameters_json: write(&expansion.parameters(point))?,
             work_key: point.key,
-            scenario_json: write(&point.scenario)?,
-            physics_version: drillsweep_api::PHYSICS_VERSION.into(),
+            changes_json: write(&expansion.changes(point))?,
         })
     };
     Ok(NewSweep {
@@ -38,6 +37,8 @@ pub(crate) fn new_sweep(
         request_json: write(request)?,
         priority: request.priority.into(),
         idempotency_key,
+        base_json: write(&expansion.base)?,
+        physics_version: drillsweep_api::PHYSICS_VERSION.into(),
         points: expansion.points.iter().map(new_point).collect::<Result<_>>()?,
     })
 }
@@ -99,10 +100,14 @@ pub(crate) fn point_row(sweep: &str, record: &PointRecord) -> Result<PointRow> {
 
 /// A point with everything but its tables.
 pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String>) -> Result<PointDetail> {
+    let Some(ScenarioText { base_json, changes_json }) = &record.scenario else {
+        return Err(Error::internal("a point was read without its scenario"));
+    };
+    let scenario = compose(base_json, changes_json).map_err(|problem| Error::internal(&problem))?;
     Ok(PointDetail {
         row: point_row(sweep, record)?,
         key: key_text(&record.work_key),
-        scenario: read(&record.scenario_json)?,
+        scenario: Box::new(scenario),
         summary: record.summary_json.as_deref().map(read).transpose()?,
         provenance: record.provenance_json.as_deref().map(read).transpose()?,
         tables,

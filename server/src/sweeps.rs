@@ -142,7 +142,7 @@ async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
     let known = app.store.known_results(&keys).await?;
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
-    blocking(move || Ok(DryRun::new(expansion, known, speed.as_deref(), workers))).await
+    blocking(move || Ok(DryRun::new(&expansion, known, speed.as_deref(), workers))).await
 }
 
 /// The key under which a submission may be repeated: a text of visible ASCII.

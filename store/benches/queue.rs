@@ -32,14 +32,13 @@ fn queue(role: Role) -> Queue {
     Queue { runtime, store, _directory: directory }
 }
 
-/// A sweep whose scenarios are as long as real ones.
+/// A sweep whose texts are as long as real ones.
 fn sweep(number: i64) -> NewSweep {
     let point = |ordinal: i64| NewPoint {
         ordinal,
         parameters_json: format!(r#"{{"flow_rate":0.03,"mud_density":{ordinal}}}"#),
+        changes_json: format!(r#"{{"mud.flow_rate":0.03,"mud.density":{ordinal}}}"#),
         work_key: *blake3::hash(format!("{number} {ordinal}").as_bytes()).as_bytes(),
-        scenario_json: format!("{ordinal:>3000}"),
-        physics_version: 1,
     };
     NewSweep {
         id: number.to_string(),
@@ -48,6 +47,8 @@ fn sweep(number: i64) -> NewSweep {
         request_json: "{}".to_owned(),
         priority: 0,
         idempotency_key: None,
+        base_json: format!("{number:>3000}"),
+        physics_version: 1,
         points: (1..=POINTS).map(point).collect(),
     }
 }

@@ -28,7 +28,7 @@ pub use check::CheckReport;
 pub use connection::{Role, Store, StoreConfig};
 pub use error::{Result, StoreError};
 pub use event::Event;
-pub use point::{Artifact, PointRecord, TableRecord};
+pub use point::{Artifact, PointRecord, ScenarioText, TableRecord};
 pub use queue::{Claim, FailureClass, Lease, NewArtifact, QueueDepths, Renewal};
 pub use retention::{Garbage, RetentionPolicy};
 pub use state::{StateCounts, WorkKey, WorkState};

@@ -15,8 +15,8 @@ pub struct PointRecord {
     pub parameters_json: String,
     /// Content hash.
     pub work_key: WorkKey,
-    /// The scenario as JSON text.
-    pub scenario_json: String,
+    /// The scenario; left out of lists.
+    pub scenario: Option<ScenarioText>,
     /// Where its work stands.
     pub state: WorkState,
     /// Simulated time over duration, 0 to 1.
@@ -29,6 +29,15 @@ pub struct PointRecord {
     pub summary_json: Option<String>,
     /// Where and how it was computed, as a JSON object.
     pub provenance_json: Option<String>,
+}
+
+/// A scenario as it is stored: a base that many points share, and what one of them changes in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScenarioText {
+    /// The base as JSON text.
+    pub base_json: String,
+    /// The changes as a JSON object by path.
+    pub changes_json: String,
 }
 
 /// A point's row of the sweep's table.
@@ -68,7 +77,8 @@ struct PointRow {
     ordinal: i64,
     parameters: String,
     key: Vec<u8>,
-    scenario: String,
+    base: Option<String>,
+    changes: Option<String>,
     state: String,
     progress: f64,
     starts: i64,
@@ -93,8 +103,8 @@ impl Store {
         // A list of fixed names, checked against the state with a comma on both sides.
         let wanted = if names.is_empty() { None } else { Some(format!(",{},", names.join(","))) };
         let rows: Vec<PointRow> = sqlx::query_as(
-            "SELECT p.ordinal, p.parameters, w.key, w.scenario, w.state, w.progress, w.starts, w.error,
-                    NULL AS summary, NULL AS provenance
+            "SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
+                    w.error, NULL AS summary, NULL AS provenance
              FROM point p JOIN work w ON w.key = p.work_key
              WHERE p.sweep_id = ?1 AND p.ordinal > ?2 AND (?3 IS NULL OR instr(?3, ',' || w.state || ',') > 0)
              ORDER BY p.ordinal LIMIT ?4",
@@ -114,9 +124,9 @@ impl Store {
     /// When the database fails.
     pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
         let row: Option<PointRow> = sqlx::query_as(
-            "SELECT p.ordinal, p.parameters, w.key, w.scenario, w.state, w.progress, w.starts, w.error,
+            "SELECT p.ordinal, p.parameters, w.key, s.text AS base, w.changes, w.state, w.progress, w.starts, w.error,
                     r.summary, r.provenance
-             FROM point p JOIN work w ON w.key = p.work_key LEFT JOIN result r ON r.work_key = w.key
+             FROM point p JOIN work w ON w.key = p.work_key JOIN scenario s ON s.hash = w.base LEFT JOIN result r ON r.work_key = w.key
              WHERE p.sweep_id = ?1 AND p.ordinal = ?2",
         )
         .bind(sweep_id)
@@ -208,7 +218,10 @@ impl PointRow {
             ordinal: self.ordinal,
             parameters_json: self.parameters,
             work_key: work_key(&self.key)?,
-            scenario_json: self.scenario,
+            scenario: self
+                .base
+                .zip(self.changes)
+                .map(|(base_json, changes_json)| ScenarioText { base_json, changes_json }),
             state: WorkState::parse(&self.state)?,
             progress: self.progress,
             attempts: self.starts,

@@ -5,6 +5,7 @@ use sqlx::SqliteExecutor;
 use crate::blob::BlobId;
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
+use crate::point::ScenarioText;
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
@@ -29,8 +30,8 @@ macro_rules! holds_lease {
 pub struct Claim {
     /// What every later write about it must carry.
     pub lease: Lease,
-    /// The scenario as JSON text.
-    pub scenario_json: String,
+    /// The scenario.
+    pub scenario: ScenarioText,
 }
 
 /// The right to write about one work item: void once another attempt has begun.
@@ -111,7 +112,7 @@ impl Store {
         lease_ms: i64,
     ) -> Result<Option<Claim>> {
         // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
-        let rows: Vec<(Vec<u8>, i64, String)> = sqlx::query_as(concat!(
+        let rows: Vec<(Vec<u8>, i64, String, String)> = sqlx::query_as(concat!(
             "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
                     lease_owner = ?2, lease_until = ",
             now!(),
@@ -119,7 +120,7 @@ impl Store {
             now!(),
             " WHERE key = (SELECT key FROM work WHERE state = 'queued' AND physics_version = ?4
                            ORDER BY priority DESC, vtime, key LIMIT 1)
-              RETURNING key, attempt, scenario"
+              RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes"
         ))
         .bind(self.clock_offset_ms)
         .bind(worker)
@@ -127,9 +128,9 @@ impl Store {
         .bind(physics_version)
         .fetch_all(executor)
         .await?;
-        let Some((key, attempt, scenario_json)) = rows.into_iter().next() else { return Ok(None) };
+        let Some((key, attempt, base_json, changes_json)) = rows.into_iter().next() else { return Ok(None) };
         let lease = Lease { key: work_key(&key)?, attempt, worker: worker.to_owned() };
-        Ok(Some(Claim { lease, scenario_json }))
+        Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json } }))
     }
 
     /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.

@@ -1,6 +1,6 @@
 //! Submitting a sweep.
 
-use sqlx::{Sqlite, Transaction};
+use sqlx::{QueryBuilder, Sqlite, Transaction};
 
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
@@ -9,6 +9,9 @@ use crate::state::WorkKey;
 /// Virtual time that one point costs its owner; the claim order is by virtual time, so that owners take turns
 /// however many points each has (start-time fair queueing).
 pub(crate) const COST_OF_A_POINT: i64 = 1_000;
+
+/// Rows of one statement: enough that the calls do not count, few enough for the parameters that SQLite takes.
+const ROWS_AT_ONCE: usize = 1_000;
 
 /// A sweep to store.
 #[derive(Debug, Clone)]
@@ -25,6 +28,10 @@ pub struct NewSweep {
     pub priority: i64,
     /// The client's idempotency key with the hash of the request's body.
     pub idempotency_key: Option<(String, [u8; 32])>,
+    /// The scenario that the points change, as JSON text.
+    pub base_json: String,
+    /// Version of the numbers that the keys were made for.
+    pub physics_version: i64,
     /// The points, ordinals from 1.
     pub points: Vec<NewPoint>,
 }
@@ -38,10 +45,8 @@ pub struct NewPoint {
     pub parameters_json: String,
     /// Content hash.
     pub work_key: WorkKey,
-    /// The scenario as JSON text.
-    pub scenario_json: String,
-    /// Version of the numbers that the key was made for.
-    pub physics_version: i64,
+    /// What it changes in the base scenario, as a JSON object by path.
+    pub changes_json: String,
 }
 
 /// What became of a submission.
@@ -69,10 +74,12 @@ impl Store {
             .fetch_one(&mut *tx)
             .await?;
         insert_sweep(&mut tx, sweep, now).await?;
+        let base = insert_base(&mut tx, &sweep.base_json).await?;
         let mut vtime = start_of_virtual_time(&mut tx, &sweep.owner).await?;
-        for point in &sweep.points {
-            vtime += COST_OF_A_POINT;
-            insert_point(&mut tx, sweep, point, vtime, now).await?;
+        for points in sweep.points.chunks(ROWS_AT_ONCE) {
+            insert_work(&mut tx, sweep, points, base, vtime, now).await?;
+            insert_points(&mut tx, &sweep.id, points).await?;
+            vtime += COST_OF_A_POINT * points.len() as i64;
         }
         count_points(&mut tx, &sweep.id, now).await?;
         tx.commit().await?;
@@ -85,12 +92,15 @@ impl Store {
     /// When the database fails.
     pub async fn known_results(&self, keys: &[WorkKey]) -> Result<u64> {
         let mut known = 0;
-        for key in keys {
-            let found: Option<i64> = sqlx::query_scalar("SELECT 1 FROM result WHERE work_key = ?1")
-                .bind(key.as_slice())
-                .fetch_optional(&self.pool)
-                .await?;
-            known += u64::from(found.is_some());
+        for keys in keys.chunks(ROWS_AT_ONCE) {
+            let mut query = QueryBuilder::new("SELECT count(*) FROM result WHERE work_key IN (");
+            let mut list = query.separated(", ");
+            for key in keys {
+                list.push_bind(key.as_slice());
+            }
+            query.push(")");
+            let found: i64 = query.build_query_scalar().fetch_one(&self.pool).await?;
+            known += found.unsigned_abs();
         }
         Ok(known)
     }
@@ -153,19 +163,45 @@ pub(crate) async fn start_of_virtual_time(tx: &mut Transaction<'static, Sqlite>,
     .await?)
 }
 
-async fn insert_point(
+/// Stores a base scenario by the hash of its text, unless it is there.
+async fn insert_base(tx: &mut Transaction<'static, Sqlite>, text: &str) -> Result<[u8; 32]> {
+    let hash = *blake3::hash(text.as_bytes()).as_bytes();
+    sqlx::query("INSERT INTO scenario (hash, text) VALUES (?1, ?2) ON CONFLICT (hash) DO NOTHING")
+        .bind(hash.as_slice())
+        .bind(text)
+        .execute(&mut **tx)
+        .await?;
+    Ok(hash)
+}
+
+async fn insert_work(
     tx: &mut Transaction<'static, Sqlite>,
     sweep: &NewSweep,
-    point: &NewPoint,
+    points: &[NewPoint],
+    base: [u8; 32],
     vtime: i64,
     now: i64,
 ) -> Result<()> {
+    let mut query = QueryBuilder::new(
+        "INSERT INTO work (key, changes, vtime, base, physics_version, owner, state, priority, ready_at, created, changed) ",
+    );
+    query.push_values((1..).zip(points), |mut row, (number, point)| {
+        row.push_bind(point.work_key.as_slice())
+            .push_bind(&point.changes_json)
+            .push_bind(vtime + COST_OF_A_POINT * number)
+            .push_bind(base.to_vec())
+            .push_bind(sweep.physics_version)
+            .push_bind(&sweep.owner)
+            .push("'queued'")
+            .push_bind(sweep.priority)
+            .push_bind(now)
+            .push_bind(now)
+            .push_bind(now);
+    });
     // Work that is known keeps its row, but for three things: it is taken up again if it was cancelled, it goes as
     // early as the most urgent sweep that wants it, and it is not cancelled any more.
-    sqlx::query(
-        "INSERT INTO work (key, physics_version, scenario, owner, state, priority, vtime, ready_at, created, changed)
-         VALUES (?1, ?2, ?3, ?4, 'queued', ?5, ?6, ?7, ?7, ?7)
-         ON CONFLICT (key) DO UPDATE SET
+    query.push(
+        " ON CONFLICT (key) DO UPDATE SET
              state = CASE state WHEN 'cancelled' THEN 'queued' ELSE state END,
              changed = CASE state WHEN 'cancelled' THEN excluded.changed ELSE changed END,
              owner = CASE state WHEN 'cancelled' THEN excluded.owner ELSE owner END,
@@ -176,23 +212,24 @@ async fn insert_point(
              cancel_requested = 0
          WHERE state = 'cancelled'
             OR (state IN ('waiting', 'queued', 'leased') AND (cancel_requested <> 0 OR priority < excluded.priority))",
-    )
-    .bind(point.work_key.as_slice())
-    .bind(point.physics_version)
-    .bind(&point.scenario_json)
-    .bind(&sweep.owner)
-    .bind(sweep.priority)
-    .bind(vtime)
-    .bind(now)
-    .execute(&mut **tx)
-    .await?;
-    sqlx::query("INSERT INTO point (sweep_id, ordinal, parameters, work_key) VALUES (?1, ?2, ?3, ?4)")
-        .bind(&sweep.id)
-        .bind(point.ordinal)
-        .bind(&point.parameters_json)
-        .bind(point.work_key.as_slice())
-        .execute(&mut **tx)
-        .await?;
+    );
+    query.build().execute(&mut **tx).await?;
+    Ok(())
+}
+
+async fn insert_points(
+    tx: &mut Transaction<'static, Sqlite>,
+    sweep_id: &str,
+    points: &[NewPoint],
+) -> Result<()> {
+    let mut query = QueryBuilder::new("INSERT INTO point (sweep_id, ordinal, parameters, work_key) ");
+    query.push_values(points, |mut row, point| {
+        row.push_bind(sweep_id)
+            .push_bind(point.ordinal)
+            .push_bind(&point.parameters_json)
+            .push_bind(point.work_key.as_slice());
+    });
+    query.build().execute(&mut **tx).await?;
     Ok(())
 }
 

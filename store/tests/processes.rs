@@ -84,7 +84,7 @@ async fn work(directory: &Path, clock: i64, name: &str) {
         if hang == "claimed" && count == hang_at {
             hang_until_killed();
         }
-        let content = claim.scenario_json.as_bytes().to_vec();
+        let content = claim.scenario.changes_json.as_bytes().to_vec();
         let artifact = NewArtifact {
             name: "history".to_owned(),
             media_type: "application/octet-stream".to_owned(),
@@ -97,7 +97,7 @@ async fn work(directory: &Path, clock: i64, name: &str) {
         }
         assert_eq!(store.renew(&claim.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
         assert!(store.finish_done(&claim.lease, "{}", "{}", &[artifact]).await.unwrap());
-        tell(&claim.scenario_json);
+        tell(&claim.scenario.changes_json);
     }
 }
 
@@ -178,8 +178,7 @@ async fn killed_workers_lose_and_double_nothing() {
         ordinal,
         parameters_json: "{}".to_owned(),
         work_key: key(ordinal),
-        scenario_json: ordinal.to_string(),
-        physics_version: 1,
+        changes_json: ordinal.to_string(),
     });
     let sweep = NewSweep {
         id: "s".to_owned(),
@@ -188,6 +187,8 @@ async fn killed_workers_lose_and_double_nothing() {
         request_json: "{}".to_owned(),
         priority: 0,
         idempotency_key: None,
+        base_json: "{}".to_owned(),
+        physics_version: 1,
         points: points.collect(),
     };
     assert_eq!(store.submit_sweep(&sweep).await.unwrap(), SubmitOutcome::Created);
@@ -235,7 +236,7 @@ async fn killed_workers_lose_and_double_nothing() {
         attempts += point.attempts;
         let artifacts = store.artifacts(&point.work_key).await.unwrap();
         let blob = store.blobs().get(artifacts[0].blob.parse().unwrap()).await.unwrap();
-        assert_eq!(blob, point.scenario_json.as_bytes(), "every row's blob is whole");
+        assert_eq!(blob, point.ordinal.to_string().as_bytes(), "every row's blob is whole");
     }
     println!("{killed} kills, {hung} of them at a known step; {attempts} attempts, {} told", told.len());
     assert_eq!(hung, 2 * ROUNDS as i64);

@@ -3,17 +3,20 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use drillsweep_api::compose;
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::transient::Checkpoint;
 use drillsweep_store::{
-    Claim, FailureClass, Lease, NewArtifact, Role, Store, StoreConfig, StoreError, WorkerRecord,
+    BlobId, Claim, FailureClass, Lease, NewArtifact, Role, Store, StoreConfig, StoreError, WorkerRecord,
 };
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
 use crate::calibration::calibrate;
-use crate::compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
+use crate::compute::{
+    Computation, ComputeError, Computed, EncodedArtifact, compute_from, simulated_time_total,
+};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 
 /// How a worker works.
@@ -27,6 +30,10 @@ pub struct WorkerConfig {
     pub poll_interval: Duration,
     /// Ends when there is nothing left to claim.
     pub drain: bool,
+    /// Ends after so long, the point under way suspended for another worker.
+    pub max_runtime: Option<Duration>,
+    /// Longest that one attempt at a point may take; one that takes longer fails, and a retry goes on from there.
+    pub point_timeout: Option<Duration>,
 }
 
 impl WorkerConfig {
@@ -38,6 +45,8 @@ impl WorkerConfig {
             lease: Duration::from_secs(60),
             poll_interval: Duration::from_millis(500),
             drain: false,
+            max_runtime: None,
+            point_timeout: None,
         }
     }
 }
@@ -77,18 +86,33 @@ async fn keep_speed(store: &Store, host: &str) {
 
 /// How one point ended.
 enum Ended {
-    Computed(Result<Box<Computed>, ComputeError>),
+    Computed(Result<Computation, ComputeError>),
     Panicked(String),
 }
 
-/// Claims and simulates points until `stop` turns true, or until nothing is left where the worker drains.
+/// Who told a point to stop, beside the heartbeat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Halt {
+    /// Nobody.
+    No,
+    /// The worker ends.
+    Stop,
+    /// The point has taken too long.
+    Timeout(Duration),
+}
+
+/// Claims and simulates points until `stop` turns true, its time is over, or nothing is left where the worker drains.
 ///
-/// A point under way when the worker is told to stop goes back to the queue, its attempt refunded.
+/// A point under way when the worker is told to stop goes back to the queue with a checkpoint, its attempt refunded.
 ///
 /// # Errors
 /// When the store cannot be opened or the heartbeat cannot be started. Later failures of the store are logged and
 /// tried again.
-pub async fn run(config: WorkerConfig, mut stop: watch::Receiver<bool>) -> Result<(), WorkerError> {
+pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), WorkerError> {
+    let mut stop = match config.max_runtime {
+        Some(time) => stop_after(time, stop),
+        None => stop,
+    };
     let id = format!("worker-{}", uuid::Uuid::now_v7().simple());
     let store = Store::open(&config.store).await?;
     let record = WorkerRecord {
@@ -106,7 +130,7 @@ pub async fn run(config: WorkerConfig, mut stop: watch::Receiver<bool>) -> Resul
     while !*stop.borrow() {
         let lease_ms = config.lease.as_millis() as i64;
         match store.claim(&id, i64::from(PHYSICS_VERSION), lease_ms).await {
-            Ok(Some(claim)) => work_on(&store, &heartbeat, claim, &mut stop).await,
+            Ok(Some(claim)) => work_on(&store, &heartbeat, claim, config.point_timeout, &mut stop).await,
             Ok(None) if config.drain => break,
             Ok(None) => idle(config.poll_interval, &mut stop).await,
             Err(error) => {
@@ -119,6 +143,17 @@ pub async fn run(config: WorkerConfig, mut stop: watch::Receiver<bool>) -> Resul
     store.close().await;
     tracing::info!(worker = %id, "worker done");
     Ok(())
+}
+
+/// Turns true after some time, or with `stop` before that.
+fn stop_after(time: Duration, mut stop: watch::Receiver<bool>) -> watch::Receiver<bool> {
+    let (sender, receiver) = watch::channel(false);
+    tokio::spawn(async move {
+        idle(time, &mut stop).await;
+        sender.send_replace(true);
+        sender.closed().await;
+    });
+    receiver
 }
 
 async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
@@ -134,16 +169,22 @@ async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
     }
 }
 
-async fn work_on(store: &Store, heartbeat: &Heartbeat, claim: Claim, stop: &mut watch::Receiver<bool>) {
+async fn work_on(
+    store: &Store,
+    heartbeat: &Heartbeat,
+    claim: Claim,
+    timeout: Option<Duration>,
+    stop: &mut watch::Receiver<bool>,
+) {
     let lease = claim.lease;
     let point = hex(&lease.key);
     tracing::info!(point = %&point[..12], attempt = lease.attempt, "point claimed");
-    let scenario = match Scenario::from_json(&claim.scenario_json) {
+    let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
         Ok(scenario) => scenario,
         Err(problem) => {
             let error = ComputeError::Invalid(problem.to_string());
             let ended = Ended::Computed(Err(error));
-            end(store, &lease, ended, StopReason::None, false).await;
+            end(store, &lease, ended, StopReason::None, Halt::No).await;
             return;
         }
     };
@@ -156,30 +197,55 @@ async fn work_on(store: &Store, heartbeat: &Heartbeat, claim: Claim, stop: &mut 
         verdict: verdict.clone(),
     }));
     let watched = control.clone();
-    let mut computing = tokio::task::spawn_blocking(move || compute(&scenario, &watched));
-    let mut stopped = false;
+    let checkpoint = read_checkpoint(store, claim.checkpoint).await;
+    let mut computing = tokio::task::spawn_blocking(move || compute_from(&scenario, &watched, checkpoint));
+    let timeout = timeout.map(|time| (time, tokio::time::Instant::now() + time));
+    let overdue = async {
+        match timeout {
+            Some((time, at)) => {
+                tokio::time::sleep_until(at).await;
+                time
+            }
+            None => std::future::pending().await,
+        }
+    };
+    tokio::pin!(overdue);
+    let mut halt = Halt::No;
     let joined = loop {
         tokio::select! {
             joined = &mut computing => break joined,
-            Ok(_) = stop.wait_for(|stop| *stop), if !stopped => {
-                stopped = true;
-                control.cancel();
+            Ok(_) = stop.wait_for(|stop| *stop), if halt == Halt::No => {
+                halt = Halt::Stop;
+                control.suspend();
+            }
+            time = &mut overdue, if halt == Halt::No => {
+                halt = Halt::Timeout(time);
+                control.suspend();
             }
         }
     };
     let ended = match joined {
-        Ok(result) => Ended::Computed(result.map(Box::new)),
+        Ok(result) => Ended::Computed(result),
         Err(error) => Ended::Panicked(panic_text(error)),
     };
-    end(store, &lease, ended, verdict.get(), stopped).await;
+    end(store, &lease, ended, verdict.get(), halt).await;
     heartbeat.watch(None);
 }
 
+/// The checkpoint that an earlier worker left. Without it the point begins again, which costs time and nothing else.
+async fn read_checkpoint(store: &Store, blob: Option<BlobId>) -> Option<Checkpoint> {
+    let bytes = store.blobs().get(blob?).await;
+    let bytes = bytes.inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be read")).ok()?;
+    Checkpoint::from_bytes(&bytes)
+        .inspect_err(|error| tracing::warn!(%error, "a checkpoint is of no use"))
+        .ok()
+}
+
 /// Writes how a point ended. The store being out of reach is tried again until the lease must be gone.
-async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, stopped: bool) {
+async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, halt: Halt) {
     const TRIES: u32 = 5;
     for attempt in 0..TRIES {
-        match write_end(store, lease, &ended, reason, stopped).await {
+        match write_end(store, lease, &ended, reason, halt).await {
             Ok(true) => return,
             Ok(false) => {
                 tracing::warn!(point = %&hex(&lease.key)[..12], attempt = lease.attempt, "lease lost, result dropped");
@@ -199,10 +265,10 @@ async fn write_end(
     lease: &Lease,
     ended: &Ended,
     reason: StopReason,
-    stopped: bool,
+    halt: Halt,
 ) -> drillsweep_store::Result<bool> {
     match ended {
-        Ended::Computed(Ok(computed)) => match upload(store, computed).await {
+        Ended::Computed(Ok(Computation::Finished(computed))) => match upload(store, computed).await {
             Ok(artifacts) => {
                 let summary = Value::Object(computed.summary_row()).to_string();
                 let provenance = Value::Object(computed.provenance.clone()).to_string();
@@ -214,22 +280,10 @@ async fn write_end(
                 store.retry_later(lease, &json.to_string()).await
             }
         },
-        Ended::Computed(Err(ComputeError::Cancelled)) => match reason {
-            StopReason::Cancelled => {
-                store
-                    .finish_failed(
-                        lease,
-                        FailureClass::Cancelled,
-                        r#"{"class":"cancelled","reason":"cancelled"}"#,
-                    )
-                    .await
-            }
-            StopReason::LeaseLost => Ok(false),
-            StopReason::None => {
-                debug_assert!(stopped, "only a stop cancels without a reason");
-                store.release(lease).await
-            }
-        },
+        Ended::Computed(Ok(Computation::Suspended(checkpoint))) => {
+            halted(store, lease, Some(checkpoint), reason, halt).await
+        }
+        Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
         Ended::Computed(Err(error)) => {
             tracing::warn!(point = %&hex(&lease.key)[..12], %error, "point failed");
             store.finish_failed(lease, FailureClass::Physical, &error.to_json().to_string()).await
@@ -237,9 +291,51 @@ async fn write_end(
         Ended::Panicked(text) => {
             tracing::error!(point = %&hex(&lease.key)[..12], text, "the simulation panicked");
             let json = json!({ "class": "crash", "reason": format!("the simulation panicked: {text}") });
-            store.finish_failed(lease, FailureClass::Physical, &json.to_string()).await
+            store.crashed(lease, &json.to_string()).await
         }
     }
+}
+
+/// Writes the end of a point that was told to stop before its end.
+async fn halted(
+    store: &Store,
+    lease: &Lease,
+    checkpoint: Option<&Checkpoint>,
+    reason: StopReason,
+    halt: Halt,
+) -> drillsweep_store::Result<bool> {
+    let cancelled = r#"{"class":"cancelled","reason":"cancelled"}"#;
+    match (reason, halt) {
+        (StopReason::LeaseLost, _) => Ok(false),
+        (StopReason::Cancelled, _) => {
+            store.finish_failed(lease, FailureClass::Cancelled, cancelled).await
+        }
+        (StopReason::None, Halt::Timeout(time)) => {
+            let reason = format!("it took longer than the {} s that this worker gives a point", time.as_secs_f64());
+            let json = json!({ "class": "timeout", "reason": reason });
+            if let Some(blob) = write_checkpoint(store, checkpoint).await {
+                store.keep_checkpoint(lease, blob).await?;
+            }
+            store.finish_failed(lease, FailureClass::Timeout, &json.to_string()).await
+        }
+        (StopReason::None, Halt::Stop | Halt::No) => {
+            if let Some(blob) = write_checkpoint(store, checkpoint).await {
+                store.keep_checkpoint(lease, blob).await?;
+            }
+            store.release(lease).await
+        }
+    }
+}
+
+/// Writes a checkpoint as a blob, before any row names it. One that cannot be written is done without.
+async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Option<BlobId> {
+    let bytes = checkpoint?.to_bytes();
+    store
+        .blobs()
+        .put(bytes)
+        .await
+        .inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be written; the point will begin again"))
+        .ok()
 }
 
 /// Writes the tables as blobs, before any row names them.

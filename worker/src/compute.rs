@@ -11,7 +11,7 @@ use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::{CostReport, Recommendation, StudyError};
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{Outcome, Transient, TransientError};
+use drillsweep_sim::transient::{Checkpoint, Outcome, Transient, TransientError};
 use drillsweep_store::{Table, TableError, encode_parquet};
 use serde_json::{Map, Value, json};
 
@@ -37,6 +37,15 @@ pub struct Computed {
     pub stability: Option<Stability>,
     /// Versions, integrator, steps and cost.
     pub provenance: Map<String, Value>,
+}
+
+/// How far a point got.
+#[derive(Debug)]
+pub enum Computation {
+    /// To its end.
+    Finished(Box<Computed>),
+    /// It was suspended, and goes on from here to the same bits.
+    Suspended(Box<Checkpoint>),
 }
 
 /// A table or report as it is stored.
@@ -173,11 +182,28 @@ pub fn simulated_time_total(scenario: &Scenario) -> f64 {
     }
 }
 
-/// Simulates one point; `control` watches and stops it.
+/// Simulates one point; `control` watches and stops it. A point that is suspended counts as cancelled.
 ///
 /// # Errors
 /// When the scenario is not valid, there is no equilibrium, the run diverges, or it is cancelled.
 pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, ComputeError> {
+    match compute_from(scenario, control, None)? {
+        Computation::Finished(computed) => Ok(*computed),
+        Computation::Suspended(_) => Err(ComputeError::Cancelled),
+    }
+}
+
+/// Simulates one point from its start or from a checkpoint of the same point. A checkpoint that does not fit is passed
+/// over: the point begins again. The other members of an ensemble and the runs of a cost study have no checkpoints; a
+/// point that is suspended in one of them counts as cancelled.
+///
+/// # Errors
+/// As [`compute`].
+pub fn compute_from(
+    scenario: &Scenario,
+    control: &Control,
+    checkpoint: Option<Checkpoint>,
+) -> Result<Computation, ComputeError> {
     scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let started = Stopwatch::start();
     let model = Model::new(scenario)?;
@@ -200,7 +226,26 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
     };
     let study = scenario.cost_study.is_some().then(|| cost_study(scenario, control)).transpose()?;
     let runs = study.is_none() && model.effects.transient;
-    let records = runs.then(|| run(0)).transpose()?;
+    let mut is_resumed = false;
+    let records = if runs {
+        let resumed = checkpoint.and_then(|checkpoint| {
+            Transient::resume(&model, &equilibrium, checkpoint)
+                .inspect_err(|error| tracing::warn!(%error, "a checkpoint is of no use; the point begins again"))
+                .ok()
+        });
+        is_resumed = resumed.is_some();
+        let transient = match resumed {
+            Some(transient) => transient,
+            None => Transient::new(&model, &equilibrium)?,
+        };
+        match transient.run(&control.part())? {
+            Outcome::Finished(records) => Some(*records),
+            Outcome::Suspended(checkpoint) => return Ok(Computation::Suspended(checkpoint)),
+            Outcome::Cancelled => return Err(ComputeError::Cancelled),
+        }
+    } else {
+        None
+    };
     let transient_cost = started.elapsed();
     let mut ensemble = Vec::new();
     let mut histories_part_at: Option<f64> = None;
@@ -237,11 +282,13 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
         provenance.insert("loose_solves".into(), json!(effort.sweeps.loose_solves));
         provenance.insert("error_estimate".into(), json!(records.error));
         provenance.insert("error_estimate_of".into(), json!(ERROR_ESTIMATE_OF));
+        provenance.insert("resumed".into(), json!(is_resumed));
         provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    Ok(Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance })
+    let computed = Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance };
+    Ok(Computation::Finished(Box::new(computed)))
 }
 
 /// What the error estimate is an estimate of, for people.

@@ -14,6 +14,8 @@ mod tables;
 
 pub use calibration::calibrate;
 pub use claim::{WorkerConfig, WorkerError, run};
-pub use compute::{ComputeError, Computed, EncodedArtifact, compute, simulated_time_total};
+pub use compute::{
+    Computation, ComputeError, Computed, EncodedArtifact, compute, compute_from, simulated_time_total,
+};
 pub use cost::{cost_study, study_time};
 pub use tables::{point_tables, summary_row};

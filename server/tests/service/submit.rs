@@ -51,9 +51,9 @@ async fn a_sweep_is_stored_with_all_its_points() {
     assert_eq!(rest["next"], Value::Null);
 
     // What a worker gets is the scenario with everything applied.
-    let scenario: Value = serde_json::from_str(&bench.claim().await.scenario_json).unwrap();
-    assert_eq!(scenario["mud"]["flow_rate"], 0.01);
-    assert_eq!(scenario["mud"]["density"], 1200.0);
+    let claim = bench.claim().await;
+    let mud = drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap().mud.unwrap();
+    assert_eq!((mud.flow_rate, mud.density), (0.01, 1200.0));
 }
 
 #[tokio::test]

@@ -75,19 +75,14 @@ impl Scenario {
     }
 
     fn without_negative_zeros(&self) -> Self {
-        let mut tree = self.tree();
-        clear_negative_zeros(&mut tree);
-        tree.try_into().expect("a scenario's own tree is a scenario")
-    }
-}
-
-fn clear_negative_zeros(tree: &mut toml::Value) {
-    match tree {
-        // Equal to 0.0 are 0.0 and -0.0.
-        toml::Value::Float(number) if *number == 0.0 => *number = 0.0,
-        toml::Value::Array(entries) => entries.iter_mut().for_each(clear_negative_zeros),
-        toml::Value::Table(fields) => fields.iter_mut().for_each(|(_, value)| clear_negative_zeros(value)),
-        _ => {}
+        let mut scenario = self.clone();
+        scenario.each_number(&mut |number| {
+            // Equal to 0.0 are 0.0 and -0.0.
+            if *number == 0.0 {
+                *number = 0.0;
+            }
+        });
+        scenario
     }
 }
 

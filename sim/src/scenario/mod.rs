@@ -8,6 +8,7 @@ mod canonical;
 mod decide;
 mod effects;
 mod format;
+mod number;
 mod preset;
 mod problem;
 mod request;

@@ -27,13 +27,13 @@ impl Scenario {
 
 /// One step down the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Step<'a> {
+pub(super) enum Step<'a> {
     Field(&'a str),
     Index(usize),
 }
 
 /// Cuts a path into steps.
-fn parse(path: &str) -> Result<Vec<Step<'_>>, Problem> {
+pub(super) fn parse(path: &str) -> Result<Vec<Step<'_>>, Problem> {
     let malformed = || Problem::new(path, "", "a path reads like string.sections[1].count");
     let mut steps = Vec::new();
     for part in path.split('.') {

@@ -1,7 +1,7 @@
 //! A store in a temporary directory.
 
 use drillsweep_store::{
-    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, Store, StoreConfig, SubmitOutcome,
+    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig, SubmitOutcome,
     SweepRecord, WorkKey, WorkState,
 };
 use tempfile::TempDir;
@@ -51,8 +51,7 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         ordinal: index as i64 + 1,
         parameters_json: format!(r#"{{"flow_rate":{number}}}"#),
         work_key: key(number),
-        scenario_json: format!(r#"{{"scenario":{number}}}"#),
-        physics_version: PHYSICS,
+        changes_json: scenario(id, number).changes_json,
     };
     NewSweep {
         id: id.to_owned(),
@@ -61,7 +60,17 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         request_json: format!(r#"{{"request":"{id}"}}"#),
         priority: 0,
         idempotency_key: None,
+        base_json: scenario(id, 0).base_json,
+        physics_version: PHYSICS,
         points: numbers.into_iter().enumerate().map(point).collect(),
+    }
+}
+
+/// The scenario of a work item of a sweep.
+pub(crate) fn scenario(id: &str, number: u32) -> ScenarioText {
+    ScenarioText {
+        base_json: format!(r#"{{"scenario":"{id}"}}"#),
+        changes_json: format!(r#"{{"number":{number}}}"#),
     }
 }
 

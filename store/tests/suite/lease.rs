@@ -163,9 +163,7 @@ async fn an_infrastructure_failure_waits_5_10_20_40_seconds_and_is_given_up_at_t
 async fn a_worker_gets_only_work_of_its_own_numbers() {
     let bench = Bench::new();
     let store = bench.open().await;
-    let mut old = sweep("old", [1]);
-    old.points[0].physics_version = PHYSICS - 1;
-    submit(&store, &old).await;
+    submit(&store, &NewSweep { physics_version: PHYSICS - 1, ..sweep("old", [1]) }).await;
     submit(&store, &sweep("new", [2])).await;
     assert_eq!(claim(&store, "w").await.lease.key, key(2));
     assert_eq!(claim_or_none(&store, "w").await, None);

@@ -5,7 +5,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState};
 
 use crate::bench::{
-    Bench, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
+    Bench, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
+    sweep_record,
 };
 
 #[tokio::test]
@@ -25,7 +26,7 @@ async fn a_sweep_is_read_back_as_it_was_submitted() {
 
     let point = point_record(&store, "s", 2).await;
     assert_eq!(point.parameters_json, r#"{"flow_rate":20}"#);
-    assert_eq!(point.scenario_json, r#"{"scenario":20}"#);
+    assert_eq!(point.scenario, Some(scenario("s", 20)));
     assert_eq!(point.work_key, key(20));
     assert_eq!((point.state, point.attempts, point.summary_json), (WorkState::Queued, 0, None));
     assert_eq!(store.point("s", 4).await.unwrap(), None);
@@ -39,7 +40,7 @@ async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table() {
     let store = bench.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     let first = claim(&store, "w").await;
-    assert_eq!(first.scenario_json, r#"{"scenario":1}"#);
+    assert_eq!(first.scenario, scenario("s", 1));
     assert!(finish(&store, &first).await);
 
     let point = point_record(&store, "s", 1).await;

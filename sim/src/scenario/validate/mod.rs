@@ -16,10 +16,39 @@ impl Scenario {
     /// All problems at once, each with the field's path, what it holds and what would be valid. A scenario
     /// without problems may still earn warnings about what is probably not meant.
     pub fn validate(&self) -> Result<Vec<Warning>, Problems> {
+        self.check(true)
+    }
+
+    /// Checks again a scenario whose numbers at the paths `changed` differ from those of one that was checked in full.
+    /// Well, string and mesh, the costly part, are left out where none of the paths leads there.
+    ///
+    /// # Errors
+    /// As [`Scenario::validate`]; what does not depend on the changed numbers may be left out, and so may warnings.
+    pub fn validate_changes<'a>(
+        &self,
+        changed: impl IntoIterator<Item = &'a str>,
+    ) -> Result<Vec<Warning>, Problems> {
+        let shapes = ["well", "string", "mesh", "recording", "cost_study"];
+        let leads_to = |path: &str, part: &str| {
+            path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        let mut changed = changed.into_iter();
+        self.check(changed.any(|path| shapes.into_iter().any(|part| leads_to(path, part))))
+    }
+
+    fn check(&self, with_shape: bool) -> Result<Vec<Warning>, Problems> {
         let mut report = Report::default();
-        finite(&mut report, &self.tree(), String::new());
-        hole::check(&mut report, self);
-        let mesh = string::check(&mut report, self);
+        let mut is_finite = true;
+        self.clone().each_number(&mut |number| is_finite &= number.is_finite());
+        if !is_finite {
+            finite(&mut report, &self.tree(), String::new());
+        }
+        let mesh = if with_shape {
+            hole::check(&mut report, self);
+            string::check(&mut report, self)
+        } else {
+            None
+        };
         loads::check(&mut report, self);
         time::check(&mut report, self, mesh.as_ref());
         report.finish()

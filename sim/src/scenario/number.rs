@@ -1,0 +1,207 @@
+//! The numbers of a scenario, by path and in place.
+//!
+//! [`Scenario::with`] changes anything but rewrites the whole scenario. A sweep of a hundred thousand points changes
+//! the same few numbers again and again; here they are found without leaving the struct.
+
+use super::set::{Step, parse};
+use super::{
+    Accuracy, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud, NodeChoice,
+    Operation, RayleighDamping, Recording, Scenario, Section, SurveyStation, TimeStepping, TimeWindow,
+    ToolJoint, UnbalanceMass, Well,
+};
+
+impl Scenario {
+    /// The floating-point number at a path such as `mud.flow_rate`; none where there is none, which includes what is
+    /// optional and absent, and the fields of a named accuracy.
+    pub fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
+        self.find(&parse(path).ok()?)
+    }
+
+    /// Calls `visit` with every floating-point number.
+    pub(super) fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.each(visit);
+    }
+}
+
+/// Something that holds floating-point numbers.
+trait Numbers {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64>;
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64));
+}
+
+impl Numbers for f64 {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        steps.is_empty().then_some(self)
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        visit(self);
+    }
+}
+
+impl<T: Numbers> Numbers for Option<T> {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        self.as_mut()?.find(steps)
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.iter_mut().for_each(|inner| inner.each(visit));
+    }
+}
+
+impl<T: Numbers> Numbers for Vec<T> {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match steps.split_first()? {
+            (Step::Index(index), rest) => self.get_mut(*index)?.find(rest),
+            (Step::Field(_), _) => None,
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.iter_mut().for_each(|entry| entry.each(visit));
+    }
+}
+
+/// The fields with numbers, and after `without` those that have none. Each struct is taken apart in full, so that a new
+/// field cannot be forgotten.
+macro_rules! numbers {
+    ($type:ident: $($field:ident),* $(; without $($other:ident),*)?) => {
+        impl Numbers for $type {
+            fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+                let $type { $($field,)* $($($other: _,)*)? } = self;
+                match steps.split_first()? {
+                    $((Step::Field(stringify!($field)), rest) => $field.find(rest),)*
+                    _ => None,
+                }
+            }
+
+            fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+                let $type { $($field,)* $($($other: _,)*)? } = self;
+                $($field.each(visit);)*
+            }
+        }
+    };
+}
+
+numbers!(Scenario: well, string, mud, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
+    without name, effects, ensemble);
+numbers!(Well: hole_diameter, survey);
+numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
+numbers!(DrillString: material, sections, gauges, unbalance);
+numbers!(Material: youngs_modulus, density, poissons_ratio);
+numbers!(Section: length, outer_diameter, inner_diameter, tool_joint; without kind, count);
+numbers!(ToolJoint: length, outer_diameter, inner_diameter);
+numbers!(Gauge: measured_depth, clearance);
+numbers!(UnbalanceMass: measured_depth, mass, radius, phase_deg);
+numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pressure_drop, back_pressure;
+    without regime, rotation_factor, viscosity_eccentricity);
+numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit; without top);
+numbers!(ContactLaw: stiffness, damping, stiffness_sharpness, damping_sharpness, static_friction, dynamic_friction,
+    friction_reference_speed, reference_length; without adhesion);
+numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
+numbers!(Mesh: drillpipe, tool_joint, collar, stabilizer, bit);
+numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window);
+numbers!(TimeWindow: from, to);
+numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
+numbers!(CostStudy: duration, methods, mesh_factors);
+numbers!(MethodSteps: steps; without integrator);
+
+impl Numbers for NodeChoice {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match (self, steps.split_first()?) {
+            (NodeChoice::Depth(depth), (Step::Field("depth"), rest)) => depth.find(rest),
+            _ => None,
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        match self {
+            NodeChoice::Depth(depth) => depth.each(visit),
+            NodeChoice::Node(_) => {}
+        }
+    }
+}
+
+impl Numbers for Accuracy {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match self {
+            Accuracy::Explicit(stepping) => stepping.find(steps),
+            Accuracy::Preset(_) => None,
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        match self {
+            Accuracy::Explicit(stepping) => stepping.each(visit),
+            Accuracy::Preset(_) => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::scenario::preset;
+
+    /// A scenario in which everything optional is there.
+    fn full() -> Scenario {
+        preset("paper-200m")
+            .unwrap()
+            .with("accuracy.tolerance", json!(0.01))
+            .and_then(|scenario| scenario.with("accuracy.spectral_radius", json!(0.8)))
+            .and_then(|scenario| scenario.with("contact.reference_length", json!(0.5)))
+            .and_then(|scenario| {
+                let study = json!({"methods": [{"integrator": "rk4", "steps": [5e-5]}], "mesh_factors": [2.0]});
+                scenario.with("cost_study", study)
+            })
+            .unwrap()
+    }
+
+    /// Paths of all floating-point numbers of the scenario as it is written.
+    fn paths(tree: &toml::Value, path: String, found: &mut Vec<String>) {
+        match tree {
+            toml::Value::Float(_) => found.push(path),
+            toml::Value::Array(entries) => {
+                for (i, entry) in entries.iter().enumerate() {
+                    paths(entry, format!("{path}[{i}]"), found);
+                }
+            }
+            toml::Value::Table(fields) => {
+                for (field, value) in fields {
+                    let inner = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
+                    paths(value, inner, found);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn every_number_that_is_written_is_found_by_its_path() {
+        let scenario = full();
+        let mut written = Vec::new();
+        paths(&scenario.tree(), String::new(), &mut written);
+        assert!(written.len() > 100, "the walk found only {} numbers", written.len());
+        for path in &written {
+            let mut changed = scenario.clone();
+            *changed.number_mut(path).unwrap_or_else(|| panic!("{path} is not found")) = 1234.5;
+            assert_eq!(changed, scenario.with(path, json!(1234.5)).unwrap(), "{path}");
+        }
+        let mut visited = 0;
+        scenario.clone().each_number(&mut |_| visited += 1);
+        assert_eq!(visited, written.len());
+    }
+
+    #[test]
+    fn what_is_no_number_is_not_found() {
+        let mut scenario = preset("paper-200m").unwrap();
+        for path in [
+            "", "mud", "name", "mud.regime", "mud.density.x", "string.sections", "string.sections[8].length",
+            "string.sections[1].count", "accuracy.step", "contact.reference_length", "mud.densit", "mud[0]",
+        ] {
+            assert_eq!(scenario.number_mut(path), None, "{path}");
+        }
+    }
+}

@@ -255,6 +255,88 @@ fn stopped_worker_gives_its_point_back_untried() {
 }
 
 #[test]
+fn suspended_point_goes_on_elsewhere_to_the_same_bits() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let run = |server: &str| -> String {
+        let set = json!({ "duration": 6.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
+        let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
+        run["id"].as_str().unwrap().to_owned()
+    };
+    let id = run(&server);
+    let mut first = worker(data.path());
+    wait(&server, &id, |sweep| sweep["progress"].as_f64().unwrap() > 0.0);
+    first.signal(Signal::TERM);
+    assert!(first.0.wait().unwrap().success(), "a stopped worker ends in order");
+    let point = format!("{server}/v1/sweeps/{id}/points/1");
+    assert_eq!(get(&point)["attempts"], 0, "the attempt is given back");
+    let (mut second, log) = start(data.path(), &["worker", "--lease-seconds", "2", "--drain"]);
+    drain(log);
+    wait(&server, &id, completed);
+    assert!(second.0.wait().unwrap().success(), "a worker that drains ends by itself");
+    let resumed = get(&point);
+    assert_eq!(resumed["provenance"]["resumed"], true, "{resumed}");
+
+    let other = tempfile::tempdir().unwrap();
+    let (_up, alone) = listen(other.path(), &["up", "--workers", "1"]);
+    let uninterrupted = run(&alone);
+    wait(&alone, &uninterrupted, completed);
+    let whole = get(&format!("{alone}/v1/sweeps/{uninterrupted}/points/1"));
+    assert_eq!(whole["provenance"]["resumed"], false);
+    assert_eq!(whole["summary"], resumed["summary"]);
+    // The names of blobs are the hashes of their bytes.
+    let blobs = |data: &Path| -> std::collections::BTreeMap<String, u64> {
+        let mut found = std::collections::BTreeMap::new();
+        let mut folders = vec![data.join("blobs")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let entry = entry.unwrap();
+                match entry.file_type().unwrap().is_dir() {
+                    true => folders.push(entry.path()),
+                    false => {
+                        let size = entry.metadata().unwrap().len();
+                        found.insert(entry.file_name().into_string().unwrap(), size);
+                    }
+                }
+            }
+        }
+        found
+    };
+    let (whole, resumed) = (blobs(other.path()), blobs(data.path()));
+    assert!(whole.len() >= 4, "{whole:?}");
+    assert!(whole.iter().all(|(name, size)| resumed.get(name) == Some(size)), "{whole:?} {resumed:?}");
+}
+
+#[test]
+fn worker_ends_when_its_time_is_over_and_gives_its_point_back() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let id = submit(&server, 600.0, &json!({}));
+    let (mut worker, log) = start(data.path(), &["worker", "--max-runtime", "2s"]);
+    drain(log);
+    assert!(worker.0.wait().unwrap().success());
+    let sweep = get(&format!("{server}/v1/sweeps/{id}"));
+    assert_eq!(sweep["counts"]["queued"], 2, "{sweep}");
+    assert_eq!(get(&format!("{server}/v1/sweeps/{id}/points/1"))["attempts"], 0);
+}
+
+#[test]
+fn point_that_takes_too_long_fails_and_its_retry_goes_on_from_there() {
+    let data = tempfile::tempdir().unwrap();
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let set = json!({ "duration": 600.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
+    let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
+    let id = run["id"].as_str().unwrap().to_owned();
+    let (mut worker, log) = start(data.path(), &["worker", "--point-timeout", "2s", "--drain"]);
+    drain(log);
+    assert!(worker.0.wait().unwrap().success());
+    let point = get(&format!("{server}/v1/sweeps/{id}/points/1"));
+    assert_eq!(point["error"]["class"], "timeout", "{point}");
+    assert!(point["error"]["reason"].as_str().unwrap().contains("2 s"), "{point}");
+    assert_eq!(post(&format!("{server}/v1/sweeps/{id}/retry"), &json!({}))["counts"]["queued"], 1);
+}
+
+#[test]
 fn cancelled_sweep_stops_its_running_point() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);

@@ -70,7 +70,9 @@ impl Axis {
         match self {
             Axis::Values { values } => values[i],
             Axis::Range { to, count, .. } if i + 1 == *count as usize => *to,
-            Axis::Range { from, to, count, scale } => scale.between(*from, *to, i as f64, f64::from(count - 1)),
+            Axis::Range { from, to, count, scale } => {
+                scale.between(*from, *to, i as f64, f64::from(count - 1))
+            }
             Axis::Interval { from, to, scale } => scale.between(*from, *to, i as f64, 1.0),
         }
     }
@@ -79,7 +81,9 @@ impl Axis {
     /// entry there, so that each is as likely as the others.
     pub fn at(&self, fraction: f64) -> f64 {
         match self {
-            Axis::Values { values } => values[((fraction * values.len() as f64) as usize).min(values.len() - 1)],
+            Axis::Values { values } => {
+                values[((fraction * values.len() as f64) as usize).min(values.len() - 1)]
+            }
             Axis::Range { from, to, scale, .. } | Axis::Interval { from, to, scale } => {
                 scale.between(*from, *to, fraction, 1.0)
             }
@@ -219,7 +223,8 @@ mod tests {
     }
 
     /// Of 0.01 (6)^(i / 3), by `libm` 0.2.
-    const LOG_BITS: [u64; 4] = [4576918229304087675, 4580894714928274227, 4584919399700666857, 4588807732320345784];
+    const LOG_BITS: [u64; 4] =
+        [4576918229304087675, 4580894714928274227, 4584919399700666857, 4588807732320345784];
 
     proptest! {
         #[test]

@@ -66,13 +66,15 @@ impl Expansion {
 
     /// The swept parameters of a point in the order of the axes, then the scenario's other parameters with a name.
     pub fn parameters(&self, point: &SweepPoint) -> IndexMap<String, f64> {
-        let swept = self.axes.iter().zip(&point.values).map(|(name, value)| (name.as_str().to_owned(), *value));
+        let swept =
+            self.axes.iter().zip(&point.values).map(|(name, value)| (name.as_str().to_owned(), *value));
         let is_swept = |path: &str| self.axes.iter().any(|name| name.scenario_path() == path);
         let mud = self.base.mud.as_ref();
-        let others = AxisName::NAMED.into_iter().filter(|(_, path)| !is_swept(path)).filter_map(|(name, _)| {
-            let value = if name == "flow_rate" { mud?.flow_rate } else { mud?.density };
-            Some((name.to_owned(), value))
-        });
+        let others =
+            AxisName::NAMED.into_iter().filter(|(_, path)| !is_swept(path)).filter_map(|(name, _)| {
+                let value = if name == "flow_rate" { mud?.flow_rate } else { mud?.density };
+                Some((name.to_owned(), value))
+            });
         swept.chain(others).collect()
     }
 }
@@ -182,7 +184,9 @@ impl<'a> Layout<'a> {
         let before = problems.0.len();
         let design = request.design;
         let names: Vec<AxisName> = match design {
-            Design::List => request.points.first().map(|point| point.keys().cloned().collect()).unwrap_or_default(),
+            Design::List => {
+                request.points.first().map(|point| point.keys().cloned().collect()).unwrap_or_default()
+            }
             _ => request.axes.keys().cloned().collect(),
         };
         check_design_members(request, problems);
@@ -204,9 +208,10 @@ impl<'a> Layout<'a> {
         }
         check_names(request, &names, problems);
         let total = match design {
-            Design::Grid => {
-                request.axes.values().try_fold(1, |total: usize, axis| total.checked_mul(axis.count().unwrap_or(1)))
-            }
+            Design::Grid => request
+                .axes
+                .values()
+                .try_fold(1, |total: usize, axis| total.checked_mul(axis.count().unwrap_or(1))),
             Design::Zip => Some(request.axes.values().filter_map(Axis::count).max().unwrap_or(1)),
             Design::List => Some(request.points.len()),
             Design::LatinHypercube | Design::Sobol => Some(request.samples.unwrap_or(1) as usize),
@@ -243,9 +248,7 @@ impl<'a> Layout<'a> {
                 let point = &self.request.points[number];
                 self.names.iter().filter_map(|name| point.get(name).copied()).collect()
             }
-            Draw::Listed => {
-                axes.zip(self.indices(number)).map(|(axis, index)| axis.value(index)).collect()
-            }
+            Draw::Listed => axes.zip(self.indices(number)).map(|(axis, index)| axis.value(index)).collect(),
             Draw::LatinHypercube(fractions) => {
                 axes.zip(fractions).map(|(axis, fractions)| axis.at(fractions[number])).collect()
             }
@@ -358,7 +361,8 @@ fn check_names(request: &SweepRequest, names: &[AxisName], problems: &mut Found)
         problems.push("/axes", Some(names.len().into()), detail);
     }
     for (index, name) in names.iter().enumerate() {
-        if let Some(other) = names[..index].iter().find(|other| other.scenario_path() == name.scenario_path()) {
+        if let Some(other) = names[..index].iter().find(|other| other.scenario_path() == name.scenario_path())
+        {
             let pointer = match request.design {
                 Design::List => format!("/points/0/{}", pointer_token(name.as_str())),
                 _ => axis_pointer(name),
@@ -380,7 +384,12 @@ fn axis_pointer(name: &AxisName) -> String {
 }
 
 /// Sets the swept fields to the values of the first point; false where one of them is no numeric field.
-fn set_fields(request: &SweepRequest, layout: &Layout<'_>, base: &mut Scenario, problems: &mut Found) -> bool {
+fn set_fields(
+    request: &SweepRequest,
+    layout: &Layout<'_>,
+    base: &mut Scenario,
+    problems: &mut Found,
+) -> bool {
     let before = problems.0.len();
     for (axis, (name, value)) in layout.names.iter().zip(layout.values(0)).enumerate() {
         if let Err(problem) = set_number(base, name.scenario_path(), value) {
@@ -403,7 +412,8 @@ fn points(request: &SweepRequest, layout: &Layout<'_>, base: Scenario, problems:
     let paths: Vec<&str> = layout.names.iter().map(AxisName::scenario_path).collect();
     for (index, ordinal) in (0..layout.total).zip(1..) {
         let values = layout.values(index);
-        let set = paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let set =
+            paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
         let checked = set.map_err(Problems::from).and_then(|()| match index {
             0 => scenario.validate(),
             _ => scenario.validate_changes(paths.iter().copied()),
@@ -610,7 +620,8 @@ mod tests {
                 "mud_density": {"values": [1200, 1500]}, "flow_rate": {"values": [0.01, 0.04]}}}"#,
         )
         .unwrap();
-        let values: Vec<_> = expand(&density_first).unwrap().points.into_iter().map(|point| point.values).collect();
+        let values: Vec<_> =
+            expand(&density_first).unwrap().points.into_iter().map(|point| point.values).collect();
         assert_eq!(values, [[1200.0, 0.01], [1200.0, 0.04], [1500.0, 0.01], [1500.0, 0.04]]);
     }
 
@@ -810,7 +821,11 @@ mod tests {
         }
         let half = problems(json!({"preset": "paper-200m", "axes": {"ensemble": {"values": [8, 7.5]}}}));
         let expected = ("/axes/ensemble/values/1".to_owned(), Some(json!(7.5)));
-        assert_eq!(half.iter().map(|of| (of.0.clone(), of.1.clone())).collect::<Vec<_>>(), [expected], "{half:?}");
+        assert_eq!(
+            half.iter().map(|of| (of.0.clone(), of.1.clone())).collect::<Vec<_>>(),
+            [expected],
+            "{half:?}"
+        );
         let twice = json!({"preset": "paper-200m",
             "axes": {"flow_rate": {"values": [0.01]}, "mud.flow_rate": {"values": [0.02]}}});
         assert_eq!(pointers(twice), ["/axes/mud.flow_rate"]);
@@ -882,9 +897,8 @@ mod tests {
         for design in ["latin_hypercube", "sobol"] {
             let points = expansion(body(design, 64, None)).points;
             assert_eq!(points.len(), 64);
-            let in_lower_half = |axis: usize, middle: f64| {
-                points.iter().filter(|point| point.values[axis] < middle).count()
-            };
+            let in_lower_half =
+                |axis: usize, middle: f64| points.iter().filter(|point| point.values[axis] < middle).count();
             assert_eq!((in_lower_half(0, 0.035), in_lower_half(1, 1e6)), (32, 32), "{design}");
             assert!((20..=22).contains(&in_lower_half(2, 8.0)), "{design}");
         }

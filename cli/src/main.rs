@@ -38,7 +38,7 @@ enum Command {
     /// Start a worker that claims points and simulates them.
     Worker(service::WorkerArguments),
     /// Submit a sweep to a server.
-    Submit(submit::SubmitArguments),
+    Submit(Box<submit::SubmitArguments>),
     /// Watch a sweep until it is complete.
     Watch(watch::WatchArguments),
     /// List the newest sweeps.

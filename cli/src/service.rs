@@ -258,9 +258,12 @@ fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
         .arg(&arguments.data.data)
         .arg("--lease-seconds")
         .arg(arguments.lease_seconds.to_string())
-        .args(arguments.point_timeout.iter().flat_map(|time| {
-            ["--point-timeout".to_owned(), time.as_secs_f64().to_string()]
-        }))
+        .args(
+            arguments
+                .point_timeout
+                .iter()
+                .flat_map(|time| ["--point-timeout".to_owned(), time.as_secs_f64().to_string()]),
+        )
         .stdin(Stdio::null())
         // Ctrl-C reaches the whole group: the parent decides when its workers end.
         .process_group(0);

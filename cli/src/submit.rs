@@ -23,6 +23,19 @@ pub(crate) struct SubmitArguments {
     /// Mud densities \[kg/m3\]: `1200,1500` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
     mud_density: Option<Value>,
+    /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
+    /// `contact.stiffness=1e5:1e7:5:log`; with the designs that draw, `from:to` or `from:to:log`.
+    #[arg(long, value_name = "PATH=VALUES", value_parser = parse_named_axis)]
+    axis: Vec<(String, Value)>,
+    /// How points are made from the axes.
+    #[arg(long, default_value = "grid", value_parser = ["grid", "zip", "latin_hypercube", "sobol"])]
+    design: String,
+    /// Number of points of a design that draws.
+    #[arg(long)]
+    samples: Option<u32>,
+    /// What such a design is drawn from.
+    #[arg(long)]
+    seed: Option<u64>,
     /// Change a field of the scenario, such as `duration=5` or `operation.rotation_speed_rpm=90`.
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
     set: Vec<(String, Value)>,
@@ -69,7 +82,15 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
             axes.insert(name.into(), axis.clone());
         }
     }
+    axes.extend(arguments.axis.iter().cloned());
     request.insert("axes".into(), Value::Object(axes));
+    request.insert("design".into(), json!(arguments.design));
+    if let Some(samples) = arguments.samples {
+        request.insert("samples".into(), json!(samples));
+    }
+    if let Some(seed) = arguments.seed {
+        request.insert("seed".into(), json!(seed));
+    }
     let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
     let set: Map<String, Value> = arguments.set.iter().cloned().chain(accuracy).collect();
     if !set.is_empty() {
@@ -111,20 +132,31 @@ fn warn(sweep: &Value) {
     }
 }
 
-/// `a,b,c` or `from:to:count`.
+/// `path=` and values as [`parse_axis`] reads them.
+fn parse_named_axis(text: &str) -> anyhow::Result<(String, Value)> {
+    let (path, values) = text.split_once('=').with_context(|| format!("write PATH=VALUES, got {text:?}"))?;
+    Ok((path.trim().to_owned(), parse_axis(values)?))
+}
+
+/// `a,b,c`, `from:to:count`, `from:to`, the latter two with `:log` for equal ratios.
 fn parse_axis(text: &str) -> anyhow::Result<Value> {
     let number = |text: &str| -> anyhow::Result<f64> {
         text.trim().parse().with_context(|| format!("{text:?} is not a number"))
     };
+    let (text, scale) = match text.strip_suffix(":log") {
+        Some(range) => (range, "log"),
+        None => (text, "linear"),
+    };
     let parts: Vec<&str> = text.split(':').collect();
     match parts[..] {
+        [from, to] => Ok(json!({ "from": number(from)?, "to": number(to)?, "scale": scale })),
         [list] => {
             let values: anyhow::Result<Vec<f64>> = list.split(',').map(number).collect();
             Ok(json!({ "values": values? }))
         }
         [from, to, count] => {
             let count: u32 = count.trim().parse().with_context(|| format!("{count:?} is not a count"))?;
-            Ok(json!({ "from": number(from)?, "to": number(to)?, "count": count }))
+            Ok(json!({ "from": number(from)?, "to": number(to)?, "count": count, "scale": scale }))
         }
         _ => bail!("write a list such as 0.01,0.04 or a range from:to:count, got {text:?}"),
     }

@@ -5,7 +5,9 @@ use drillsweep_api::{
     Expansion, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
     ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, compose, key_text,
 };
-use drillsweep_store::{NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState};
+use drillsweep_store::{
+    NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState,
+};
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::de::DeserializeOwned;

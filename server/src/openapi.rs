@@ -21,7 +21,7 @@ use crate::router;
     info(
         title = "drillsweep",
         version = "1",
-        description = "Sweeps over flow rate and mud density of a nonlinear drillstring simulation. \
+        description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),

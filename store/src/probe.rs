@@ -18,9 +18,13 @@ impl Store {
         let scratch = format!("probe {}", self.now_ms().await?);
         let key = blake3::hash(scratch.as_bytes());
         let mut tx = self.write().await?;
+        sqlx::query("INSERT INTO scenario (hash, text) VALUES (?1, '')")
+            .bind(key.as_bytes().as_slice())
+            .execute(&mut *tx)
+            .await?;
         sqlx::query(
-            "INSERT INTO work (key, physics_version, scenario, owner, state, priority, vtime, ready_at, created, changed)
-             VALUES (?1, ?2, '', '', 'queued', 0, 0, 0, 0, 0)",
+            "INSERT INTO work (key, physics_version, base, owner, state, priority, vtime, ready_at, created, changed)
+             VALUES (?1, ?2, ?1, '', 'queued', 0, 0, 0, 0, 0)",
         )
         .bind(key.as_bytes().as_slice())
         .bind(NO_PHYSICS)

@@ -32,6 +32,8 @@ pub struct Claim {
     pub lease: Lease,
     /// The scenario.
     pub scenario: ScenarioText,
+    /// Where an earlier attempt was suspended.
+    pub checkpoint: Option<BlobId>,
 }
 
 /// The right to write about one work item: void once another attempt has begun.
@@ -111,8 +113,9 @@ impl Store {
         physics_version: i64,
         lease_ms: i64,
     ) -> Result<Option<Claim>> {
+        type Row = (Vec<u8>, i64, String, String, Option<String>);
         // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
-        let rows: Vec<(Vec<u8>, i64, String, String)> = sqlx::query_as(concat!(
+        let rows: Vec<Row> = sqlx::query_as(concat!(
             "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
                     lease_owner = ?2, lease_until = ",
             now!(),
@@ -120,7 +123,7 @@ impl Store {
             now!(),
             " WHERE key = (SELECT key FROM work WHERE state = 'queued' AND physics_version = ?4
                            ORDER BY priority DESC, vtime, key LIMIT 1)
-              RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes"
+              RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes, checkpoint"
         ))
         .bind(self.clock_offset_ms)
         .bind(worker)
@@ -128,9 +131,12 @@ impl Store {
         .bind(physics_version)
         .fetch_all(executor)
         .await?;
-        let Some((key, attempt, base_json, changes_json)) = rows.into_iter().next() else { return Ok(None) };
+        let Some((key, attempt, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
+            return Ok(None);
+        };
         let lease = Lease { key: work_key(&key)?, attempt, worker: worker.to_owned() };
-        Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json } }))
+        let checkpoint = checkpoint.as_deref().map(str::parse).transpose()?;
+        Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json }, checkpoint }))
     }
 
     /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.
@@ -174,7 +180,7 @@ impl Store {
         let mut tx = self.write().await?;
         let key = lease.key.as_slice();
         let finished: Vec<i64> = sqlx::query_scalar(concat!(
-            "UPDATE work SET state = 'done', progress = 1, error = NULL, lease_until = NULL, changed = ",
+            "UPDATE work SET state = 'done', progress = 1, error = NULL, checkpoint = NULL, lease_until = NULL, changed = ",
             now!(),
             holds_lease!(),
             " RETURNING changed"
@@ -236,6 +242,44 @@ impl Store {
             ),
         };
         self.leave(query, lease, Some(error_json)).await
+    }
+
+    /// Keeps the blob from which the work can go on, written before; the next claim brings it. False if the lease was
+    /// lost.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn keep_checkpoint(&self, lease: &Lease, blob: BlobId) -> Result<bool> {
+        let query = concat!("UPDATE work SET checkpoint = ?5", holds_lease!());
+        self.leave(query, lease, Some(&blob.to_string())).await
+    }
+
+    /// Gives work back after it brought its worker down in a way that the worker survived, such as a panic: that counts
+    /// as a death of the worker, and after three the work is given up. False if the lease was lost.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn crashed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
+        let changed = sqlx::query(concat!(
+            "UPDATE work SET
+                 crash_count = crash_count + 1, progress = 0, lease_until = NULL, error = ?5, changed = ",
+            now!(),
+            ",
+                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
+                              WHEN crash_count + 1 >= ?6 THEN 'dead'
+                              ELSE 'queued' END",
+            holds_lease!()
+        ))
+        .bind(self.clock_offset_ms)
+        .bind(lease.key.as_slice())
+        .bind(lease.attempt)
+        .bind(&lease.worker)
+        .bind(error_json)
+        .bind(CRASH_LIMIT)
+        .execute(&self.pool)
+        .await?
+        .rows_affected();
+        Ok(changed == 1)
     }
 
     /// Gives work back untried, as when a worker is told to stop. Work that nobody wants any more ends cancelled.

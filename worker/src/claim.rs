@@ -307,11 +307,10 @@ async fn halted(
     let cancelled = r#"{"class":"cancelled","reason":"cancelled"}"#;
     match (reason, halt) {
         (StopReason::LeaseLost, _) => Ok(false),
-        (StopReason::Cancelled, _) => {
-            store.finish_failed(lease, FailureClass::Cancelled, cancelled).await
-        }
+        (StopReason::Cancelled, _) => store.finish_failed(lease, FailureClass::Cancelled, cancelled).await,
         (StopReason::None, Halt::Timeout(time)) => {
-            let reason = format!("it took longer than the {} s that this worker gives a point", time.as_secs_f64());
+            let reason =
+                format!("it took longer than the {} s that this worker gives a point", time.as_secs_f64());
             let json = json!({ "class": "timeout", "reason": reason });
             if let Some(blob) = write_checkpoint(store, checkpoint).await {
                 store.keep_checkpoint(lease, blob).await?;
@@ -334,7 +333,9 @@ async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Opt
         .blobs()
         .put(bytes)
         .await
-        .inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be written; the point will begin again"))
+        .inspect_err(
+            |error| tracing::warn!(%error, "a checkpoint cannot be written; the point will begin again"),
+        )
         .ok()
 }
 

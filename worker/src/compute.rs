@@ -229,8 +229,10 @@ pub fn compute_from(
     let mut is_resumed = false;
     let records = if runs {
         let resumed = checkpoint.and_then(|checkpoint| {
-            Transient::resume(&model, &equilibrium, checkpoint)
-                .inspect_err(|error| tracing::warn!(%error, "a checkpoint is of no use; the point begins again"))
+            Transient::resume(&model, &equilibrium, &checkpoint)
+                .inspect_err(
+                    |error| tracing::warn!(%error, "a checkpoint is of no use; the point begins again"),
+                )
                 .ok()
         });
         is_resumed = resumed.is_some();

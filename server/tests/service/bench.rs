@@ -101,7 +101,8 @@ impl Bench {
     /// Claims the next point and ends it with the tables of [`tables`].
     pub(crate) async fn succeed(&self) {
         let claim = self.claim().await;
-        let scenario = drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap();
+        let scenario =
+            drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap();
         let mut artifacts = Vec::new();
         for (name, table) in tables() {
             let parquet = encode_parquet(&table).unwrap();
@@ -113,7 +114,8 @@ impl Bench {
                 blob: self.store.blobs().put(parquet).await.unwrap(),
             });
         }
-        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": 1e-9});
+        let summary =
+            json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": 1e-9});
         let provenance = json!({"version": "bench"});
         let is_taken = self
             .store

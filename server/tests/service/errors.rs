@@ -108,7 +108,7 @@ async fn a_failure_of_the_store_tells_the_client_nothing_of_it() {
 async fn the_service_describes_itself() {
     let bench = Bench::new().await;
     assert_eq!(bench.get("/readyz").await.json(), json!({"status": "ok"}));
-    assert_eq!(bench.get("/v1/limits").await.json()["points_per_sweep"], 10_000);
+    assert_eq!(bench.get("/v1/limits").await.json()["points_per_sweep"], 100_000);
     assert_eq!(bench.get("/v1/workers").await.json(), json!({"workers": []}));
     bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})).await;
     bench.claim().await;

@@ -153,7 +153,8 @@ mod tests {
             .and_then(|scenario| scenario.with("accuracy.spectral_radius", json!(0.8)))
             .and_then(|scenario| scenario.with("contact.reference_length", json!(0.5)))
             .and_then(|scenario| {
-                let study = json!({"methods": [{"integrator": "rk4", "steps": [5e-5]}], "mesh_factors": [2.0]});
+                let study =
+                    json!({"methods": [{"integrator": "rk4", "steps": [5e-5]}], "mesh_factors": [2.0]});
                 scenario.with("cost_study", study)
             })
             .unwrap()
@@ -198,8 +199,18 @@ mod tests {
     fn what_is_no_number_is_not_found() {
         let mut scenario = preset("paper-200m").unwrap();
         for path in [
-            "", "mud", "name", "mud.regime", "mud.density.x", "string.sections", "string.sections[8].length",
-            "string.sections[1].count", "accuracy.step", "contact.reference_length", "mud.densit", "mud[0]",
+            "",
+            "mud",
+            "name",
+            "mud.regime",
+            "mud.density.x",
+            "string.sections",
+            "string.sections[8].length",
+            "string.sections[1].count",
+            "accuracy.step",
+            "contact.reference_length",
+            "mud.densit",
+            "mud[0]",
         ] {
             assert_eq!(scenario.number_mut(path), None, "{path}");
         }

@@ -1,8 +1,8 @@
 //! A store in a temporary directory.
 
 use drillsweep_store::{
-    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig, SubmitOutcome,
-    SweepRecord, WorkKey, WorkState,
+    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig,
+    SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 use tempfile::TempDir;
 

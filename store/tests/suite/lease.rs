@@ -39,6 +39,9 @@ async fn a_late_writer_changes_nothing() {
             assert!(!store.finish_failed(&late.lease, class, "{}").await.unwrap());
         }
         assert!(!store.release(&late.lease).await.unwrap());
+        assert!(!store.crashed(&late.lease, "{}").await.unwrap());
+        let blob = store.blobs().put(b"late".to_vec()).await.unwrap();
+        assert!(!store.keep_checkpoint(&late.lease, blob).await.unwrap());
         assert!(!store.retry_later(&late.lease, "{}").await.unwrap());
         assert_eq!(store.sweep_version("s").await.unwrap(), version);
     };
@@ -157,6 +160,50 @@ async fn an_infrastructure_failure_waits_5_10_20_40_seconds_and_is_given_up_at_t
     assert_eq!(point.state, WorkState::Failed);
     assert_eq!(point.error_json.as_deref(), Some(r#"{"class":"infrastructure"}"#));
     assert!(sweep_record(&last, "s").await.finished.is_some());
+}
+
+#[tokio::test]
+async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_done() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let first = claim(&store, "first").await;
+    assert_eq!(first.checkpoint, None);
+    let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
+    assert!(store.keep_checkpoint(&first.lease, blob).await.unwrap());
+    assert!(store.release(&first.lease).await.unwrap());
+    assert_eq!(point_record(&store, "s", 1).await.attempts, 0);
+
+    // A worker that dies on the way does not lose it either.
+    let second = claim(&store, "second").await;
+    assert_eq!((second.checkpoint, second.lease.attempt), (Some(blob), 2));
+    let later = bench.after(LEASE_MS + 1).await;
+    let third = claim(&later, "third").await;
+    assert_eq!(third.checkpoint, Some(blob));
+    // Nor does one that gives the point up for having taken too long: a retry goes on from there.
+    assert!(later.finish_failed(&third.lease, FailureClass::Timeout, "{}").await.unwrap());
+    assert_eq!(later.retry_sweep("s").await.unwrap(), Some(1));
+    let fourth = claim(&later, "fourth").await;
+    assert_eq!(fourth.checkpoint, Some(blob));
+    assert!(finish(&later, &fourth).await);
+}
+
+#[tokio::test]
+async fn work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_not() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let error = r#"{"class":"crash","reason":"panicked"}"#;
+    let first = claim(&store, "survivor").await;
+    assert!(store.crashed(&first.lease, error).await.unwrap());
+    assert_eq!(states(&store, "s").await, [WorkState::Queued]);
+    claim(&store, "killed").await;
+    let later = bench.after(LEASE_MS + 1).await;
+    let third = claim(&later, "survivor").await;
+    assert!(later.crashed(&third.lease, error).await.unwrap());
+    let point = point_record(&later, "s", 1).await;
+    assert_eq!((point.state, point.error_json.as_deref()), (WorkState::Dead, Some(error)));
+    assert_eq!(claim_or_none(&later, "w").await, None);
 }
 
 #[tokio::test]

@@ -5,8 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState};
 
 use crate::bench::{
-    Bench, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
-    sweep_record,
+    Bench, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep, sweep_record,
 };
 
 #[tokio::test]

@@ -259,7 +259,7 @@ fn suspended_point_goes_on_elsewhere_to_the_same_bits() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
     let run = |server: &str| -> String {
-        let set = json!({ "duration": 6.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
+        let set = json!({ "duration": 30.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
         let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
         run["id"].as_str().unwrap().to_owned()
     };

@@ -8,6 +8,7 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::view::points;
 use drillsweep_store::{Artifact, BlobStore, Store};
+use futures::StreamExt;
 use serde::Deserialize;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
@@ -74,9 +75,11 @@ pub(crate) async fn export(
             let _ = sink.sender.blocking_send(Err(error));
         }
     });
-    let body = Body::from_stream(futures::stream::unfold(receiver, async |mut receiver| {
+    let chunks = futures::stream::unfold(receiver, async |mut receiver| {
         receiver.recv().await.map(|chunk| (chunk, receiver))
-    }));
+    });
+    // Compression polls a stream beyond its end.
+    let body = Body::from_stream(chunks.fuse());
     let name = format!("attachment; filename=\"sweep-{id}.zip\"");
     let headers = [(header::CONTENT_TYPE, "application/zip".to_owned()), (header::CONTENT_DISPOSITION, name)];
     Ok((headers, body).into_response())

@@ -57,6 +57,14 @@ pub struct Garbage {
     pub unfinished_bytes: u64,
 }
 
+/// Blobs that rows name: of artifacts that have not expired, and of checkpoints that runs go on from.
+macro_rules! blobs_in_use {
+    () => {
+        "SELECT blob FROM artifact WHERE expired IS NULL \
+         UNION SELECT checkpoint AS blob FROM work WHERE checkpoint IS NOT NULL"
+    };
+}
+
 impl Store {
     /// Deletes what need not be kept, and tells what it was; a dry run only tells.
     ///
@@ -73,12 +81,11 @@ impl Store {
         garbage.results = delete_unwanted_work(&mut tx).await?;
         garbage.artifacts = expire_artifacts(&mut tx, policy, now).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
-        let named: HashSet<String> =
-            sqlx::query_scalar("SELECT DISTINCT blob FROM artifact WHERE expired IS NULL")
-                .fetch_all(&mut *tx)
-                .await?
-                .into_iter()
-                .collect();
+        let named: HashSet<String> = sqlx::query_scalar(concat!("SELECT blob FROM (", blobs_in_use!(), ")"))
+            .fetch_all(&mut *tx)
+            .await?
+            .into_iter()
+            .collect();
         if is_dry_run {
             tx.rollback().await?;
         } else {
@@ -140,9 +147,11 @@ impl Store {
         let mut tx = self.write().await?;
         let mut deleted = Vec::new();
         for object in objects {
-            let is_named: i64 = sqlx::query_scalar(
-                "SELECT EXISTS (SELECT 1 FROM artifact WHERE blob = ?1 AND expired IS NULL)",
-            )
+            let is_named: i64 = sqlx::query_scalar(concat!(
+                "SELECT EXISTS (SELECT 1 FROM (",
+                blobs_in_use!(),
+                ") WHERE blob = ?1)"
+            ))
             .bind(object.blob())
             .fetch_one(&mut *tx)
             .await?;

@@ -289,7 +289,8 @@ pub fn compute_from(
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    let computed = Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance };
+    let computed =
+        Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance };
     Ok(Computation::Finished(Box::new(computed)))
 }
 

@@ -100,10 +100,10 @@ numbers!(ContactLaw: stiffness, damping, stiffness_sharpness, damping_sharpness,
     friction_reference_speed, reference_length; without adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
 numbers!(Mesh: drillpipe, tool_joint, collar, stabilizer, bit);
-numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window);
+numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window; without stability);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
-numbers!(CostStudy: duration, methods, mesh_factors);
+numbers!(CostStudy: duration, methods, mesh_factors; without effects);
 numbers!(MethodSteps: steps; without integrator);
 
 impl Numbers for NodeChoice {

@@ -68,6 +68,9 @@ def test_files_hold_what_the_arrays_hold(sweep: Sweep, tmp_path: Path) -> None:
     point = sweep.point(1)
     frame = polars.read_parquet(point.save("orbit", tmp_path / "orbit.parquet", node=49))
     np.testing.assert_array_equal(frame["u"].to_numpy(), point.orbit(node=49)["u"])
+    arrays = np.load(point.save("orbit", tmp_path / "orbit.npz", node=49))
+    np.testing.assert_array_equal(arrays["u"], point.orbit(node=49)["u"])
+    assert "<svg" in point.save("orbit", tmp_path / "orbit.svg", node=49).read_text()
     with pytest.raises(InvalidRequest, match="format"):
         point.save("orbit", tmp_path / "orbit.xlsx", node=49)
 

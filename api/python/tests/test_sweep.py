@@ -6,7 +6,9 @@ import io
 import re
 import socket
 import threading
+import zipfile
 from pathlib import Path
+from typing import Any
 
 import pandas
 import polars
@@ -118,6 +120,31 @@ def test_a_plan_stores_nothing(client: Client, sweep: Sweep) -> None:
     assert (plan.total, plan.known) == (2, 1)
     assert plan.points[0].key == sweep.point(1).key
     assert len(list(client.sweeps())) == before
+
+
+def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> None:
+    axes = {"flow_rate": [0.015, 0.025], "mud_density": [1250, 1350]}
+    succeeded: list[int] = []
+    last: dict[str, Any] = {}
+    for name, data in client.submit("paper-200m", set=SHORT, axes=axes).events():
+        if name == "point" and data["state"] == "succeeded":
+            succeeded += data["ordinals"]
+        elif name == "sweep":
+            last = data
+    assert sorted(succeeded) == [1, 2, 3, 4]
+    assert last["state"] == "completed"
+
+
+def test_whole_sweep_comes_as_one_archive(client: Client, sweep: Sweep, tmp_path: Path) -> None:
+    with zipfile.ZipFile(sweep.export(tmp_path / "sweep.zip", tables=["profile", "history"])) as archive:
+        assert archive.testzip() is None
+        table = pandas.read_csv(archive.open("table.csv"))
+        assert table["orbit_radius_rms_49"].tolist() == sweep.table()["orbit_radius_rms_49"].tolist()
+        history = polars.read_parquet(archive.open("points/1/history.parquet").read())
+    assert history["u_49"].to_list() == pytest.approx(sweep.point(1).history(node=49).columns["u_49"])
+    with pytest.raises(NotFound):
+        client.download("/v1/sweeps/none/export", tmp_path / "none.zip", {})
+    assert list(tmp_path.iterdir()) == [tmp_path / "sweep.zip"]
 
 
 def test_same_request_under_one_key_is_one_sweep(client: Client) -> None:

@@ -122,6 +122,23 @@ def test_a_plan_stores_nothing(client: Client, sweep: Sweep) -> None:
     assert len(list(client.sweeps())) == before
 
 
+def test_designs_make_the_points_that_they_should(client: Client) -> None:
+    rotation = "operation.rotation_speed_rpm"
+    zipped = client.plan("paper-200m", design="zip", axes={"flow_rate": [0.01, 0.02], rotation: [90, 120]})
+    assert [point.parameters[rotation] for point in zipped.points] == [90, 120]
+    frame = pandas.DataFrame({"flow_rate": [0.01, 0.05], "mud_density": [1200, 1900]})
+    listed = client.plan("paper-200m", points=frame.to_dict("records"))
+    assert [point.parameters["mud_density"] for point in listed.points] == [1200, 1900]
+    axes = {"flow_rate": Range(0.01, 0.05), "mud_density": Range(1000, 2000)}
+    drawn = client.plan("paper-200m", design="latin_hypercube", samples=8, seed=3, axes=axes)
+    # One point in each eighth of every axis: what makes it a Latin hypercube.
+    for name, start, width in (("flow_rate", 0.01, 0.04), ("mud_density", 1000.0, 1000.0)):
+        parts = sorted(int(8 * (point.parameters[name] - start) / width) for point in drawn.points)
+        assert parts == list(range(8))
+    sobol = client.plan("paper-200m", design="sobol", samples=8, seed=3, axes=axes)
+    assert sobol.points == client.plan("paper-200m", design="sobol", samples=8, seed=3, axes=axes).points
+
+
 def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> None:
     axes = {"flow_rate": [0.015, 0.025], "mud_density": [1250, 1350]}
     succeeded: list[int] = []

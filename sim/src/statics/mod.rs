@@ -144,6 +144,21 @@ impl Equilibrium {
         unreachable!("the last pass returns")
     }
 
+    /// The string on the centre line without any load or flow: a stand-in where the equilibrium is not known yet.
+    pub(crate) fn unloaded(model: &Model) -> Self {
+        let (nodes, elements) = (model.node_count(), model.elements.len());
+        Self {
+            displacement: vec![[0.0; 6]; nodes],
+            tension: vec![0.0; elements],
+            torque: vec![0.0; elements],
+            normal_force: vec![0.0; nodes],
+            flows: Vec::new(),
+            drag: Vec::new(),
+            pressures: None,
+            effort: StaticsEffort { newton_iterations: 0, hydraulic_passes: 0, residual: 0.0 },
+        }
+    }
+
     fn assemble(
         model: &Model,
         displacement: NodalVector,

@@ -583,7 +583,7 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     }
     let recording = &model.scenario.recording;
     let samples = (model.scenario.duration * recording.rate_hz).round() as u64;
-    let subdivisions = stability::expected_subdivisions(model, stepping.integrator, stepping.step);
+    let subdivisions = stability::expected_subdivisions(model, &stepping);
     Some(samples * steps_per_interval(1.0 / recording.rate_hz, stepping.step) * u64::from(subdivisions))
 }
 

@@ -8,6 +8,7 @@ use crate::contact::ContactParameters;
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{DynamicSystem, Model, add_element_vector};
 use crate::scenario::{Integrator, TimeStepping};
+use crate::statics::Equilibrium;
 use crate::string::MeshNode;
 
 /// End of RK4's stability interval on the imaginary axis, 2 sqrt 2, with a margin for damping.
@@ -72,18 +73,13 @@ fn sweep_number(model: &Model, step: f64) -> f64 {
     (step * contact.damping + step * step * contact.stiffness) * largest_share_by_mass(model)
 }
 
-/// What the lumped rule alone asks for, which needs no equilibrium: what is expected of a run before it is made.
-pub(super) fn expected_subdivisions(model: &Model, integrator: Integrator, step: f64) -> u32 {
-    let fraction = match integrator {
-        Integrator::GeneralizedAlpha => 1.0,
-        Integrator::Esdirk4 => esdirk::DIAGONAL,
-        Integrator::Rk4 => return 1,
-    };
-    let mut parts = 1;
-    while parts < MOST_SUBDIVISIONS && sweep_number(model, fraction * step / f64::from(parts)) >= 1.0 {
-        parts *= 2;
-    }
-    parts
+/// What is expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction, which hardly
+/// matter to how contact pushes single nodes unless the string all but stands still.
+pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u32 {
+    let unloaded = Equilibrium::unloaded(model);
+    let system = model.dynamic_system(&unloaded);
+    // What fails here fails at the start of the run, which says why.
+    subdivisions(model, &system, &unloaded.normal_force, stepping).unwrap_or(MOST_SUBDIVISIONS)
 }
 
 /// The sweep factor below which two sweeps are stable, from the amplification of one node in the wall by either method: 1 for

@@ -57,7 +57,7 @@ pub struct MachineSpeed {
     /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they stand still, and RK4: for each
     /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
-    /// By what a node's step is dearer on a mesh of [`LARGE_MESH`] times as many nodes, which no longer fits the inner caches.
+    /// By what a node's step is dearer on a mesh of five times as many nodes, which no longer fits the inner caches.
     pub large_mesh_factor: f64,
 }
 

@@ -1,9 +1,9 @@
 //! Opening the store.
 
 use std::ffi::OsString;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
@@ -124,14 +124,30 @@ impl Store {
     }
 }
 
+/// How long others may take to open a database before it is opened beside them; it takes them some milliseconds.
+const OPENING_PATIENCE: Duration = Duration::from_secs(10);
+
+/// How often it is looked whether they have.
+const OPENING_POLL: Duration = Duration::from_millis(10);
+
 /// Waits for whoever else is opening the same database. Turning a new file to write-ahead logging fails at once with
 /// "database is locked" while another process does the same, whatever the busy timeout is, and sqlx's migrations take
-/// no lock on SQLite. The lock ends with the file's handle, and with the process.
+/// no lock on SQLite. The lock ends with the file's handle, and with the process; one that was stopped while it held the
+/// lock must not keep all others out, so these open without it in the end.
 async fn lock_opening(database: &Path) -> Result<File> {
     let mut path = OsString::from(database);
     path.push(".lock");
     let failed = |source| StoreError::Directory { path: path.display().to_string(), source };
     let file = File::create(&path).map_err(failed)?;
-    let locking = tokio::task::spawn_blocking(move || file.lock().map(|()| file));
-    locking.await.map_err(std::io::Error::other).flatten().map_err(failed)
+    let deadline = Instant::now() + OPENING_PATIENCE;
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(file),
+            Err(TryLockError::WouldBlock) if Instant::now() < deadline => {
+                tokio::time::sleep(OPENING_POLL).await;
+            }
+            Err(TryLockError::WouldBlock) => return Ok(file),
+            Err(TryLockError::Error(error)) => return Err(failed(error)),
+        }
+    }
 }

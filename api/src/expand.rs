@@ -1,5 +1,7 @@
 //! From a request to the points to compute, or to everything that is wrong with it.
 
+use std::collections::BTreeSet;
+
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::scenario::{PRESETS, Problem, Problems, Scenario, ScenarioRequest, Warning};
 use drillsweep_sim::transient::step_problem;
@@ -9,7 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::axis::Axis;
 use crate::design::{SOBOL_AXES, Sobol, latin_hypercube};
 use crate::problem::{FieldProblem, ProblemDetails, pointer_token};
-use crate::request::{AxisName, Design, SweepRequest};
+use crate::request::{AppendRequest, AxisName, Design, SweepPatch, SweepRequest};
 use crate::service::LIMITS;
 
 /// Problems of one request that are reported at most: a hundred thousand points may each have their own.
@@ -124,6 +126,21 @@ pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> 
         Some(expansion) if problems.0.is_empty() => Ok(expansion),
         _ => Err(Box::new(ProblemDetails::invalid_request(problems.into_vec()))),
     }
+}
+
+/// The points that are to be added to the sweep that `original` asked for, as a sweep of their own. Their parameters have the
+/// names that they have in that sweep.
+///
+/// # Errors
+/// As [`expand`]; also if their parameters are not those of the sweep.
+pub fn expand_added(added: AppendRequest, original: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
+    let mut expansion = expand(&added.of(original)?)?;
+    for name in &mut expansion.axes {
+        if let Some(known) = original.names().find(|known| known.scenario_path() == name.scenario_path()) {
+            *name = known.clone();
+        }
+    }
+    Ok(expansion)
 }
 
 /// The content hash of a scenario: BLAKE3 over a domain tag, the physics version and the scenario's
@@ -478,20 +495,55 @@ fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Scenario> {
     None
 }
 
-fn check_members(request: &SweepRequest, problems: &mut Found) {
-    let named =
-        [("/name", &request.name, LIMITS.name_length), ("/owner", &request.owner, LIMITS.owner_length)];
-    for (pointer, text, limit) in named {
-        let Some(text) = text else { continue };
-        if text.is_empty() || text.chars().count() > limit {
-            let detail = format!("must have 1 to {limit} characters");
-            problems.push(pointer, Some(text.as_str().into()), detail);
-        }
+/// Checks the members of a change of a sweep.
+///
+/// # Errors
+/// Everything that is wrong with them, with JSON Pointers into the body.
+pub fn check_patch(patch: &SweepPatch) -> Result<(), Box<ProblemDetails>> {
+    let mut problems = Found::default();
+    let name = patch.name.as_ref().and_then(Option::as_ref);
+    check_text("/name", name, LIMITS.name_length, &mut problems);
+    if let Some(priority) = patch.priority {
+        check_priority(priority, &mut problems);
     }
+    if let Some(tags) = &patch.tags {
+        check_tags(tags, &mut problems);
+    }
+    match problems.0.is_empty() {
+        true => Ok(()),
+        false => Err(Box::new(ProblemDetails::invalid_request(problems.into_vec()))),
+    }
+}
+
+fn check_members(request: &SweepRequest, problems: &mut Found) {
+    check_text("/name", request.name.as_ref(), LIMITS.name_length, problems);
+    check_text("/owner", request.owner.as_ref(), LIMITS.owner_length, problems);
+    check_priority(request.priority, problems);
+    check_tags(&request.tags, problems);
+}
+
+fn check_text(pointer: &str, text: Option<&String>, limit: usize, problems: &mut Found) {
+    if let Some(text) = text.filter(|text| text.is_empty() || text.chars().count() > limit) {
+        let detail = format!("must have 1 to {limit} characters");
+        problems.push(pointer, Some(text.as_str().into()), detail);
+    }
+}
+
+fn check_priority(priority: i32, problems: &mut Found) {
     let (lowest, highest) = (LIMITS.lowest_priority, LIMITS.highest_priority);
-    if !(lowest..=highest).contains(&request.priority) {
+    if !(lowest..=highest).contains(&priority) {
         let detail = format!("must be between {lowest} and {highest}");
-        problems.push("/priority", Some(request.priority.into()), detail);
+        problems.push("/priority", Some(priority.into()), detail);
+    }
+}
+
+fn check_tags(tags: &BTreeSet<String>, problems: &mut Found) {
+    let (most, length) = (LIMITS.tags_per_sweep, LIMITS.tag_length);
+    if tags.len() > most {
+        problems.push("/tags", Some(tags.len().into()), format!("a sweep has at most {most} tags"));
+    }
+    for (index, tag) in tags.iter().enumerate() {
+        check_text(&format!("/tags/{index}"), Some(tag), length, problems);
     }
 }
 

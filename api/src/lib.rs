@@ -28,14 +28,14 @@ pub mod view;
 pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint};
 pub use event::PointEvent;
-pub use expand::{Expansion, PointKey, SweepPoint, compose, expand, key_text};
+pub use expand::{Expansion, PointKey, SweepPoint, check_patch, compose, expand, expand_added, key_text};
 pub use point::{
     ArtifactEntry, ArtifactList, FailureClass, PointDetail, PointError, PointLinks, PointList, PointRow,
     PointState, SelectedPointList,
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
-pub use request::{AxisName, Design, RunRequest, SweepRequest};
+pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
     Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
 };

@@ -55,7 +55,7 @@ pub struct PointRow {
     pub progress: f64,
     /// How often a worker has started it.
     pub attempts: u64,
-    /// Why it failed.
+    /// Why it failed; of a point that has succeeded, why its last attempt to be computed anew failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<PointError>,
     /// Where to read more.

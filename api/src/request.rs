@@ -1,14 +1,16 @@
 //! What a client asks for: a sweep, or a single run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use drillsweep_sim::scenario::Scenario;
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
+use jiff::Timestamp;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
 use crate::axis::Axis;
+use crate::problem::{FieldProblem, ProblemDetails};
 
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///
@@ -24,6 +26,10 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 100)]
     pub owner: Option<String>,
+    /// Words to find it by.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    #[schema(max_items = 20, example = json!(["campaign-7"]))]
+    pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "paper-200m")]
@@ -81,6 +87,10 @@ pub struct RunRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 100)]
     pub owner: Option<String>,
+    /// Words to find it by.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    #[schema(max_items = 20, example = json!(["campaign-7"]))]
+    pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "paper-200m")]
@@ -101,9 +111,107 @@ pub struct RunRequest {
 impl From<RunRequest> for SweepRequest {
     /// The sweep of one point that a run is.
     fn from(run: RunRequest) -> Self {
-        let RunRequest { name, owner, preset, scenario, set, priority } = run;
-        SweepRequest { name, owner, preset, scenario, set, priority, ..SweepRequest::default() }
+        let RunRequest { name, owner, tags, preset, scenario, set, priority } = run;
+        SweepRequest { name, owner, tags, preset, scenario, set, priority, ..SweepRequest::default() }
     }
+}
+
+/// Points to add to a sweep: of its scenario, over its own parameters, by any design.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AppendRequest {
+    /// How the points are made from the axes.
+    #[serde(default)]
+    pub design: Design,
+    /// The sweep's parameters with new values.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))]
+    pub axes: IndexMap<AxisName, Axis>,
+    /// The points of the design `list`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!([]))]
+    pub points: Vec<IndexMap<AxisName, f64>>,
+    /// Number of points of the designs `latin_hypercube` and `sobol`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u32>,
+    /// What these designs are drawn from; 0 unless said otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Points at the start of the Sobol sequence to pass over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skip: Option<u32>,
+}
+
+impl AppendRequest {
+    /// The request for the added points alone, as a sweep of their own, of the sweep that `original` asked for.
+    ///
+    /// # Errors
+    /// When the parameters are not those of the sweep.
+    pub(crate) fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
+        let AppendRequest { design, axes, points, samples, seed, skip } = self;
+        let request = SweepRequest { design, axes, points, samples, seed, skip, ..original.clone() };
+        let (added, own): (BTreeSet<_>, BTreeSet<_>) = (request.parameters(), original.parameters());
+        if added == own {
+            return Ok(request);
+        }
+        let names = |of: &BTreeSet<&str>| of.iter().copied().collect::<Vec<_>>().join(", ");
+        let detail = match own.is_empty() {
+            true => "the sweep has no parameters, and so one point only".to_owned(),
+            false => format!("must be the sweep's parameters: {}", names(&own)),
+        };
+        let pointer = if request.design == Design::List { "/points" } else { "/axes" };
+        let error = FieldProblem {
+            pointer: Some(pointer.to_owned()),
+            parameter: None,
+            got: Some(names(&added).into()),
+            detail,
+        };
+        Err(Box::new(ProblemDetails::invalid_request(vec![error])))
+    }
+}
+
+impl SweepRequest {
+    /// Names of the swept parameters, those of listed points again with each.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &AxisName> {
+        self.axes.keys().chain(self.points.iter().flat_map(IndexMap::keys))
+    }
+
+    /// Paths of the swept parameters.
+    fn parameters(&self) -> BTreeSet<&str> {
+        self.names().map(AxisName::scenario_path).collect()
+    }
+}
+
+/// What is changed of a sweep; what is absent stays.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepPatch {
+    /// A name for people; `null` takes it away.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(value_type = Option<String>, max_length = 200)]
+    pub name: Option<Option<String>>,
+    /// Higher goes first among the sweeps of one owner.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = -10, maximum = 10)]
+    pub priority: Option<i32>,
+    /// Words to find it by, in place of those that it has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_items = 20)]
+    pub tags: Option<BTreeSet<String>>,
+    /// Whether the sweep, and all that belongs to it, is kept whatever its age.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pinned: Option<bool>,
+    /// When the sweep is to be deleted, once all its points are final and unless it is pinned; `null` means never.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(value_type = Option<Timestamp>)]
+    pub expires: Option<Option<Timestamp>>,
+}
+
+/// A member that is there, be it `null`.
+fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<Option<T>>, D::Error> {
+    Option::deserialize(deserializer).map(Some)
 }
 
 /// How points are made from the axes.

@@ -24,6 +24,10 @@ pub struct Limits {
     pub name_length: usize,
     /// Characters in an owner's name.
     pub owner_length: usize,
+    /// Tags of a sweep.
+    pub tags_per_sweep: usize,
+    /// Characters in a tag.
+    pub tag_length: usize,
     /// Requests that an owner may make a second, over longer times.
     pub requests_per_second: u32,
     /// Requests that an owner may make at once after a rest.
@@ -42,6 +46,8 @@ pub const LIMITS: Limits = Limits {
     highest_priority: 10,
     name_length: 200,
     owner_length: 100,
+    tags_per_sweep: 20,
+    tag_length: 100,
     requests_per_second: 200,
     request_burst: 1_000,
     open_points_per_owner: 500_000,

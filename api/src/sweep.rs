@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::problem::FieldProblem;
-use crate::request::SweepRequest;
+use crate::request::{AppendRequest, SweepRequest};
 
 /// A sweep with its counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -17,6 +17,9 @@ pub struct Sweep {
     pub name: Option<String>,
     /// Whose share of the workers it counts against.
     pub owner: String,
+    /// Words to find it by.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
     /// Where it stands as a whole.
     pub state: SweepState,
     /// Points by state.
@@ -30,12 +33,21 @@ pub struct Sweep {
     /// When its last point became final.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished: Option<Timestamp>,
+    /// Whether it, and all that belongs to it, is kept whatever its age.
+    #[serde(default)]
+    pub pinned: bool,
+    /// When it is to be deleted, once all its points are final and unless it is pinned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expires: Option<Timestamp>,
     /// What can be simulated but is probably not meant; in the answer to a submission only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
     /// What was asked for; left out of lists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,
+    /// What was asked for later, the points of each after those before; left out of lists.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub appended: Vec<AppendRequest>,
     /// Where to read more.
     pub links: SweepLinks,
 }
@@ -46,6 +58,8 @@ pub struct Sweep {
 pub enum SweepState {
     /// Some points are not final yet.
     Running,
+    /// Some points are not final yet, and those that wait are not handed out.
+    Paused,
     /// Every point is final, succeeded or failed; `counts` says how many of each.
     Completed,
     /// It was cancelled.
@@ -57,6 +71,7 @@ impl SweepState {
     pub fn as_str(self) -> &'static str {
         match self {
             SweepState::Running => "running",
+            SweepState::Paused => "paused",
             SweepState::Completed => "completed",
             SweepState::Cancelled => "cancelled",
         }
@@ -98,6 +113,10 @@ pub struct SweepLinks {
     pub cancel: String,
     /// Retries its failed and cancelled points (POST).
     pub retry: String,
+    /// Hands out no more of its points (POST).
+    pub pause: String,
+    /// Hands them out again (POST).
+    pub resume: String,
 }
 
 impl SweepLinks {
@@ -111,6 +130,8 @@ impl SweepLinks {
             export: format!("{this}/export"),
             cancel: format!("{this}/cancel"),
             retry: format!("{this}/retry"),
+            pause: format!("{this}/pause"),
+            resume: format!("{this}/resume"),
             this,
         }
     }

@@ -31,8 +31,8 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
         let Some(expired) = artifact.expired else { return Ok(artifact) };
         let expired = convert::timestamp(expired)?;
         let detail = format!(
-            "the table {name} reached its age and was given up at {expired}; the summary is kept, and a scenario that \
-             differs in anything brings a new run"
+            "the table {name} reached its age and was given up at {expired}; the summary is kept, and a sweep submitted with \
+             ?cache=refresh computes the point anew"
         );
         return Err(Error::new(ProblemKind::Expired, detail));
     }
@@ -41,15 +41,15 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     Err(Error::new(ProblemKind::NoSuchTable, detail))
 }
 
-/// The key of a point that has a result.
+/// The key of a point that has a result, be it that it is computed anew just now.
 pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
     let Some(point) = store.point(sweep, n.into()).await? else {
         return Err(convert::no_such_point(store, sweep, n).await?);
     };
-    let state = convert::point_state(point.state);
-    if state == PointState::Succeeded {
+    if point.summary_json.is_some() {
         return Ok(point.work_key);
     }
+    let state = convert::point_state(point.state);
     let detail = match state {
         PointState::Queued | PointState::Running => {
             format!("point {n} is {state}: its result is not there yet")

@@ -6,7 +6,7 @@ use drillsweep_api::{
     ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, compose, key_text,
 };
 use drillsweep_store::{
-    NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState,
+    CachePolicy, NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState,
 };
 use indexmap::IndexMap;
 use jiff::Timestamp;
@@ -22,8 +22,26 @@ const DEFAULT_OWNER: &str = "default";
 pub(crate) fn new_sweep(
     request: &SweepRequest,
     expansion: &Expansion,
+    cache: CachePolicy,
     idempotency_key: Option<(String, [u8; 32])>,
 ) -> Result<NewSweep> {
+    Ok(NewSweep {
+        id: uuid::Uuid::now_v7().to_string(),
+        name: request.name.clone(),
+        owner: request.owner.clone().unwrap_or_else(|| DEFAULT_OWNER.to_owned()),
+        request_json: write(request)?,
+        priority: request.priority.into(),
+        tags_json: write(&request.tags)?,
+        cache,
+        idempotency_key,
+        base_json: write(&expansion.base)?,
+        physics_version: drillsweep_api::PHYSICS_VERSION.into(),
+        points: new_points(expansion)?,
+    })
+}
+
+/// The points of an expansion as the store takes them.
+pub(crate) fn new_points(expansion: &Expansion) -> Result<Vec<NewPoint>> {
     let new_point = |point: &SweepPoint| {
         Ok(NewPoint {
             ordinal: point.ordinal.into(),
@@ -32,17 +50,7 @@ pub(crate) fn new_sweep(
             changes_json: write(&expansion.changes(point))?,
         })
     };
-    Ok(NewSweep {
-        id: uuid::Uuid::now_v7().to_string(),
-        name: request.name.clone(),
-        owner: request.owner.clone().unwrap_or_else(|| DEFAULT_OWNER.to_owned()),
-        request_json: write(request)?,
-        priority: request.priority.into(),
-        idempotency_key,
-        base_json: write(&expansion.base)?,
-        physics_version: drillsweep_api::PHYSICS_VERSION.into(),
-        points: expansion.points.iter().map(new_point).collect::<Result<_>>()?,
-    })
+    expansion.points.iter().map(new_point).collect()
 }
 
 /// A sweep as clients see it, without its request.
@@ -50,6 +58,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
     let state = match (record.is_cancelled, record.finished) {
         (true, _) => SweepState::Cancelled,
         (false, Some(_)) => SweepState::Completed,
+        (false, None) if record.is_paused => SweepState::Paused,
         (false, None) => SweepState::Running,
     };
     let counts = &record.counts;
@@ -74,8 +83,12 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         priority: record.priority,
         created: timestamp(record.created)?,
         finished: record.finished.map(timestamp).transpose()?,
+        pinned: record.is_pinned,
+        expires: record.expires.map(timestamp).transpose()?,
         warnings: Vec::new(),
         request: None,
+        tags: read(&record.tags_json)?,
+        appended: Vec::new(),
         links: SweepLinks::new(&record.id),
     })
 }
@@ -83,7 +96,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
 /// The same with the request that made it.
 pub(crate) fn sweep_with_request(record: &SweepRecord) -> Result<Sweep> {
     let request = Some(Box::new(read(&record.request_json)?));
-    Ok(Sweep { request, ..sweep(record)? })
+    Ok(Sweep { request, appended: read(&record.appended_json)?, ..sweep(record)? })
 }
 
 /// A point's row in a list.
@@ -194,7 +207,7 @@ fn ordinal(number: i64) -> Result<u32> {
     u32::try_from(number).map_err(|error| Error::internal(&error))
 }
 
-fn write(value: &impl serde::Serialize) -> Result<String> {
+pub(crate) fn write(value: &impl serde::Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(|error| Error::internal(&error))
 }
 

@@ -1,4 +1,4 @@
-//! Sweeps: submitting, following, stopping and retrying them, and their table.
+//! Sweeps: submitting, following, changing, extending, stopping and retrying them, and their table.
 
 use std::time::Duration;
 
@@ -10,10 +10,11 @@ use axum::{Extension, Json};
 use drillsweep_api::chart;
 use drillsweep_api::view::points;
 use drillsweep_api::{
-    DryRun, Expansion, LIMITS, PHYSICS_VERSION, RunRequest, Sweep, SweepList, SweepRequest, SweepState,
-    expand,
+    AppendRequest, DryRun, Expansion, LIMITS, PHYSICS_VERSION, ProblemKind, RunRequest, Sweep, SweepList,
+    SweepPatch, SweepRequest, SweepState, check_patch, expand, expand_added,
 };
-use drillsweep_store::{SubmitOutcome, SweepFilter};
+use drillsweep_store::{AppendOutcome, CachePolicy, SubmitOutcome, SweepChanges, SweepFilter};
+use jiff::Timestamp;
 use serde::Deserialize;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
@@ -43,6 +44,25 @@ pub(crate) struct SubmitQuery {
     /// True answers with the points that the request would become, and stores nothing.
     #[serde(default, deserialize_with = "value::truth")]
     dry_run: bool,
+    /// What becomes of points that were computed before, by anyone.
+    #[serde(default)]
+    #[param(inline)]
+    cache: Cache,
+}
+
+/// What becomes of points that were computed before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Cache {
+    /// Their results are taken; the others are computed.
+    #[default]
+    Reuse,
+    /// All points are computed anew, failed ones too. The old results stay until new ones take their place, for all sweeps
+    /// that have the points; these are running again meanwhile.
+    Refresh,
+    /// Their results are taken, and nothing is computed: a sweep with points that nobody has computed yet is refused (409),
+    /// and the answer names them.
+    Only,
 }
 
 /// Submit a sweep
@@ -74,7 +94,7 @@ pub(crate) async fn create(
     headers: HeaderMap,
     extract::Json { value: request, bytes }: extract::Json<SweepRequest>,
 ) -> Result<Response> {
-    submit(app, &caller, request, bytes, query.dry_run, &headers).await
+    submit(app, &caller, request, bytes, &query, &headers).await
 }
 
 /// Submit a single run
@@ -104,7 +124,7 @@ pub(crate) async fn create_run(
     headers: HeaderMap,
     extract::Json { value: request, bytes }: extract::Json<RunRequest>,
 ) -> Result<Response> {
-    submit(app, &caller, request.into(), bytes, query.dry_run, &headers).await
+    submit(app, &caller, request.into(), bytes, &query, &headers).await
 }
 
 async fn submit(
@@ -112,29 +132,50 @@ async fn submit(
     caller: &Caller,
     mut request: SweepRequest,
     body: Bytes,
-    is_dry_run: bool,
+    query: &SubmitQuery,
     headers: &HeaderMap,
 ) -> Result<Response> {
     request.owner = caller.submits_as(request.owner)?;
     let idempotency_key = idempotency_key(headers)?.map(|key| (key, *blake3::hash(&body).as_bytes()));
+    let cache = match query.cache {
+        Cache::Reuse => CachePolicy::Reuse,
+        Cache::Refresh => CachePolicy::Refresh,
+        Cache::Only => CachePolicy::Only,
+    };
     // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
     let (expansion, new_sweep) = blocking(move || {
         let expansion = expand(&request)?;
-        let new_sweep = convert::new_sweep(&request, &expansion, idempotency_key)?;
+        let new_sweep = convert::new_sweep(&request, &expansion, cache, idempotency_key)?;
         Ok((expansion, new_sweep))
     })
     .await?;
-    if is_dry_run {
+    if query.dry_run {
         return Ok(Json(plan(&app, expansion).await?).into_response());
     }
     limit::check_open_points(&app, &new_sweep.owner, new_sweep.points.len()).await?;
     let id = match app.store.submit_sweep(&new_sweep).await? {
         SubmitOutcome::Created => new_sweep.id,
         SubmitOutcome::Known(id) => id,
+        SubmitOutcome::NotComputed(missing) => return Err(not_computed(&missing, new_sweep.points.len())),
     };
     let sweep = Sweep { warnings: expansion.warnings, ..load(&app, &id).await? };
     let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
     Ok((StatusCode::CREATED, [(header::LOCATION, location)], Json(sweep)).into_response())
+}
+
+/// The problem that a sweep which computes nothing has points without an outcome.
+fn not_computed(missing: &[i64], total: usize) -> Error {
+    const NAMED: usize = 20;
+    let mut named: Vec<String> = missing.iter().take(NAMED).map(i64::to_string).collect();
+    if missing.len() > NAMED {
+        named.push("...".to_owned());
+    }
+    let detail = format!(
+        "{} of {total} points have not been computed, and cache=only computes none: {}",
+        missing.len(),
+        named.join(", ")
+    );
+    Error::new(ProblemKind::NoResult, detail)
 }
 
 async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
@@ -173,6 +214,8 @@ pub(crate) struct ListQuery {
     state: Option<SweepState>,
     /// Only sweeps with this text in their name, in whatever case.
     name: Option<String>,
+    /// Only sweeps with this tag.
+    tag: Option<String>,
 }
 
 /// The sweeps, newest first
@@ -191,6 +234,7 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
         owner: query.owner.as_deref(),
         state: query.state.map(SweepState::as_str),
         name: query.name.as_deref(),
+        tag: query.tag.as_deref(),
     };
     let mut records = app.store.sweeps(&filter, query.cursor.as_deref(), i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
@@ -312,6 +356,123 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
 pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.retry_sweep(&id).await?;
     Ok(Json(load(&app, &id).await?))
+}
+
+/// Pause a sweep
+///
+/// Its points are not handed out any more, but for those that another sweep wants; points under way go on to their end.
+/// Pausing again changes nothing.
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/pause",
+    tag = "sweeps",
+    operation_id = "pause_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
+    app.store.pause_sweep(&id, true).await?;
+    Ok(Json(load(&app, &id).await?))
+}
+
+/// Let a paused sweep go on
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/resume",
+    tag = "sweeps",
+    operation_id = "resume_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
+    app.store.pause_sweep(&id, false).await?;
+    Ok(Json(load(&app, &id).await?))
+}
+
+/// Change name, tags, priority, pin or expiry of a sweep
+///
+/// What is absent stays. A new priority holds for the points that wait, too.
+#[utoipa::path(
+    patch,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "change_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    request_body = SweepPatch,
+    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+)]
+pub(crate) async fn change(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    extract::Json { value: patch, .. }: extract::Json<SweepPatch>,
+) -> Result<Json<Sweep>> {
+    check_patch(&patch)?;
+    let changes = SweepChanges {
+        name: patch.name,
+        priority: patch.priority.map(i64::from),
+        tags_json: patch.tags.as_ref().map(convert::write).transpose()?,
+        is_pinned: patch.pinned,
+        expires: patch.expires.map(|expires| expires.map(Timestamp::as_millisecond)),
+    };
+    app.store.change_sweep(&id, &changes).await?;
+    Ok(Json(load(&app, &id).await?))
+}
+
+/// Add points to a sweep
+///
+/// Points of the sweep's scenario with other values of its parameters, by any design; their numbers go on from its last
+/// point. Points that the sweep has already are passed over, so that a finer grid may be asked for as a whole, and the same
+/// request again changes nothing.
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/points",
+    tag = "sweeps",
+    operation_id = "append_points",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    request_body = AppendRequest,
+    responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
+)]
+pub(crate) async fn append(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    extract::Json { value: request, .. }: extract::Json<AppendRequest>,
+) -> Result<Json<Sweep>> {
+    let sweep = load(&app, &id).await?;
+    let Some(original) = sweep.request else {
+        return Err(Error::internal("a sweep was read without its request"));
+    };
+    let request_json = convert::write(&request)?;
+    let (expansion, points) = blocking(move || {
+        let expansion = expand_added(request, &original)?;
+        let points = convert::new_points(&expansion)?;
+        Ok((expansion, points))
+    })
+    .await?;
+    limit::check_open_points(&app, &sweep.owner, points.len()).await?;
+    let (base, physics) = (convert::write(&expansion.base)?, PHYSICS_VERSION.into());
+    let most = LIMITS.points_per_sweep as u64;
+    match app.store.append_points(&id, &base, physics, &points, &request_json, most).await? {
+        AppendOutcome::Added(_) => {}
+        AppendOutcome::NoSuchSweep => return Err(convert::no_such_sweep(&id)),
+        AppendOutcome::Cancelled => {
+            return Err(Error::new(
+                ProblemKind::Conflict,
+                format!("sweep {id} is cancelled; retry it first"),
+            ));
+        }
+        AppendOutcome::OtherNumbers(version) => {
+            let detail = format!(
+                "the points of sweep {id} are of physics version {version}, and this service computes version \
+                 {PHYSICS_VERSION}: points of both in one sweep would not compare; submit a new one"
+            );
+            return Err(Error::new(ProblemKind::Conflict, detail));
+        }
+        AppendOutcome::TooMany(total) => {
+            let detail = format!("the sweep would have {total} points; a sweep has at most {most}");
+            return Err(Error::new(ProblemKind::Conflict, detail));
+        }
+    }
+    Ok(Json(Sweep { warnings: expansion.warnings, ..load(&app, &id).await? }))
 }
 
 /// One row a point: its parameters and the scalars of its result

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use divan::Bencher;
-use drillsweep_store::{NewArtifact, NewPoint, NewSweep, Role, Store, StoreConfig};
+use drillsweep_store::{CachePolicy, NewArtifact, NewPoint, NewSweep, Role, Store, StoreConfig};
 use tempfile::TempDir;
 use tokio::runtime::Runtime;
 
@@ -46,6 +46,8 @@ fn sweep(number: i64) -> NewSweep {
         owner: "anne".to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        tags_json: "[]".to_owned(),
+        cache: CachePolicy::Reuse,
         idempotency_key: None,
         base_json: format!("{number:>3000}"),
         physics_version: 1,

@@ -22,6 +22,7 @@ impl Store {
             .bind(key.as_bytes().as_slice())
             .execute(&mut *tx)
             .await?;
+        sqlx::query("INSERT INTO owner_turn (owner, vtime) VALUES ('', 0)").execute(&mut *tx).await?;
         sqlx::query(
             "INSERT INTO work (key, physics_version, base, owner, state, priority, vtime, ready_at, created, changed)
              VALUES (?1, ?2, ?1, '', 'queued', 0, 0, 0, 0, 0)",

@@ -25,6 +25,18 @@ macro_rules! holds_lease {
     };
 }
 
+/// The state of work that ends without a new result: where it was to be computed anew, the result from before stays.
+macro_rules! ended {
+    ($state:literal) => {
+        concat!(
+            "CASE WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done' ELSE '",
+            $state,
+            "' END"
+        )
+    };
+}
+pub(crate) use ended;
+
 /// Work handed to a worker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
@@ -96,7 +108,8 @@ pub struct QueueDepths {
 }
 
 impl Store {
-    /// Hands out the next work item of the worker's physics version; none if nothing is ready.
+    /// Hands out the next work item of the worker's physics version; none if nothing is ready. Owners take turns; of the
+    /// owner whose turn it is the most urgent goes first, then the order asked for.
     ///
     /// # Errors
     /// When the database fails.
@@ -121,8 +134,15 @@ impl Store {
             now!(),
             " + ?3, changed = ",
             now!(),
-            " WHERE key = (SELECT key FROM work WHERE state = 'queued' AND physics_version = ?4
-                           ORDER BY priority DESC, vtime, key LIMIT 1)
+            " WHERE key = (
+                  SELECT key FROM work
+                  WHERE state = 'queued' AND held = 0 AND physics_version = ?4
+                    AND owner = (SELECT owner FROM owner_turn
+                                 WHERE EXISTS (SELECT 1 FROM work
+                                               WHERE state = 'queued' AND held = 0 AND physics_version = ?4
+                                                 AND work.owner = owner_turn.owner)
+                                 ORDER BY vtime, owner LIMIT 1)
+                  ORDER BY priority DESC, vtime, key LIMIT 1)
               RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes, checkpoint"
         ))
         .bind(self.clock_offset_ms)
@@ -192,6 +212,8 @@ impl Store {
         .fetch_all(&mut *tx)
         .await?;
         let Some(now) = finished.first() else { return Ok(false) };
+        // A result that was computed anew takes the place of the one before, with its artifacts.
+        sqlx::query("DELETE FROM result WHERE work_key = ?1").bind(key).execute(&mut *tx).await?;
         sqlx::query("INSERT INTO result (work_key, summary, provenance, created) VALUES (?1, ?2, ?3, ?4)")
             .bind(key)
             .bind(summary_json)
@@ -227,15 +249,20 @@ impl Store {
     pub async fn finish_failed(&self, lease: &Lease, class: FailureClass, error_json: &str) -> Result<bool> {
         let query = match class {
             FailureClass::Physical | FailureClass::Timeout => concat!(
-                "UPDATE work SET state = 'failed', error = ?5, lease_until = NULL, changed = ",
+                "UPDATE work SET state = ",
+                ended!("failed"),
+                ", error = ?5, lease_until = NULL, changed = ",
                 now!(),
                 holds_lease!()
             ),
             // Another sweep may have asked for the same work between the worker's last renewal and now.
             FailureClass::Cancelled => concat!(
                 "UPDATE work SET
-                     state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END,
-                     error = CASE cancel_requested WHEN 0 THEN NULL ELSE ?5 END,
+                     state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE ",
+                ended!("cancelled"),
+                " END,
+                     error = CASE WHEN cancel_requested = 0 OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key)
+                                  THEN NULL ELSE ?5 END,
                      progress = 0, lease_until = NULL, changed = ",
                 now!(),
                 holds_lease!()
@@ -265,8 +292,12 @@ impl Store {
                  crash_count = crash_count + 1, progress = 0, lease_until = NULL, error = ?5, changed = ",
             now!(),
             ",
-                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
-                              WHEN crash_count + 1 >= ?6 THEN 'dead'
+                 state = CASE WHEN cancel_requested <> 0 THEN ",
+            ended!("cancelled"),
+            "
+                              WHEN crash_count + 1 >= ?6 THEN ",
+            ended!("dead"),
+            "
                               ELSE 'queued' END",
             holds_lease!()
         ))
@@ -290,7 +321,9 @@ impl Store {
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
         let query = concat!(
             "UPDATE work SET
-                 state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END,
+                 state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE ",
+            ended!("cancelled"),
+            " END,
                  error = ?5, starts = starts - 1, progress = 0, lease_until = NULL, changed = ",
             now!(),
             holds_lease!()
@@ -298,7 +331,7 @@ impl Store {
         self.leave(query, lease, None).await
     }
 
-    /// Gives work back after the infrastructure failed: tried again later and later, given up after five times.
+    /// Gives work back after the infrastructure failed: tried again later and later, given up at the fifth time.
     /// False if the lease was lost.
     ///
     /// # Errors
@@ -306,12 +339,17 @@ impl Store {
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         let changed = sqlx::query(concat!(
             "UPDATE work SET
-                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
-                              WHEN failure_count + 1 >= ?6 THEN 'failed'
+                 state = CASE WHEN cancel_requested <> 0 THEN ",
+            ended!("cancelled"),
+            "
+                              WHEN failure_count + 1 >= ?6 THEN ",
+            ended!("failed"),
+            "
                               ELSE 'waiting' END,
                  ready_at = ",
             now!(),
-            " + (?7 << failure_count), failure_count = failure_count + 1,
+            " + (?7 << failure_count),
+                 failure_count = failure_count + 1,
                  error = ?5, progress = 0, lease_until = NULL, changed = ",
             now!(),
             holds_lease!()
@@ -354,8 +392,12 @@ impl Store {
                  crash_count = crash_count + 1, progress = 0, lease_until = NULL, changed = ",
             now!(),
             ",
-                 state = CASE WHEN cancel_requested <> 0 THEN 'cancelled'
-                              WHEN crash_count + 1 >= ?2 THEN 'dead'
+                 state = CASE WHEN cancel_requested <> 0 THEN ",
+            ended!("cancelled"),
+            "
+                              WHEN crash_count + 1 >= ?2 THEN ",
+            ended!("dead"),
+            "
                               ELSE 'queued' END,
                  error = CASE WHEN cancel_requested = 0 AND crash_count + 1 >= ?2
                               THEN json_object('class', 'crash', 'reason',

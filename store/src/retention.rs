@@ -113,35 +113,6 @@ impl Store {
         Ok(garbage)
     }
 
-    /// Keeps a sweep and all that belongs to it from expiring, or not any more. False if there is no such sweep.
-    ///
-    /// # Errors
-    /// When the database fails.
-    pub async fn pin_sweep(&self, id: &str, is_pinned: bool) -> Result<bool> {
-        let changed = sqlx::query("UPDATE sweep SET pinned = ?2, version = version + 1 WHERE id = ?1")
-            .bind(id)
-            .bind(is_pinned)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
-        Ok(changed == 1)
-    }
-
-    /// Sets when a sweep is deleted \[ms since the epoch\]: at the first collection after it, if all its points are
-    /// final and it is not pinned; none means never. False if there is no such sweep.
-    ///
-    /// # Errors
-    /// When the database fails.
-    pub async fn expire_sweep_at(&self, id: &str, expires: Option<i64>) -> Result<bool> {
-        let changed = sqlx::query("UPDATE sweep SET expires = ?2, version = version + 1 WHERE id = ?1")
-            .bind(id)
-            .bind(expires)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
-        Ok(changed == 1)
-    }
-
     /// Deletes those of the objects that no row names now, under the lock that rows are written under.
     async fn delete_unnamed(&self, objects: &[StoredObject]) -> Result<Vec<StoredObject>> {
         let mut tx = self.write().await?;

@@ -1,14 +1,15 @@
 //! Submitting a sweep.
 
+use std::collections::HashSet;
+
 use sqlx::{QueryBuilder, Sqlite, Transaction};
 
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
 use crate::state::WorkKey;
 
-/// Virtual time that one point costs its owner; the claim order is by virtual time, so that owners take turns
-/// however many points each has (start-time fair queueing).
-pub(crate) const COST_OF_A_POINT: i64 = 1_000;
+/// Distance of one point from the next in its owner's order.
+pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
 
 /// Rows of one statement: enough that the calls do not count, few enough for the parameters that SQLite takes.
 const ROWS_AT_ONCE: usize = 1_000;
@@ -26,6 +27,10 @@ pub struct NewSweep {
     pub request_json: String,
     /// Higher goes first.
     pub priority: i64,
+    /// Words to find it by, as a JSON array.
+    pub tags_json: String,
+    /// What becomes of points whose result is known.
+    pub cache: CachePolicy,
     /// The client's idempotency key with the hash of the request's body.
     pub idempotency_key: Option<(String, [u8; 32])>,
     /// The scenario that the points change, as JSON text.
@@ -49,6 +54,45 @@ pub struct NewPoint {
     pub changes_json: String,
 }
 
+/// What becomes of points that were computed before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CachePolicy {
+    /// Their result is taken.
+    #[default]
+    Reuse,
+    /// They are computed anew, failed ones too. The old result stays until a new one takes its place.
+    Refresh,
+    /// Their result is taken, or that they failed; a sweep with other points is not stored.
+    Only,
+}
+
+/// What became of points that were added to a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AppendOutcome {
+    /// So many were added; the others it had already.
+    Added(u64),
+    /// The sweep would have so many points, which is too many; nothing is changed.
+    TooMany(u64),
+    /// The sweep is cancelled; nothing is changed.
+    Cancelled,
+    /// The sweep's points are of this version of the numbers, the new ones of another; nothing is changed.
+    OtherNumbers(i64),
+    /// There is no such sweep.
+    NoSuchSweep,
+}
+
+/// Whose work is inserted, and how.
+struct Wanted<'a> {
+    sweep_id: &'a str,
+    order: Order,
+    owner: &'a str,
+    priority: i64,
+    physics_version: i64,
+    base: [u8; 32],
+    cache: CachePolicy,
+    is_paused: bool,
+}
+
 /// What became of a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SubmitOutcome {
@@ -56,11 +100,13 @@ pub enum SubmitOutcome {
     Created,
     /// The same request was stored before under the same idempotency key, as this sweep.
     Known(String),
+    /// Under [`CachePolicy::Only`]: the points with these ordinals have not been computed, and nothing is stored.
+    NotComputed(Vec<i64>),
 }
 
 impl Store {
-    /// Stores a sweep with all its points in one transaction. Work that is known is not done again: a finished point
-    /// counts at once, a failed one stays failed, a cancelled one is queued again.
+    /// Stores a sweep with all its points in one transaction. Work that is known is not done again, unless the sweep asks
+    /// for it: a finished point counts at once, a failed one stays failed, a cancelled one is queued again.
     ///
     /// # Errors
     /// When the idempotency key was used for another request, or the database fails.
@@ -69,21 +115,110 @@ impl Store {
         if let Some(known) = known_sweep(&mut tx, sweep).await? {
             return Ok(SubmitOutcome::Known(known));
         }
+        if sweep.cache == CachePolicy::Only {
+            let missing = not_computed(&mut tx, &sweep.points).await?;
+            if !missing.is_empty() {
+                return Ok(SubmitOutcome::NotComputed(missing));
+            }
+        }
         let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
             .bind(self.clock_offset_ms)
             .fetch_one(&mut *tx)
             .await?;
         insert_sweep(&mut tx, sweep, now).await?;
-        let base = insert_base(&mut tx, &sweep.base_json).await?;
-        let mut vtime = start_of_virtual_time(&mut tx, &sweep.owner).await?;
-        for points in sweep.points.chunks(ROWS_AT_ONCE) {
-            insert_work(&mut tx, sweep, points, base, vtime, now).await?;
-            insert_points(&mut tx, &sweep.id, points).await?;
-            vtime += COST_OF_A_POINT * points.len() as i64;
-        }
+        let wanted = Wanted {
+            sweep_id: &sweep.id,
+            order: end_of_order(&mut tx, &sweep.owner).await?,
+            owner: &sweep.owner,
+            priority: sweep.priority,
+            physics_version: sweep.physics_version,
+            base: insert_base(&mut tx, &sweep.base_json).await?,
+            cache: sweep.cache,
+            is_paused: false,
+        };
+        insert(&mut tx, &wanted, &sweep.points, now).await?;
         count_points(&mut tx, &sweep.id, now).await?;
         tx.commit().await?;
         Ok(SubmitOutcome::Created)
+    }
+
+    /// Adds points to a sweep, but for those that it has already; their ordinals are given here, going on from its last
+    /// point. `request_json` is noted beside the sweep's own request, unless the sweep has all of its points. A sweep has
+    /// at most `limit` points.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn append_points(
+        &self,
+        sweep_id: &str,
+        base_json: &str,
+        physics_version: i64,
+        points: &[NewPoint],
+        request_json: &str,
+        limit: u64,
+    ) -> Result<AppendOutcome> {
+        let mut tx = self.write().await?;
+        let sweep: Option<(String, i64, i64, i64, i64)> =
+            sqlx::query_as("SELECT owner, priority, points, cancelled, paused FROM sweep WHERE id = ?1")
+                .bind(sweep_id)
+                .fetch_optional(&mut *tx)
+                .await?;
+        let Some((owner, priority, known, cancelled, paused)) = sweep else {
+            return Ok(AppendOutcome::NoSuchSweep);
+        };
+        if cancelled != 0 {
+            return Ok(AppendOutcome::Cancelled);
+        }
+        let has: Vec<(Vec<u8>, i64)> = sqlx::query_as(
+            "SELECT p.work_key, w.physics_version FROM point p JOIN work w ON w.key = p.work_key WHERE p.sweep_id = ?1",
+        )
+        .bind(sweep_id)
+        .fetch_all(&mut *tx)
+        .await?;
+        if let Some((_, other)) = has.iter().find(|(_, version)| *version != physics_version) {
+            return Ok(AppendOutcome::OtherNumbers(*other));
+        }
+        let mut seen: HashSet<&[u8]> = has.iter().map(|(key, _)| key.as_slice()).collect();
+        let fresh: Vec<NewPoint> = points
+            .iter()
+            .filter(|point| seen.insert(&point.work_key))
+            .zip(known + 1..)
+            .map(|(point, ordinal)| NewPoint { ordinal, ..point.clone() })
+            .collect();
+        if fresh.is_empty() {
+            return Ok(AppendOutcome::Added(0));
+        }
+        let total = known.unsigned_abs() + fresh.len() as u64;
+        if total > limit {
+            return Ok(AppendOutcome::TooMany(total));
+        }
+        let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
+            .bind(self.clock_offset_ms)
+            .fetch_one(&mut *tx)
+            .await?;
+        let wanted = Wanted {
+            sweep_id,
+            order: end_of_order(&mut tx, &owner).await?,
+            owner: &owner,
+            priority,
+            physics_version,
+            base: insert_base(&mut tx, base_json).await?,
+            cache: CachePolicy::Reuse,
+            is_paused: paused != 0,
+        };
+        insert(&mut tx, &wanted, &fresh, now).await?;
+        sqlx::query(
+            "UPDATE sweep SET points = ?2, appended = json_insert(appended, '$[#]', json(?3)), version = version + 1
+             WHERE id = ?1",
+        )
+        .bind(sweep_id)
+        .bind(total as i64)
+        .bind(request_json)
+        .execute(&mut *tx)
+        .await?;
+        count_points(&mut tx, sweep_id, now).await?;
+        tx.commit().await?;
+        Ok(AppendOutcome::Added(fresh.len() as u64))
     }
 
     /// How many of the given keys have a result already.
@@ -124,7 +259,8 @@ async fn known_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep) ->
 
 async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, now: i64) -> Result<()> {
     sqlx::query(
-        "INSERT INTO sweep (id, name, owner, request, priority, points, created) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+        "INSERT INTO sweep (id, name, owner, request, priority, points, created, tags, refreshes)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
     )
     .bind(&sweep.id)
     .bind(&sweep.name)
@@ -133,6 +269,8 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
     .bind(sweep.priority)
     .bind(sweep.points.len() as i64)
     .bind(now)
+    .bind(&sweep.tags_json)
+    .bind(sweep.cache == CachePolicy::Refresh)
     .execute(&mut **tx)
     .await?;
     if let Some((key, body_hash)) = &sweep.idempotency_key {
@@ -150,17 +288,50 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
     Ok(())
 }
 
-/// Where a new sweep's virtual time starts: not before what is being served now, nor before the owner's last point.
-pub(crate) async fn start_of_virtual_time(tx: &mut Transaction<'static, Sqlite>, owner: &str) -> Result<i64> {
-    Ok(sqlx::query_scalar(
-        "SELECT max(
-             coalesce((SELECT min(vtime) FROM work WHERE state IN ('waiting', 'queued', 'leased')), 0),
-             coalesce((SELECT max(vtime) FROM work
-                       WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')), 0))",
+/// Which of the points have neither a result nor failed, by ordinal.
+async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]) -> Result<Vec<i64>> {
+    let mut missing = Vec::new();
+    for points in points.chunks(ROWS_AT_ONCE) {
+        let mut query = QueryBuilder::new(
+            "SELECT key FROM work WHERE (state IN ('failed', 'dead')
+               OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key)) AND key IN (",
+        );
+        let mut list = query.separated(", ");
+        for point in points {
+            list.push_bind(point.work_key.as_slice());
+        }
+        query.push(")");
+        let known: Vec<Vec<u8>> = query.build_query_scalar().fetch_all(&mut **tx).await?;
+        let known: HashSet<&[u8]> = known.iter().map(Vec::as_slice).collect();
+        let is_missing = |point: &&NewPoint| !known.contains(point.work_key.as_slice());
+        missing.extend(points.iter().filter(is_missing).map(|point| point.ordinal));
+    }
+    Ok(missing)
+}
+
+/// The order in which an owner's open work was asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Order {
+    /// The first place that is taken; that of the last without any.
+    first: i64,
+    /// The last place that is taken.
+    pub(crate) last: i64,
+}
+
+/// Where an owner's order ends; an owner that has had no turn gets the first.
+pub(crate) async fn end_of_order(tx: &mut Transaction<'static, Sqlite>, owner: &str) -> Result<Order> {
+    sqlx::query("INSERT INTO owner_turn (owner, vtime) VALUES (?1, 0) ON CONFLICT (owner) DO NOTHING")
+        .bind(owner)
+        .execute(&mut **tx)
+        .await?;
+    let (first, last) = sqlx::query_as(
+        "SELECT coalesce(min(vtime), 0), coalesce(max(vtime), 0) FROM work
+         WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')",
     )
     .bind(owner)
     .fetch_one(&mut **tx)
-    .await?)
+    .await?;
+    Ok(Order { first, last })
 }
 
 /// Stores a base scenario by the hash of its text, unless it is there.
@@ -174,47 +345,89 @@ async fn insert_base(tx: &mut Transaction<'static, Sqlite>, text: &str) -> Resul
     Ok(hash)
 }
 
+/// Stores the points of a sweep and the work behind them, the latter at the end of its owner's order.
+async fn insert(
+    tx: &mut Transaction<'static, Sqlite>,
+    wanted: &Wanted<'_>,
+    points: &[NewPoint],
+    now: i64,
+) -> Result<()> {
+    let mut place = wanted.order.last;
+    for points in points.chunks(ROWS_AT_ONCE) {
+        insert_work(tx, wanted, points, place, now).await?;
+        insert_points(tx, wanted.sweep_id, points).await?;
+        place += PLACE_OF_A_POINT * points.len() as i64;
+    }
+    Ok(())
+}
+
 async fn insert_work(
     tx: &mut Transaction<'static, Sqlite>,
-    sweep: &NewSweep,
+    wanted: &Wanted<'_>,
     points: &[NewPoint],
-    base: [u8; 32],
-    vtime: i64,
+    place: i64,
     now: i64,
 ) -> Result<()> {
     let mut query = QueryBuilder::new(
-        "INSERT INTO work (key, changes, vtime, base, physics_version, owner, state, priority, ready_at, created, changed) ",
+        "INSERT INTO work (key, changes, vtime, base, physics_version, owner, state, held, priority, ready_at, created, changed) ",
     );
     query.push_values((1..).zip(points), |mut row, (number, point)| {
         row.push_bind(point.work_key.as_slice())
             .push_bind(&point.changes_json)
-            .push_bind(vtime + COST_OF_A_POINT * number)
-            .push_bind(base.to_vec())
-            .push_bind(sweep.physics_version)
-            .push_bind(&sweep.owner)
+            .push_bind(place + PLACE_OF_A_POINT * number)
+            .push_bind(wanted.base.to_vec())
+            .push_bind(wanted.physics_version)
+            .push_bind(wanted.owner)
             .push("'queued'")
-            .push_bind(sweep.priority)
+            .push_bind(wanted.is_paused)
+            .push_bind(wanted.priority)
             .push_bind(now)
             .push_bind(now)
             .push_bind(now);
     });
-    // Work that is known keeps its row, but for three things: it is taken up again if it was cancelled, it goes as
-    // early as the most urgent sweep that wants it, and it is not cancelled any more.
-    query.push(
-        " ON CONFLICT (key) DO UPDATE SET
-             state = CASE state WHEN 'cancelled' THEN 'queued' ELSE state END,
-             changed = CASE state WHEN 'cancelled' THEN excluded.changed ELSE changed END,
-             owner = CASE state WHEN 'cancelled' THEN excluded.owner ELSE owner END,
-             vtime = CASE state WHEN 'cancelled' THEN excluded.vtime ELSE vtime END,
-             error = CASE state WHEN 'cancelled' THEN NULL ELSE error END,
-             progress = CASE state WHEN 'cancelled' THEN 0 ELSE progress END,
-             priority = CASE state WHEN 'cancelled' THEN excluded.priority ELSE max(priority, excluded.priority) END,
-             cancel_requested = 0
-         WHERE state = 'cancelled'
-            OR (state IN ('waiting', 'queued', 'leased') AND (cancel_requested <> 0 OR priority < excluded.priority))",
-    );
+    push_upsert(&mut query, wanted);
     query.build().execute(&mut **tx).await?;
     Ok(())
+}
+
+/// What becomes of work that is there. What was cancelled, or is to be computed anew, is taken up again as if it were new.
+/// What is open goes as early as the most urgent sweep that wants it, is neither cancelled nor held any more, and becomes a
+/// turn of the owner in whose order it stands nearer to the front: else a few points would wait for all of somebody else's
+/// sweep that has them too. All else stays as it is.
+fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
+    let again = match wanted.cache {
+        CachePolicy::Reuse | CachePolicy::Only => "state IN ('cancelled')",
+        CachePolicy::Refresh => "state IN ('cancelled', 'done', 'failed', 'dead')",
+    };
+    let checkpoint = match wanted.cache {
+        CachePolicy::Reuse | CachePolicy::Only => "checkpoint",
+        CachePolicy::Refresh => "NULL",
+    };
+    let first = wanted.order.first;
+    let nearer = format!(
+        "(state IN ('waiting', 'queued') AND owner <> excluded.owner AND held >= excluded.held
+          AND vtime - (SELECT min(o.vtime) FROM work o
+                       WHERE o.owner = work.owner AND o.state IN ('waiting', 'queued', 'leased'))
+              > excluded.vtime - {first})"
+    );
+    query.push(format!(
+        " ON CONFLICT (key) DO UPDATE SET
+             state = CASE WHEN {again} THEN 'queued' ELSE state END,
+             changed = CASE WHEN {again} THEN excluded.changed ELSE changed END,
+             owner = CASE WHEN {again} OR {nearer} THEN excluded.owner ELSE owner END,
+             vtime = CASE WHEN {again} OR {nearer} THEN excluded.vtime ELSE vtime END,
+             error = CASE WHEN {again} THEN NULL ELSE error END,
+             progress = CASE WHEN {again} THEN 0 ELSE progress END,
+             checkpoint = CASE WHEN {again} THEN {checkpoint} ELSE checkpoint END,
+             crash_count = CASE WHEN {again} THEN 0 ELSE crash_count END,
+             failure_count = CASE WHEN {again} THEN 0 ELSE failure_count END,
+             priority = CASE WHEN {again} THEN excluded.priority ELSE max(priority, excluded.priority) END,
+             cancel_requested = 0,
+             held = CASE WHEN {again} THEN excluded.held ELSE held AND excluded.held END
+         WHERE {again}
+            OR (state IN ('waiting', 'queued', 'leased')
+                AND (cancel_requested <> 0 OR held > excluded.held OR priority < excluded.priority OR {nearer}))"
+    ));
 }
 
 async fn insert_points(
@@ -233,7 +446,7 @@ async fn insert_points(
     Ok(())
 }
 
-/// Counts the points of a new sweep once; from then on the counts follow the work.
+/// Counts the points of a sweep that is new or has new ones; from then on the counts follow the work.
 async fn count_points(tx: &mut Transaction<'static, Sqlite>, id: &str, now: i64) -> Result<()> {
     sqlx::query(
         "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled, finished) = (

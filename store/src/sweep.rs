@@ -1,11 +1,12 @@
-//! Sweeps: reading, cancelling, retrying.
+//! Sweeps: reading, changing, pausing, cancelling, retrying.
 
-use sqlx::FromRow;
+use sqlx::{FromRow, Sqlite, Transaction};
 
 use crate::connection::{Store, now};
 use crate::error::Result;
+use crate::queue::ended;
 use crate::state::StateCounts;
-use crate::submit::{COST_OF_A_POINT, start_of_virtual_time};
+use crate::submit::{PLACE_OF_A_POINT, end_of_order};
 
 /// A stored sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,16 @@ pub struct SweepRecord {
     pub version: i64,
     /// True once it was cancelled.
     pub is_cancelled: bool,
+    /// True while its points are not handed out.
+    pub is_paused: bool,
+    /// True where it and all that belongs to it is kept whatever its age.
+    pub is_pinned: bool,
+    /// When it is to be deleted \[ms since the epoch\].
+    pub expires: Option<i64>,
+    /// Words to find it by, as a JSON array.
+    pub tags_json: String,
+    /// The requests by which points were added later, as a JSON array.
+    pub appended_json: String,
     /// When it was submitted \[ms since the epoch\].
     pub created: i64,
     /// When its last point became final \[ms since the epoch\].
@@ -39,10 +50,12 @@ pub struct SweepRecord {
 pub struct SweepFilter<'a> {
     /// Of this owner.
     pub owner: Option<&'a str>,
-    /// In this state: `running`, `completed` or `cancelled`.
+    /// In this state: `running`, `paused`, `completed` or `cancelled`.
     pub state: Option<&'a str>,
     /// With this text in their name, in whatever case of ASCII letters.
     pub name: Option<&'a str>,
+    /// With this tag.
+    pub tag: Option<&'a str>,
 }
 
 #[derive(FromRow)]
@@ -54,6 +67,11 @@ struct SweepRow {
     priority: i64,
     version: i64,
     cancelled: i64,
+    paused: i64,
+    pinned: i64,
+    expires: Option<i64>,
+    tags: String,
+    appended: String,
     created: i64,
     finished: Option<i64>,
     points: i64,
@@ -70,13 +88,27 @@ struct SweepRow {
 macro_rules! select_sweeps {
     ($rest:literal) => {
         concat!(
-            "SELECT id, name, owner, request, priority, version, cancelled, created, finished, points,
+            "SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags, appended,
+                    created, finished, points,
                     points_queued, points_running, points_done, points_failed, points_cancelled,
                     CASE points_running WHEN 0 THEN 0.0 ELSE (
                         SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
                         WHERE w.state = 'leased' AND p.sweep_id = sweep.id) END AS running_progress
              FROM sweep ",
             $rest
+        )
+    };
+}
+
+/// Whether a sweep that meets a condition wants the work: whether it has a point of it, and of work that has a result,
+/// whether it wants that computed anew.
+macro_rules! wanted {
+    ($condition:literal) => {
+        concat!(
+            "EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
+                     WHERE p.work_key = work.key AND ",
+            $condition,
+            " AND (s.refreshes <> 0 OR NOT EXISTS (SELECT 1 FROM result r WHERE r.work_key = work.key)))"
         )
     };
 }
@@ -106,8 +138,10 @@ impl Store {
             "WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
                AND (?4 IS NULL OR ?4 = CASE WHEN cancelled <> 0 THEN 'cancelled'
                                             WHEN finished IS NOT NULL THEN 'completed'
+                                            WHEN paused <> 0 THEN 'paused'
                                             ELSE 'running' END)
                AND (?5 IS NULL OR instr(lower(name), lower(?5)) > 0)
+               AND (?6 IS NULL OR EXISTS (SELECT 1 FROM json_each(tags) WHERE value = ?6))
              ORDER BY id DESC LIMIT ?3"
         ))
         .bind(filter.owner)
@@ -115,6 +149,7 @@ impl Store {
         .bind(limit)
         .bind(filter.state)
         .bind(filter.name)
+        .bind(filter.tag)
         .fetch_all(&self.pool)
         .await?;
         Ok(rows.into_iter().map(SweepRow::record).collect())
@@ -152,18 +187,78 @@ impl Store {
                  changed = CASE state WHEN 'leased' THEN changed ELSE ",
             now!(),
             " END,
-                 state = CASE state WHEN 'leased' THEN state ELSE 'cancelled' END
+                 state = CASE state WHEN 'leased' THEN state ELSE ",
+            ended!("cancelled"),
+            " END
              WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?2)
-               AND state IN ('waiting', 'queued', 'leased')
-               AND NOT EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
-                               WHERE p.work_key = work.key AND s.cancelled = 0)"
+               AND state IN ('waiting', 'queued', 'leased') AND NOT ",
+            wanted!("s.cancelled = 0")
         ))
         .bind(self.clock_offset_ms)
         .bind(id)
         .execute(&mut *tx)
         .await?;
+        hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(true)
+    }
+
+    /// Pauses a sweep or lets it go on: while it is paused its points are not handed out, but for those that another
+    /// live sweep wants; points under way go on. False if there is no such sweep.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn pause_sweep(&self, id: &str, paused: bool) -> Result<bool> {
+        let mut tx = self.write().await?;
+        let changed = sqlx::query("UPDATE sweep SET paused = ?2, version = version + 1 WHERE id = ?1")
+            .bind(id)
+            .bind(i64::from(paused))
+            .execute(&mut *tx)
+            .await?
+            .rows_affected();
+        if changed == 1 {
+            hold_back(&mut tx, id).await?;
+        }
+        tx.commit().await?;
+        Ok(changed == 1)
+    }
+
+    /// Changes what can be changed of a sweep. Work that is open takes the priority of the most urgent live sweep that has
+    /// it. False if there is no such sweep.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn change_sweep(&self, id: &str, changes: &SweepChanges) -> Result<bool> {
+        let mut tx = self.write().await?;
+        let changed = sqlx::query(
+            "UPDATE sweep SET name = CASE WHEN ?2 THEN ?3 ELSE name END, priority = coalesce(?4, priority),
+                    tags = coalesce(?5, tags), pinned = coalesce(?6, pinned),
+                    expires = CASE WHEN ?7 THEN ?8 ELSE expires END, version = version + 1
+             WHERE id = ?1",
+        )
+        .bind(id)
+        .bind(changes.name.is_some())
+        .bind(changes.name.as_ref().and_then(Option::as_deref))
+        .bind(changes.priority)
+        .bind(&changes.tags_json)
+        .bind(changes.is_pinned)
+        .bind(changes.expires.is_some())
+        .bind(changes.expires.flatten())
+        .execute(&mut *tx)
+        .await?
+        .rows_affected();
+        if changed == 1 && changes.priority.is_some() {
+            sqlx::query(
+                "UPDATE work SET priority = coalesce((SELECT max(s.priority) FROM point p JOIN sweep s ON s.id = p.sweep_id
+                                                      WHERE p.work_key = work.key AND s.cancelled = 0), priority)
+                 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND state IN ('waiting', 'queued', 'leased')",
+            )
+            .bind(id)
+            .execute(&mut *tx)
+            .await?;
+        }
+        tx.commit().await?;
+        Ok(changed == 1)
     }
 
     /// Queues the failed and cancelled points of a sweep again, behind what their owner has in the queue; tells how
@@ -188,7 +283,7 @@ impl Store {
         .bind(id)
         .execute(&mut *tx)
         .await?;
-        let vtime = start_of_virtual_time(&mut tx, &owner).await?;
+        let order = end_of_order(&mut tx, &owner).await?;
         let queued = sqlx::query(concat!(
             "UPDATE work SET
                  state = 'queued', changed = ",
@@ -204,14 +299,44 @@ impl Store {
         .bind(self.clock_offset_ms)
         .bind(id)
         .bind(&owner)
-        .bind(vtime)
-        .bind(COST_OF_A_POINT)
+        .bind(order.last)
+        .bind(PLACE_OF_A_POINT)
         .execute(&mut *tx)
         .await?
         .rows_affected();
+        hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(Some(queued))
     }
+}
+
+/// What is changed of a sweep; what is absent stays.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SweepChanges {
+    /// Its name, or none any more.
+    pub name: Option<Option<String>>,
+    /// Its priority.
+    pub priority: Option<i64>,
+    /// Its tags, as a JSON array.
+    pub tags_json: Option<String>,
+    /// Whether it and all that belongs to it is kept whatever its age.
+    pub is_pinned: Option<bool>,
+    /// When it is deleted \[ms since the epoch\]: at the first collection after it, if all its points are final and it is
+    /// not pinned; or never.
+    pub expires: Option<Option<i64>>,
+}
+
+/// Holds back or lets go what a sweep has in the queue: work is held while only paused sweeps want it.
+async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()> {
+    sqlx::query(concat!(
+        "UPDATE work SET held = NOT ",
+        wanted!("s.cancelled = 0 AND s.paused = 0"),
+        " WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND state IN ('waiting', 'queued', 'leased')"
+    ))
+    .bind(id)
+    .execute(&mut **tx)
+    .await?;
+    Ok(())
 }
 
 impl SweepRow {
@@ -225,6 +350,11 @@ impl SweepRow {
             priority: self.priority,
             version: self.version,
             is_cancelled: self.cancelled != 0,
+            is_paused: self.paused != 0,
+            is_pinned: self.pinned != 0,
+            expires: self.expires,
+            tags_json: self.tags,
+            appended_json: self.appended,
             created: self.created,
             finished: self.finished,
             counts: StateCounts {

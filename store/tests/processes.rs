@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use drillsweep_store::{
-    NewArtifact, NewPoint, NewSweep, Renewal, Role, Store, StoreConfig, SubmitOutcome, WorkState,
+    CachePolicy, NewArtifact, NewPoint, NewSweep, Renewal, Role, Store, StoreConfig, SubmitOutcome, WorkState,
 };
 
 const POINTS: i64 = 1_000;
@@ -186,6 +186,8 @@ async fn killed_workers_lose_and_double_nothing() {
         owner: "anne".to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        tags_json: "[]".to_owned(),
+        cache: CachePolicy::Reuse,
         idempotency_key: None,
         base_json: "{}".to_owned(),
         physics_version: 1,

@@ -86,6 +86,10 @@ impl Bench {
         self.send(json_request(Method::POST, path, body.to_string())).await
     }
 
+    pub(crate) async fn patch(&self, path: &str, body: Value) -> Answer {
+        self.send(json_request(Method::PATCH, path, body.to_string())).await
+    }
+
     /// Submits a sweep and gives its id.
     pub(crate) async fn submit(&self, body: Value) -> String {
         let answer = self.post("/v1/sweeps", body).await;

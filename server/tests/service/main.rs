@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "in a test a failure is a panic")]
 
 mod bench;
+mod control;
 mod errors;
 mod events;
 mod files;

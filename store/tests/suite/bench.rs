@@ -1,7 +1,7 @@
 //! A store in a temporary directory.
 
 use drillsweep_store::{
-    Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig,
+    CachePolicy, Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig,
     SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 use tempfile::TempDir;
@@ -59,6 +59,8 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         owner: "anne".to_owned(),
         request_json: format!(r#"{{"request":"{id}"}}"#),
         priority: 0,
+        tags_json: "[]".to_owned(),
+        cache: CachePolicy::Reuse,
         idempotency_key: None,
         base_json: scenario(id, 0).base_json,
         physics_version: PHYSICS,

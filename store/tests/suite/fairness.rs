@@ -35,14 +35,27 @@ fn among(served: &[WorkKey], numbers: std::ops::Range<u32>) -> usize {
 }
 
 #[tokio::test]
-async fn ten_points_do_not_wait_for_a_thousand() {
+async fn ten_points_do_not_wait_for_ten_thousand() {
     let bench = Bench::new();
     let store = bench.open().await;
-    submit_of(&store, "anne", "large", 0..1_000).await;
-    assert_eq!(among(&serve(&store, 300).await, 0..1_000), 300);
-    submit_of(&store, "bert", "small", 5_000..5_010).await;
+    submit_of(&store, "anne", "large", 0..10_000).await;
+    assert_eq!(among(&serve(&store, 300).await, 0..10_000), 300);
+    submit_of(&store, "bert", "small", 20_000..20_010).await;
     // Alone it would need ten turns; with one rival, twice as many and what the bound allows.
-    assert_eq!(among(&serve(&store, 20 + BOUND).await, 5_000..5_010), 10);
+    assert_eq!(among(&serve(&store, 20 + BOUND).await, 20_000..20_010), 10);
+}
+
+#[tokio::test]
+async fn ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit_of(&store, "anne", "large", 0..10_000).await;
+    submit_of(&store, "bert", "small", 9_990..10_000).await;
+    assert_eq!(among(&serve(&store, 20 + BOUND).await, 9_990..10_000), 10);
+    // Not the other way round: who has a long queue does not move what others wait for to its end.
+    submit_of(&store, "cleo", "few", 20_000..20_010).await;
+    submit_of(&store, "anne", "all", 15_000..20_010).await;
+    assert_eq!(among(&serve(&store, 20 + BOUND).await, 20_000..20_010), 10);
 }
 
 #[tokio::test]
@@ -68,6 +81,19 @@ async fn idle_time_is_not_saved_up() {
     submit_of(&store, "bert", "now", 5_000..5_200).await;
     let served = serve(&store, 60).await;
     assert_even(&served, 0..200, 5_000..5_200);
+}
+
+#[tokio::test]
+async fn urgency_counts_within_an_owner_only() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit_of(&store, "anne", "plain", 0..100).await;
+    let urgent = NewSweep { owner: "anne".to_owned(), priority: 10, ..sweep("urgent", 100..200) };
+    submit(&store, &urgent).await;
+    submit_of(&store, "bert", "other", 1_000..1_200).await;
+    let served = serve(&store, 150).await;
+    assert_even(&served, 0..200, 1_000..1_200);
+    assert_eq!(among(&served, 0..100), 0, "the urgent ones first");
 }
 
 #[tokio::test]

@@ -8,6 +8,7 @@ mod blobs;
 mod cancel;
 mod check;
 mod concurrency;
+mod control;
 mod counts;
 mod fairness;
 mod lease;

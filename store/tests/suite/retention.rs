@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use drillsweep_store::{Garbage, RetentionPolicy, Role, Store, StoreError};
+use drillsweep_store::{Garbage, RetentionPolicy, Role, Store, StoreError, SweepChanges};
 
 use crate::bench::{Bench, claim, finish, key, point_record, submit, sweep};
 
@@ -87,8 +87,8 @@ async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_p
     }
     submit(&bench.after(20 * DAY_MS).await, &sweep("young", [2])).await;
     submit(&store, &sweep("pinned", [3])).await;
-    assert!(store.pin_sweep("pinned", true).await.unwrap());
-    assert!(!store.pin_sweep("none", true).await.unwrap());
+    let pin = |is_pinned| SweepChanges { is_pinned: Some(is_pinned), ..SweepChanges::default() };
+    assert!(store.change_sweep("pinned", &pin(true)).await.unwrap());
     let before = bytes_of_blobs(&bench);
 
     let later = bench.after(31 * DAY_MS).await;
@@ -102,7 +102,7 @@ async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_p
     }
     assert!(point_record(&later, "old", 1).await.summary_json.is_some(), "the summary stays");
 
-    assert!(later.pin_sweep("pinned", false).await.unwrap());
+    assert!(later.change_sweep("pinned", &pin(false)).await.unwrap());
     let found = collect(&bench.after(51 * DAY_MS).await).await;
     assert_eq!((found.artifacts, found.blobs), (2, 2));
     assert_eq!(bytes_of_blobs(&bench), before - 3 * 32);
@@ -119,7 +119,8 @@ async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
     assert!(finish(&store, &claim(&store, "w").await).await);
     let now = store.now_ms().await.unwrap();
     for id in ["goes", "unfinished"] {
-        assert!(store.expire_sweep_at(id, Some(now + DAY_MS)).await.unwrap());
+        let changes = SweepChanges { expires: Some(Some(now + DAY_MS)), ..SweepChanges::default() };
+        assert!(store.change_sweep(id, &changes).await.unwrap());
     }
     assert_eq!(collect(&bench.after(DAY_MS / 2).await).await.sweeps, 0);
     let found = collect(&bench.after(2 * DAY_MS).await).await;

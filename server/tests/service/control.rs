@@ -1,0 +1,138 @@
+//! What a sweep's owner does with it after submitting it.
+
+use serde_json::json;
+
+use crate::bench::Bench;
+
+#[tokio::test]
+async fn a_paused_sweep_says_so_and_goes_on_when_resumed() {
+    let bench = Bench::new().await;
+    let id =
+        bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}})).await;
+    let paused = bench.post(&format!("/v1/sweeps/{id}/pause"), json!({})).await.json();
+    assert_eq!(paused["state"], "paused");
+    let resumed = bench.post(&format!("/v1/sweeps/{id}/resume"), json!({})).await.json();
+    assert_eq!(resumed["state"], "running");
+    for _ in 0..2 {
+        bench.succeed().await;
+    }
+    let path = format!("/v1/sweeps/{id}");
+    assert_eq!(bench.get(&path).await.json()["state"], "completed");
+    bench.post("/v1/sweeps/none/pause", json!({})).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn what_people_decide_about_a_sweep_is_changed_alone_or_together() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m", "name": "a", "tags": ["x", "campaign-7"]})).await;
+    let path = format!("/v1/sweeps/{id}");
+    let sweep = bench.get(&path).await.json();
+    assert_eq!((&sweep["name"], &sweep["tags"]), (&json!("a"), &json!(["campaign-7", "x"])));
+    let sweep = bench.patch(&path, json!({"priority": 4, "tags": []})).await.json();
+    assert_eq!((&sweep["name"], &sweep["priority"]), (&json!("a"), &json!(4)));
+    assert!(sweep.get("tags").is_none());
+    let sweep = bench.patch(&path, json!({"name": null})).await.json();
+    assert!(sweep.get("name").is_none());
+    let sweep = bench.patch(&path, json!({"pinned": true, "expires": "2100-01-02T03:04:05Z"})).await.json();
+    assert_eq!(
+        (&sweep["pinned"], &sweep["expires"], &sweep["priority"]),
+        (&json!(true), &json!("2100-01-02T03:04:05Z"), &json!(4))
+    );
+    let sweep = bench.patch(&path, json!({"expires": null})).await.json();
+    assert_eq!((sweep.get("expires"), &sweep["pinned"]), (None, &json!(true)));
+    bench.patch(&path, json!({"expires": "tomorrow"})).await.problem(400, "malformed-body");
+    let problem = bench
+        .patch(&path, json!({"name": "", "priority": 99, "tags": [""]}))
+        .await
+        .problem(422, "invalid-request");
+    let pointers: Vec<_> =
+        problem["errors"].as_array().unwrap().iter().map(|error| &error["pointer"]).collect();
+    assert_eq!(pointers, ["/name", "/priority", "/tags/0"]);
+    bench.patch(&path, json!({"owner": "bert"})).await.problem(400, "malformed-body");
+    bench.patch("/v1/sweeps/none", json!({})).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn points_are_added_over_the_parameters_of_the_sweep() {
+    let bench = Bench::new().await;
+    let id =
+        bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.03]}}})).await;
+    let path = format!("/v1/sweeps/{id}/points");
+    // A finer grid as a whole: the two points that are there stay as they are.
+    let finer = json!({"axes": {"mud.flow_rate": {"from": 0.01, "to": 0.03, "count": 3, "scale": "linear"}}});
+    let sweep = bench.post(&path, finer.clone()).await.json();
+    assert_eq!(
+        (&sweep["counts"]["total"], &sweep["appended"]),
+        (&json!(3), &json!([{"design": "grid", "axes": finer["axes"]}]))
+    );
+    let points = bench.get(&path).await.json();
+    let added = &points["points"][2];
+    assert_eq!(added["ordinal"], 3);
+    // Under the name that the sweep has for it, whatever the new points are asked for by.
+    let flow_rate = added["parameters"]["flow_rate"].as_f64().unwrap();
+    assert!((flow_rate - 0.02).abs() < 1e-15);
+    assert_eq!(added["parameters"].as_object().unwrap().len(), 2);
+    assert_eq!(bench.get(&format!("{path}/3")).await.json()["scenario"]["mud"]["flow_rate"], flow_rate);
+    let drawn = json!({"design": "sobol", "samples": 4, "axes": {"flow_rate": {"from": 0.01, "to": 0.03}}});
+    assert_eq!(bench.post(&path, drawn).await.json()["counts"]["total"], 7);
+
+    let other = json!({"axes": {"mud_density": {"values": [1300]}}});
+    let problem = bench.post(&path, other).await.problem(422, "invalid-request");
+    assert_eq!(problem["errors"][0]["pointer"], "/axes");
+    bench.post(&format!("/v1/sweeps/{id}/cancel"), json!({})).await;
+    bench.post(&path, finer).await.problem(409, "conflict");
+    bench.post("/v1/sweeps/none/points", json!({})).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn sweeps_are_listed_by_tag_and_state() {
+    let bench = Bench::new().await;
+    let tagged = bench.submit(json!({"preset": "paper-200m", "tags": ["campaign-7", "x"]})).await;
+    let other = bench.submit(json!({"preset": "paper-200m", "tags": ["campaign"]})).await;
+    bench.post(&format!("/v1/sweeps/{other}/pause"), json!({})).await;
+    let listed = async |query: &str| -> Vec<String> {
+        let page = bench.get(&format!("/v1/sweeps?{query}")).await.json();
+        let ids = page["sweeps"].as_array().unwrap().iter();
+        ids.map(|sweep| sweep["id"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(listed("tag=campaign-7").await, [tagged.as_str()]);
+    assert_eq!(listed("tag=campaign").await, [other.as_str()]);
+    assert_eq!(listed("state=running").await, [tagged]);
+    assert_eq!(listed("state=paused").await, [other]);
+}
+
+#[tokio::test]
+async fn the_cache_is_used_refreshed_or_all_there_is() {
+    let bench = Bench::new().await;
+    let body = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}});
+    let first = bench.submit(body.clone()).await;
+    bench.succeed().await;
+    let problem = bench.post("/v1/sweeps?cache=only", body.clone()).await.problem(409, "no-result");
+    assert!(
+        problem["detail"]
+            .as_str()
+            .unwrap()
+            .ends_with("1 of 2 points have not been computed, and cache=only computes none: 2")
+    );
+    bench.succeed().await;
+    for query in ["", "?cache=reuse", "?cache=only"] {
+        let sweep = bench.post(&format!("/v1/sweeps{query}"), body.clone()).await.json();
+        assert_eq!(
+            (&sweep["counts"]["succeeded"], &sweep["state"]),
+            (&json!(2), &json!("completed")),
+            "{query}"
+        );
+    }
+    let sweep = bench.post("/v1/sweeps?cache=refresh", body.clone()).await.json();
+    assert_eq!(sweep["counts"]["queued"], 2);
+    // What was there is served until the new result is.
+    let profile = format!("/v1/sweeps/{first}/points/1/profile");
+    assert_eq!(bench.get(&profile).await.status, 200);
+    assert_eq!(bench.post("/v1/sweeps?cache=only", body.clone()).await.status, 201);
+    for _ in 0..2 {
+        bench.succeed().await;
+    }
+    assert_eq!(bench.get(&profile).await.status, 200);
+    assert_eq!(bench.get(&format!("/v1/sweeps/{first}")).await.json()["state"], "completed");
+    bench.post("/v1/sweeps?cache=none", body).await.problem(400, "invalid-parameter");
+}

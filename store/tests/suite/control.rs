@@ -1,0 +1,280 @@
+//! Pausing, changing, extending and refreshing: what a sweep's owner does with it while it runs.
+
+use drillsweep_store::{
+    AppendOutcome, CachePolicy, FailureClass, NewPoint, NewSweep, StateCounts, SubmitOutcome, SweepChanges,
+    SweepFilter, WorkState,
+};
+
+use crate::bench::{
+    Bench, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
+    sweep_record,
+};
+
+#[tokio::test]
+async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let running = claim(&store, "w").await;
+    assert!(store.pause_sweep("s", true).await.unwrap());
+    assert!(sweep_record(&store, "s").await.is_paused);
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    // What is under way goes on; what comes back waits with the rest.
+    assert!(store.release(&running.lease).await.unwrap());
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    assert_eq!(states(&store, "s").await, [WorkState::Queued; 2]);
+    assert!(store.pause_sweep("s", false).await.unwrap());
+    for _ in 0..2 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    assert!(sweep_record(&store, "s").await.finished.is_some());
+    assert!(!store.pause_sweep("t", true).await.unwrap());
+}
+
+#[tokio::test]
+async fn a_pause_does_not_hold_what_another_sweep_wants() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1, 2])).await;
+    submit(&store, &sweep("b", [2])).await;
+    assert!(store.pause_sweep("a", true).await.unwrap());
+    let shared = claim(&store, "w").await;
+    assert_eq!(shared.lease.key, key(2));
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    // A new sweep that wants a held point lets it go; once it is cancelled, the pause holds again.
+    submit(&store, &sweep("c", [1])).await;
+    assert!(store.cancel_sweep("c").await.unwrap());
+    assert_eq!(states(&store, "a").await[0], WorkState::Queued);
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    submit(&store, &sweep("d", [1])).await;
+    assert_eq!(claim(&store, "w").await.lease.key, key(1));
+}
+
+#[tokio::test]
+async fn what_people_decide_about_a_sweep_can_be_changed() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("a", [1])).await;
+    submit(&store, &sweep("b", [2, 3])).await;
+    submit(&store, &NewSweep { priority: 3, ..sweep("c", [3]) }).await;
+    let changes =
+        SweepChanges { priority: Some(5), tags_json: Some(r#"["x"]"#.to_owned()), ..SweepChanges::default() };
+    assert!(store.change_sweep("b", &changes).await.unwrap());
+    let record = sweep_record(&store, "b").await;
+    assert_eq!((record.priority, record.tags_json.as_str()), (5, r#"["x"]"#));
+    assert_eq!(record.name.as_deref(), Some("sweep b"));
+    // Back down: what a more urgent sweep wants too stays as urgent as that.
+    let changes = SweepChanges { priority: Some(-5), name: Some(None), ..SweepChanges::default() };
+    assert!(store.change_sweep("b", &changes).await.unwrap());
+    assert_eq!(sweep_record(&store, "b").await.name, None);
+    let expires = |at| SweepChanges { expires: Some(at), is_pinned: Some(true), ..SweepChanges::default() };
+    assert!(store.change_sweep("a", &expires(Some(7))).await.unwrap());
+    let record = sweep_record(&store, "a").await;
+    assert_eq!((record.expires, record.is_pinned, record.name.as_deref()), (Some(7), true, Some("sweep a")));
+    assert!(store.change_sweep("a", &SweepChanges::default()).await.unwrap());
+    assert_eq!(sweep_record(&store, "a").await.expires, Some(7));
+    assert!(store.change_sweep("a", &expires(None)).await.unwrap());
+    assert_eq!(sweep_record(&store, "a").await.expires, None);
+    let mut order = Vec::new();
+    while let Some(claim) = claim_or_none(&store, "w").await {
+        order.push(claim.lease.key);
+    }
+    assert_eq!(order, [key(3), key(1), key(2)]);
+    assert!(!store.change_sweep("t", &changes).await.unwrap());
+}
+
+#[tokio::test]
+async fn points_are_added_once_and_go_on_from_the_last() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    for _ in 0..2 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    assert!(sweep_record(&store, "s").await.finished.is_some());
+    let points: Vec<NewPoint> = sweep("s", [2, 3, 3, 4]).points;
+    let base = scenario("s", 0).base_json;
+    let append = async |limit| {
+        store.append_points("s", &base, PHYSICS, &points, r#"{"added":1}"#, limit).await.unwrap()
+    };
+    assert_eq!(append(3).await, AppendOutcome::TooMany(4));
+    assert_eq!(append(4).await, AppendOutcome::Added(2));
+    assert_eq!(append(4).await, AppendOutcome::Added(0));
+    let record = sweep_record(&store, "s").await;
+    assert_eq!(record.counts, StateCounts { total: 4, queued: 2, done: 2, ..StateCounts::default() });
+    assert_eq!(record.finished, None);
+    assert_eq!(record.appended_json, r#"[{"added":1}]"#);
+    assert_eq!(point_record(&store, "s", 3).await.work_key, key(3));
+    assert_eq!(point_record(&store, "s", 4).await.work_key, key(4));
+    for _ in 0..2 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    let finished = sweep_record(&store, "s").await.finished;
+    assert!(finished.is_some());
+    let later = bench.after(60_000).await;
+    let again = later.append_points("s", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    assert_eq!(again, AppendOutcome::Added(0));
+    assert_eq!(sweep_record(&store, "s").await.finished, finished, "nothing was added, nothing ends anew");
+    let others = store.append_points("s", &base, PHYSICS + 1, &points, "{}", 9).await.unwrap();
+    assert_eq!(others, AppendOutcome::OtherNumbers(PHYSICS));
+    assert!(store.cancel_sweep("s").await.unwrap());
+    assert_eq!(append(9).await, AppendOutcome::Cancelled);
+    let none = store.append_points("t", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    assert_eq!(none, AppendOutcome::NoSuchSweep);
+}
+
+#[tokio::test]
+async fn what_is_added_to_a_paused_sweep_waits_with_the_rest() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    // Work that was cancelled before it could be held back.
+    submit(&store, &sweep("gone", [2])).await;
+    assert!(store.cancel_sweep("gone").await.unwrap());
+    submit(&store, &sweep("s", [1])).await;
+    assert!(store.pause_sweep("s", true).await.unwrap());
+    let points = sweep("s", [2, 3]).points;
+    let base = scenario("s", 0).base_json;
+    let added = store.append_points("s", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    assert_eq!(added, AppendOutcome::Added(2));
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    assert!(store.pause_sweep("s", false).await.unwrap());
+    for _ in 0..3 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    assert_eq!(states(&store, "s").await, [WorkState::Done; 3]);
+}
+
+/// A sweep of work item 1 that wants it computed anew.
+fn refresh(id: &str) -> NewSweep {
+    NewSweep { cache: CachePolicy::Refresh, ..sweep(id, [1]) }
+}
+
+#[tokio::test]
+async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("old", [1])).await;
+    assert!(finish(&store, &claim(&store, "first").await).await);
+    submit(&store, &refresh("new")).await;
+    let summary = async |id: &str| point_record(&store, id, 1).await.summary_json;
+    assert_eq!(states(&store, "new").await, [WorkState::Queued]);
+    assert_eq!(summary("old").await.as_deref(), Some(r#"{"by":"first"}"#));
+    assert!(finish(&store, &claim(&store, "second").await).await);
+    assert_eq!(summary("old").await.as_deref(), Some(r#"{"by":"second"}"#));
+    assert_eq!(store.artifacts(&key(1)).await.unwrap().len(), 1);
+}
+
+#[tokio::test]
+async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("old", [1])).await;
+    assert!(finish(&store, &claim(&store, "first").await).await);
+    // Paused: not computed, though a live sweep has the point; that one has its result.
+    submit(&store, &refresh("new")).await;
+    assert!(store.pause_sweep("new", true).await.unwrap());
+    assert_eq!(claim_or_none(&store, "w").await, None);
+    // Cancelled before it began: the old result stands.
+    assert!(store.cancel_sweep("new").await.unwrap());
+    assert_eq!(states(&store, "old").await, [WorkState::Done]);
+    // Cancelled under way: likewise, as soon as the worker hears of it.
+    submit(&store, &refresh("again")).await;
+    let running = claim(&store, "second").await;
+    assert!(store.cancel_sweep("again").await.unwrap());
+    assert!(store.release(&running.lease).await.unwrap());
+    assert_eq!(states(&store, "old").await, [WorkState::Done]);
+    let record = sweep_record(&store, "old").await;
+    assert_eq!(record.counts, StateCounts { total: 1, done: 1, ..StateCounts::default() });
+    assert!(record.finished.is_some());
+    let point = point_record(&store, "old", 1).await;
+    assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
+}
+
+#[tokio::test]
+async fn a_refresh_that_fails_leaves_the_old_result_and_says_why() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("old", [1])).await;
+    assert!(finish(&store, &claim(&store, "first").await).await);
+    let error = r#"{"class":"timeout"}"#;
+    submit(&store, &refresh("timeout")).await;
+    let running = claim(&store, "second").await;
+    assert!(store.finish_failed(&running.lease, FailureClass::Timeout, error).await.unwrap());
+    let point = point_record(&store, "timeout", 1).await;
+    assert_eq!((point.state, point.error_json.as_deref()), (WorkState::Done, Some(error)));
+    assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
+
+    submit(&store, &refresh("crash")).await;
+    for _ in 0..3 {
+        assert!(store.crashed(&claim(&store, "third").await.lease, "{}").await.unwrap());
+    }
+    submit(&store, &refresh("disk")).await;
+    for round in 0..5 {
+        let later = bench.after(round * 100_000).await;
+        assert!(later.retry_later(&claim(&later, "fourth").await.lease, "{}").await.unwrap());
+    }
+    submit(&store, &refresh("silence")).await;
+    for round in 5..8 {
+        claim(&bench.after(round * 100_000).await, "fifth").await;
+    }
+    assert_eq!(bench.after(900_000).await.reap_expired().await.unwrap(), 1);
+    assert_eq!(states(&store, "old").await, [WorkState::Done]);
+    let point = point_record(&store, "old", 1).await;
+    assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
+    assert!(point.error_json.unwrap().contains("3 workers went silent"));
+}
+
+#[tokio::test]
+async fn a_refresh_begins_at_the_beginning() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("old", [1])).await;
+    let running = claim(&store, "first").await;
+    let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
+    assert!(store.keep_checkpoint(&running.lease, blob).await.unwrap());
+    assert!(store.finish_failed(&running.lease, FailureClass::Timeout, "{}").await.unwrap());
+    submit(&store, &refresh("new")).await;
+    assert_eq!(claim(&store, "second").await.checkpoint, None);
+}
+
+#[tokio::test]
+async fn only_what_is_known_is_taken_or_nothing_is_stored() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    submit(&store, &sweep("known", [1, 2, 3])).await;
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    let failing = claim(&store, "w").await;
+    assert!(store.finish_failed(&failing.lease, FailureClass::Physical, "{}").await.unwrap());
+    let only = |id: &str, numbers: &[u32]| NewSweep {
+        cache: CachePolicy::Only,
+        ..sweep(id, numbers.iter().copied())
+    };
+    let outcome = store.submit_sweep(&only("some", &[1, 3, 2, 4])).await.unwrap();
+    assert_eq!(outcome, SubmitOutcome::NotComputed(vec![2, 4]));
+    assert_eq!(store.sweep("some").await.unwrap(), None);
+    submit(&store, &only("all", &[1, 2])).await;
+    assert_eq!(states(&store, "all").await, [WorkState::Done, WorkState::Failed]);
+    // A result that is being computed anew is one all the same.
+    submit(&store, &refresh("new")).await;
+    submit(&store, &only("meanwhile", &[1])).await;
+}
+
+#[tokio::test]
+async fn sweeps_are_found_by_their_tags_and_states() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    for (id, tags) in [("a", r#"["x","y"]"#), ("b", r#"["xy"]"#), ("c", "[]")] {
+        submit(&store, &NewSweep { tags_json: tags.to_owned(), ..sweep(id, [1]) }).await;
+    }
+    assert!(store.pause_sweep("c", true).await.unwrap());
+    let found = async |filter: SweepFilter<'_>| -> Vec<String> {
+        store.sweeps(&filter, None, 10).await.unwrap().into_iter().map(|sweep| sweep.id).collect()
+    };
+    let tagged = |tag| SweepFilter { tag: Some(tag), ..SweepFilter::default() };
+    assert_eq!(found(tagged("x")).await, ["a"]);
+    assert_eq!(found(tagged("y")).await, ["a"]);
+    assert!(found(tagged("[]")).await.is_empty());
+    let state = |state| SweepFilter { state: Some(state), ..SweepFilter::default() };
+    assert_eq!(found(state("paused")).await, ["c"]);
+    assert_eq!(found(state("running")).await, ["b", "a"]);
+}

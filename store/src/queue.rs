@@ -14,7 +14,8 @@ const CRASH_LIMIT: i64 = 3;
 /// Tries that infrastructure (disk, object store, database) is given.
 const INFRASTRUCTURE_TRIES: i64 = 5;
 
-/// Wait before the first of these retries \[ms\]; it doubles each time.
+/// Least wait before the first of these retries \[ms\]; it doubles each time. Up to half as much again is added by chance,
+/// so that points which failed together, as when a disk was full, do not come back together.
 const FIRST_RETRY_MS: i64 = 5_000;
 
 /// The condition of every write of a worker: its attempt is still the current one. Parameters 2 to 4 are those of
@@ -348,7 +349,8 @@ impl Store {
                               ELSE 'waiting' END,
                  ready_at = ",
             now!(),
-            " + (?7 << failure_count),
+            // The bits without the sign's: the absolute value of the least integer is none.
+            " + (?7 << failure_count) + (random() & 0x7fffffffffffffff) % ((?7 << failure_count) / 2 + 1),
                  failure_count = failure_count + 1,
                  error = ?5, progress = 0, lease_until = NULL, changed = ",
             now!(),

@@ -97,6 +97,42 @@ fn sweep_is_cancelled_and_retried_and_its_fate_is_the_exit_status() {
 }
 
 #[test]
+fn sweep_is_paused_changed_found_extended_and_resumed() {
+    let data = tempfile::tempdir().unwrap();
+    let (_serve, server) = listen(data.path(), &["serve"]);
+    let submit = [
+        &["submit", "paper-200m", "--flow-rate", "0.01,0.03", "--tag", "campaign-7", "--detach"][..],
+        &SHORT,
+    ]
+    .concat();
+    let id = text(&server, &submit);
+    let id = id.trim();
+    assert_eq!(json(&server, &["pause", id, "--json"])["state"], "paused");
+    let found = |arguments: &[&str]| {
+        let page = json(&server, &[&["list", "--json"], arguments].concat());
+        page["sweeps"].as_array().unwrap().iter().any(|sweep| sweep["id"] == id)
+    };
+    assert!(found(&["--tag", "campaign-7", "--state", "paused"]) && !found(&["--tag", "campaign"]));
+    let changes = ["--name", "finer", "--priority", "-3", "--tag", "x", "--pin", "--expires", "90d"];
+    let sweep = json(&server, &[&["change", id, "--json"], &changes[..]].concat());
+    assert_eq!(
+        (&sweep["name"], &sweep["priority"], &sweep["tags"], &sweep["pinned"]),
+        (&json!("finer"), &json!(-3), &json!(["x"]), &json!(true))
+    );
+    let expires: jiff::Timestamp = sweep["expires"].as_str().unwrap().parse().unwrap();
+    let days = expires.duration_since(jiff::Timestamp::now()).as_hours();
+    assert!((89 * 24..=90 * 24).contains(&days), "{days}");
+    let back = ["change", id, "--name", "", "--no-tags", "--unpin", "--expires", "never", "--json"];
+    let sweep = json(&server, &back);
+    assert_eq!(sweep["pinned"], false);
+    assert!(["name", "tags", "expires"].iter().all(|name| sweep.get(name).is_none()), "{sweep}");
+    assert!(!run(&server, &["change", id]).status.success(), "nothing to change");
+    let appended = json(&server, &["append", id, "--flow-rate", "0.01:0.03:3", "--json"]);
+    assert_eq!((&appended["counts"]["total"], &appended["state"]), (&json!(3), &json!("paused")));
+    assert_eq!(json(&server, &["resume", id, "--json"])["state"], "running");
+}
+
+#[test]
 fn completions_are_what_the_shell_understands() {
     let script = text("", &["completions", "bash"]);
     assert!(script.contains("submit") && script.contains("--mud-density"));

@@ -60,6 +60,12 @@ impl Client {
         json(response)
     }
 
+    /// Changes what JSON names, and reads JSON.
+    pub(crate) fn patch(&self, path: &str, body: &Value) -> anyhow::Result<Value> {
+        let url = format!("{}{path}", self.server);
+        json(self.authorized(self.agent.patch(&url)).send_json(body).with_context(|| no_answer(&url))?)
+    }
+
     /// Reads JSON.
     pub(crate) fn get(&self, path: &str) -> anyhow::Result<Value> {
         json(self.request(path)?)

@@ -46,9 +46,17 @@ enum Command {
     /// Show a sweep with its points, or one point with its results.
     Show(sweeps::ShowArguments),
     /// Cancel a sweep: what waits at once, what runs within a heartbeat.
-    Cancel(sweeps::ChangeArguments),
+    Cancel(sweeps::SweepArguments),
     /// Queue a sweep's failed and cancelled points again.
-    Retry(sweeps::ChangeArguments),
+    Retry(sweeps::SweepArguments),
+    /// Hand out no more points of a sweep; those under way go on.
+    Pause(sweeps::SweepArguments),
+    /// Hand out the points of a paused sweep again.
+    Resume(sweeps::SweepArguments),
+    /// Change name, tags, priority, pin or expiry of a sweep.
+    Change(sweeps::ChangeArguments),
+    /// Add points to a sweep, over its own parameters; those that it has are passed over.
+    Append(submit::AppendArguments),
     /// Show the queue and the workers.
     Status(sweeps::StatusArguments),
     /// Bring a sweep's table and files.
@@ -103,6 +111,10 @@ fn main() -> anyhow::Result<()> {
         Command::Show(arguments) => sweeps::show(&arguments),
         Command::Cancel(arguments) => sweeps::cancel(&arguments),
         Command::Retry(arguments) => sweeps::retry(&arguments),
+        Command::Pause(arguments) => sweeps::pause(&arguments),
+        Command::Resume(arguments) => sweeps::resume(&arguments),
+        Command::Change(arguments) => sweeps::change(&arguments),
+        Command::Append(arguments) => submit::append(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),

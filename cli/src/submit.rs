@@ -1,4 +1,4 @@
-//! Submitting a sweep.
+//! Submitting a sweep, and adding points to one.
 
 use std::path::PathBuf;
 
@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::client::{Client, ServerArguments};
 use crate::print;
 use crate::simulate::parse_set;
+use crate::sweeps::{percent_encoded, print_sweep};
 use crate::watch::{check, follow};
 
 #[derive(Args)]
@@ -17,6 +18,47 @@ pub(crate) struct SubmitArguments {
     server: ServerArguments,
     /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
     scenario: String,
+    #[command(flatten)]
+    design: DesignArguments,
+    /// Change a field of the scenario, such as `duration=5` or `operation.rotation_speed_rpm=90`.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
+    set: Vec<(String, Value)>,
+    /// Accuracy: draft, standard or reference.
+    #[arg(long)]
+    accuracy: Option<String>,
+    /// A name for people.
+    #[arg(long)]
+    name: Option<String>,
+    /// Whose share of the workers it counts against.
+    #[arg(long, env = "DRILLSWEEP_OWNER")]
+    owner: Option<String>,
+    /// A word to find the sweep by; may be given again.
+    #[arg(long = "tag", value_name = "TAG")]
+    tags: Vec<String>,
+    /// What becomes of points that were computed before: take their results (reuse), compute them anew (refresh), or
+    /// take them and compute nothing (only).
+    #[arg(long, default_value = "reuse", value_parser = ["reuse", "refresh", "only"])]
+    cache: String,
+    /// Higher goes first among the sweeps of one owner: -10 to 10.
+    #[arg(long, allow_negative_numbers = true)]
+    priority: Option<i32>,
+    /// A text of your making: the same request under the same text is one sweep, however often it is sent.
+    #[arg(long)]
+    idempotency_key: Option<String>,
+    /// Print what the request would become, and store nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Return at once instead of watching the sweep.
+    #[arg(long)]
+    detach: bool,
+    /// Print the sweep as JSON instead of its identifier: complete, or as stored with `--detach`.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which points.
+#[derive(Args)]
+pub(crate) struct DesignArguments {
     /// Flow rates \[m3/s\]: `0.01,0.04,0.06` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
     flow_rate: Option<Value>,
@@ -36,60 +78,70 @@ pub(crate) struct SubmitArguments {
     /// What such a design is drawn from.
     #[arg(long)]
     seed: Option<u64>,
-    /// Change a field of the scenario, such as `duration=5` or `operation.rotation_speed_rpm=90`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
-    /// Accuracy: draft, standard or reference.
+    /// Points at the start of the Sobol sequence to pass over: as many as a sweep of the same seed has already.
     #[arg(long)]
-    accuracy: Option<String>,
-    /// A name for people.
-    #[arg(long)]
-    name: Option<String>,
-    /// Whose share of the workers it counts against.
-    #[arg(long, env = "DRILLSWEEP_OWNER")]
-    owner: Option<String>,
-    /// Higher goes first among the sweeps of one owner: -10 to 10.
-    #[arg(long, allow_negative_numbers = true)]
-    priority: Option<i32>,
-    /// A text of your making: the same request under the same text is one sweep, however often it is sent.
-    #[arg(long)]
-    idempotency_key: Option<String>,
-    /// Print what the request would become, and store nothing.
-    #[arg(long)]
-    dry_run: bool,
-    /// Return at once instead of watching the sweep.
-    #[arg(long)]
-    detach: bool,
-    /// Print the sweep as JSON instead of its identifier: complete, or as stored with `--detach`.
+    skip: Option<u32>,
+}
+
+#[derive(Args)]
+pub(crate) struct AppendArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    /// The sweep's identifier.
+    sweep: String,
+    #[command(flatten)]
+    design: DesignArguments,
+    /// Print the sweep as JSON.
     #[arg(long)]
     json: bool,
+}
+
+impl DesignArguments {
+    /// What a request says of its points.
+    fn request(&self) -> Map<String, Value> {
+        let mut axes = Map::new();
+        for (name, axis) in [("flow_rate", &self.flow_rate), ("mud_density", &self.mud_density)] {
+            if let Some(axis) = axis {
+                axes.insert(name.into(), axis.clone());
+            }
+        }
+        axes.extend(self.axis.iter().cloned());
+        let mut request = Map::from_iter([
+            ("axes".to_owned(), Value::Object(axes)),
+            ("design".to_owned(), json!(self.design)),
+        ]);
+        for (name, number) in [
+            ("samples", self.samples.map(u64::from)),
+            ("seed", self.seed),
+            ("skip", self.skip.map(u64::from)),
+        ] {
+            if let Some(number) = number {
+                request.insert(name.to_owned(), json!(number));
+            }
+        }
+        request
+    }
+}
+
+/// Adds points to a sweep; prints how it stands then.
+pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
+    let path = format!("/v1/sweeps/{}/points", percent_encoded(&arguments.sweep));
+    let request = Value::Object(arguments.design.request());
+    let sweep = Client::new(&arguments.server).post(&path, &request)?;
+    warn(&sweep);
+    print_sweep(&sweep, arguments.json)
 }
 
 /// Submits a sweep; watches it unless told otherwise; prints its identifier.
 pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let mut request = Map::new();
+    let mut request = arguments.design.request();
     let path = PathBuf::from(&arguments.scenario);
     if path.extension().is_some_and(|extension| extension == "toml" || extension == "json") {
         let scenario = crate::simulate::read_scenario(&arguments.scenario)?;
         request.insert("scenario".into(), serde_json::from_str(&scenario.to_json())?);
     } else {
         request.insert("preset".into(), json!(arguments.scenario));
-    }
-    let mut axes = Map::new();
-    for (name, axis) in [("flow_rate", &arguments.flow_rate), ("mud_density", &arguments.mud_density)] {
-        if let Some(axis) = axis {
-            axes.insert(name.into(), axis.clone());
-        }
-    }
-    axes.extend(arguments.axis.iter().cloned());
-    request.insert("axes".into(), Value::Object(axes));
-    request.insert("design".into(), json!(arguments.design));
-    if let Some(samples) = arguments.samples {
-        request.insert("samples".into(), json!(samples));
-    }
-    if let Some(seed) = arguments.seed {
-        request.insert("seed".into(), json!(seed));
     }
     let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
     let set: Map<String, Value> = arguments.set.iter().cloned().chain(accuracy).collect();
@@ -98,6 +150,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     }
     if let Some(priority) = arguments.priority {
         request.insert("priority".into(), json!(priority));
+    }
+    if !arguments.tags.is_empty() {
+        request.insert("tags".into(), json!(arguments.tags));
     }
     for (name, text) in [("name", &arguments.name), ("owner", &arguments.owner)] {
         if let Some(text) = text {
@@ -111,7 +166,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     }
     let key = arguments.idempotency_key.as_deref();
     let headers: Vec<(&str, &str)> = key.map(|key| ("idempotency-key", key)).into_iter().collect();
-    let sweep = client.post_with("/v1/sweeps", &request, &headers)?;
+    let sweep = client.post_with(&format!("/v1/sweeps?cache={}", arguments.cache), &request, &headers)?;
     warn(&sweep);
     let id = sweep["id"].as_str().context("the server's answer has no id")?;
     if !arguments.json {

@@ -1,14 +1,17 @@
-//! Sweeps that a server has: listing, showing, cancelling and retrying them; and how the service itself stands.
+//! Sweeps that a server has: listing, showing, changing, pausing, cancelling and retrying them; and how the service itself
+//! stands.
 
 use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_api::units::unit;
-use serde_json::{Value, json};
+use jiff::{SignedDuration, Timestamp};
+use serde_json::{Map, Value, json};
 
 use crate::client::{Client, ServerArguments};
 use crate::print;
 use crate::text::{Alignment, columns};
+use crate::token::Lifetime;
 
 #[derive(Args)]
 pub(crate) struct ListArguments {
@@ -17,6 +20,15 @@ pub(crate) struct ListArguments {
     /// Only sweeps of this owner.
     #[arg(long)]
     owner: Option<String>,
+    /// Only sweeps in this state.
+    #[arg(long, value_parser = ["running", "paused", "completed", "cancelled"])]
+    state: Option<String>,
+    /// Only sweeps with this text in their name.
+    #[arg(long)]
+    name: Option<String>,
+    /// Only sweeps with this tag.
+    #[arg(long)]
+    tag: Option<String>,
     /// At most so many, the newest first.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     limit: u32,
@@ -39,7 +51,7 @@ pub(crate) struct ShowArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct ChangeArguments {
+pub(crate) struct SweepArguments {
     #[command(flatten)]
     server: ServerArguments,
     /// The sweep's identifier.
@@ -61,8 +73,16 @@ pub(crate) struct StatusArguments {
 /// Prints the newest sweeps.
 pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     let mut path = format!("/v1/sweeps?limit={}", arguments.limit);
-    if let Some(owner) = &arguments.owner {
-        write!(path, "&owner={}", percent_encoded(owner))?;
+    let filters = [
+        ("owner", &arguments.owner),
+        ("state", &arguments.state),
+        ("name", &arguments.name),
+        ("tag", &arguments.tag),
+    ];
+    for (name, value) in filters {
+        if let Some(value) = value {
+            write!(path, "&{name}={}", percent_encoded(value))?;
+        }
     }
     let page = Client::new(&arguments.server).get(&path)?;
     if arguments.json {
@@ -80,10 +100,11 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
                 text(&sweep["created"]).chars().take("2026-01-01T00:00:00".len()).collect(),
                 text(&sweep["owner"]),
                 text(&sweep["name"]),
+                entries(&sweep["tags"]).map(text).collect::<Vec<_>>().join(" "),
             ]
         })
         .collect();
-    let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name"];
+    let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name", "tags"];
     print(&columns(&header, &rows, numbers_in(&[2, 3, 4])));
     if !page["next"].is_null() {
         print("older ones are left out; --limit shows more");
@@ -136,22 +157,102 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
 }
 
 /// Cancels a sweep.
-pub(crate) fn cancel(arguments: &ChangeArguments) -> anyhow::Result<()> {
-    change(arguments, "cancel")
+pub(crate) fn cancel(arguments: &SweepArguments) -> anyhow::Result<()> {
+    ask(arguments, "cancel")
 }
 
 /// Queues a sweep's failed and cancelled points again.
-pub(crate) fn retry(arguments: &ChangeArguments) -> anyhow::Result<()> {
-    change(arguments, "retry")
+pub(crate) fn retry(arguments: &SweepArguments) -> anyhow::Result<()> {
+    ask(arguments, "retry")
 }
 
-fn change(arguments: &ChangeArguments, verb: &str) -> anyhow::Result<()> {
+/// Hands out no more points of a sweep.
+pub(crate) fn pause(arguments: &SweepArguments) -> anyhow::Result<()> {
+    ask(arguments, "pause")
+}
+
+/// Hands out the points of a paused sweep again.
+pub(crate) fn resume(arguments: &SweepArguments) -> anyhow::Result<()> {
+    ask(arguments, "resume")
+}
+
+fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
     let path = format!("/v1/sweeps/{}/{verb}", percent_encoded(&arguments.sweep));
     let sweep = Client::new(&arguments.server).post(&path, &json!({}))?;
-    if arguments.json {
-        return print_json(&sweep);
+    print_sweep(&sweep, arguments.json)
+}
+
+#[derive(Args)]
+pub(crate) struct ChangeArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    /// The sweep's identifier.
+    sweep: String,
+    #[command(flatten)]
+    changes: Changes,
+    /// Print the sweep as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// At least one of these is given.
+#[derive(Args)]
+#[group(required = true, multiple = true)]
+struct Changes {
+    /// Its name; an empty text takes it away.
+    #[arg(long)]
+    name: Option<String>,
+    /// Higher goes first among the sweeps of one owner: -10 to 10.
+    #[arg(long, allow_negative_numbers = true)]
+    priority: Option<i32>,
+    /// A word to find the sweep by, in place of those that it has; may be given again.
+    #[arg(long = "tag", value_name = "TAG")]
+    tags: Vec<String>,
+    /// Take its tags away.
+    #[arg(long, conflicts_with = "tags")]
+    no_tags: bool,
+    /// Keep the sweep and all that belongs to it, whatever its age.
+    #[arg(long)]
+    pin: bool,
+    /// Let it expire like others.
+    #[arg(long, conflicts_with = "pin")]
+    unpin: bool,
+    /// When it is deleted, from now on: days as `90d`, hours as `12h`, or `never`.
+    #[arg(long)]
+    expires: Option<Lifetime>,
+}
+
+/// Changes name, tags, priority, pin or expiry of a sweep.
+pub(crate) fn change(arguments: &ChangeArguments) -> anyhow::Result<()> {
+    let Changes { name, priority, tags, no_tags, pin, unpin, expires } = &arguments.changes;
+    let mut patch = Map::new();
+    if let Some(name) = name {
+        patch.insert("name".into(), if name.is_empty() { Value::Null } else { json!(name) });
     }
-    print(&sweep_line(&sweep));
+    if let Some(priority) = priority {
+        patch.insert("priority".into(), json!(priority));
+    }
+    if *no_tags || !tags.is_empty() {
+        patch.insert("tags".into(), json!(tags));
+    }
+    if *pin || *unpin {
+        patch.insert("pinned".into(), json!(pin));
+    }
+    if let Some(Lifetime(milliseconds)) = expires {
+        let at = |ms| Timestamp::now().checked_add(SignedDuration::from_millis(ms));
+        patch.insert("expires".into(), json!(milliseconds.map(at).transpose()?));
+    }
+    let path = format!("/v1/sweeps/{}", percent_encoded(&arguments.sweep));
+    let sweep = Client::new(&arguments.server).patch(&path, &Value::Object(patch))?;
+    print_sweep(&sweep, arguments.json)
+}
+
+/// Prints a sweep in one line, or as JSON.
+pub(crate) fn print_sweep(sweep: &Value, as_json: bool) -> anyhow::Result<()> {
+    if as_json {
+        return print_json(sweep);
+    }
+    print(&sweep_line(sweep));
     Ok(())
 }
 

@@ -61,9 +61,9 @@ enum Scope {
     Admin,
 }
 
-/// How long a token is valid \[ms\]; none means without end.
+/// How long something lasts \[ms\]; none means without end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Lifetime(Option<i64>);
+pub(crate) struct Lifetime(pub(crate) Option<i64>);
 
 impl FromStr for Lifetime {
     type Err = String;

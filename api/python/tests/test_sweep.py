@@ -7,6 +7,7 @@ import re
 import socket
 import threading
 import zipfile
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,41 @@ def test_wait_gives_up_in_time_and_a_sweep_can_be_cancelled_and_retried(client: 
     assert long.wait(timeout=60.0).counts.cancelled == 1
     assert long.retry().counts.cancelled == 0
     long.cancel()
+
+
+def test_a_sweep_is_paused_changed_found_extended_and_resumed(client: Client) -> None:
+    # A density of its own, so that there is something to compute.
+    long = {"duration": 3600, "recording.spectrum_windows": [], "mud.density": 1234}
+    sweep = client.submit("paper-200m", set=long, axes={"flow_rate": [0.01, 0.03]}, tags={"campaign-7"})
+    assert sweep.pause().state == "paused"
+    assert [found.id for found in client.sweeps(tag="campaign-7", state="paused")] == [sweep.id]
+    sweep.change(name="finer", tags=["x", "y"], priority=-3, is_pinned=True, expires=timedelta(days=90))
+    assert (sweep.name, sweep.tags, sweep.priority, sweep.is_pinned) == ("finer", ("x", "y"), -3, True)
+    assert sweep.expires is not None
+    assert timedelta(days=89) < sweep.expires - datetime.now(timezone.utc) <= timedelta(days=90)
+    sweep.change(expires=datetime(2100, 1, 2, 3, 4, tzinfo=timezone.utc))
+    assert sweep.expires == datetime(2100, 1, 2, 3, 4, tzinfo=timezone.utc)
+    plain = sweep.change(name=None, expires=None)
+    assert (plain.name, plain.expires, plain.tags) == (None, None, ("x", "y"))
+    assert sweep.append({"flow_rate": Range(0.01, 0.03, 3)}).counts.total == 3
+    assert sweep.append(points=[{"flow_rate": 0.015}]).counts.total == 4
+    assert sweep.point(4).parameters["flow_rate"] == 0.015
+    with pytest.raises(InvalidRequest, match="must be the sweep's parameters"):
+        sweep.append({"mud_density": [1300]})
+    assert sweep.resume().state == "running"
+    sweep.cancel()
+
+
+def test_what_is_known_is_taken_or_computed_anew(client: Client, sweep: Sweep) -> None:
+    with pytest.raises(NoResult, match=r"1 of 2 points .*: 2$"):
+        client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.07]}, cache="only")
+    known = client.run("paper-200m", set={**SHORT, "mud.density": 1200}, cache="only")
+    assert known.state == "completed"
+    before = known.point(1).provenance
+    anew = client.run("paper-200m", set={**SHORT, "mud.density": 1200}, cache="refresh").wait(timeout=120.0)
+    after = anew.point(1)
+    assert after.provenance != before
+    assert after.summary == sweep.point(1).summary, "the same numbers, bit for bit"
 
 
 def test_everything_wrong_with_a_request_is_told_by_field(client: Client) -> None:

@@ -9,12 +9,12 @@ import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, SupportsFloat
+from typing import Any, Literal, SupportsFloat
 from urllib.parse import quote
 
 import httpx
 
-from drillsweep.design import axis_to_json
+from drillsweep.design import axes_to_json, design_to_json
 from drillsweep.problem import NoAnswer, problem
 from drillsweep.sweep import Plan, Sweep
 
@@ -68,6 +68,8 @@ class Client:
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
+        tags: Iterable[str] | None = None,
+        cache: Literal["reuse", "refresh", "only"] | None = None,
         idempotency_key: str | None = None,
         **fields: Any,
     ) -> Sweep:
@@ -88,16 +90,20 @@ class Client:
             name: A name for people.
             owner: Whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
+            tags: Words to find it by.
+            cache: What becomes of points that were computed before: `reuse` takes their results (the default),
+                `refresh` computes them anew, `only` takes them and computes nothing.
             idempotency_key: The same request under the same key is one sweep, however often and from wherever it is
                 sent; absent means a new sweep each call.
             fields: Any other field of the service's request.
 
         Raises:
             InvalidRequest: With everything that is wrong with it, by field.
+            NoResult: Under `cache="only"`, where points have not been computed; the text names them.
         """
-        fields |= _design(design, samples, seed, points)
-        body = _request(preset, scenario, set, axes, name, owner, priority, fields)
-        return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key))
+        fields |= design_to_json(design, samples, seed, points)
+        body = _request(preset, scenario, set, axes, name, owner, priority, tags, fields)
+        return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key, cache))
 
     def run(
         self,
@@ -108,12 +114,14 @@ class Client:
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
+        tags: Iterable[str] | None = None,
+        cache: Literal["reuse", "refresh", "only"] | None = None,
         idempotency_key: str | None = None,
         **fields: Any,
     ) -> Sweep:
         """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
-        body = _request(preset, scenario, set, None, name, owner, priority, fields)
-        return Sweep(self, self._submit("/v1/runs", body, idempotency_key))
+        body = _request(preset, scenario, set, None, name, owner, priority, tags, fields)
+        return Sweep(self, self._submit("/v1/runs", body, idempotency_key, cache))
 
     def plan(
         self,
@@ -129,17 +137,17 @@ class Client:
         **fields: Any,
     ) -> Plan:
         """What a sweep would become, without storing anything. Arguments are those of `submit`."""
-        fields |= _design(design, samples, seed, points)
-        body = _request(preset, scenario, set, axes, None, None, None, fields)
+        fields |= design_to_json(design, samples, seed, points)
+        body = _request(preset, scenario, set, axes, None, None, None, None, fields)
         return Plan.from_json(self.post_json("/v1/sweeps", body, {"dry_run": "true"}))
 
     def sweep(self, id: str) -> Sweep:
         """A sweep that is there."""
         return Sweep(self, self.get_json(f"/v1/sweeps/{_segment(id)}"))
 
-    def sweeps(self, *, owner: str | None = None, **filters: Any) -> Iterator[Sweep]:
-        """All sweeps, newest first; those of one owner, or that pass the service's other filters."""
-        for data in self.pages("/v1/sweeps", "sweeps", {"owner": owner, **filters}):
+    def sweeps(self, *, owner: str | None = None, tag: str | None = None, **filters: Any) -> Iterator[Sweep]:
+        """All sweeps, newest first; those of one owner, with a tag, or that pass the service's other filters."""
+        for data in self.pages("/v1/sweeps", "sweeps", {"owner": owner, "tag": tag, **filters}):
             yield Sweep(self, data)
 
     def scenarios(self) -> dict[str, str]:
@@ -178,6 +186,10 @@ class Client:
     ) -> dict[str, Any]:
         """Posts JSON and reads JSON."""
         return dict(self._send("POST", path, query=query, body=body, headers=headers).json())
+
+    def patch_json(self, path: str, body: Mapping[str, Any]) -> dict[str, Any]:
+        """Sends a change as JSON and reads JSON."""
+        return dict(self._send("PATCH", path, body=body).json())
 
     def pages(self, path: str, entries: str, query: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """The entries of a list that is served in pages."""
@@ -259,9 +271,9 @@ class Client:
         """Closes the connections."""
         self.close()
 
-    def _submit(self, path: str, body: Mapping[str, Any], key: str | None) -> dict[str, Any]:
+    def _submit(self, path: str, body: Mapping[str, Any], key: str | None, cache: str | None) -> dict[str, Any]:
         # With a key of its own every submission can be sent again when the answer got lost.
-        return self.post_json(path, body, headers={"idempotency-key": key or str(uuid.uuid4())})
+        return self.post_json(path, body, {"cache": cache}, {"idempotency-key": key or str(uuid.uuid4())})
 
     def _send(
         self,
@@ -312,18 +324,6 @@ def _event_fields(lines: Iterator[str]) -> Iterator[dict[str, str]]:
             fields = {}
 
 
-def _design(
-    design: str | None,
-    samples: int | None,
-    seed: int | None,
-    points: Iterable[Mapping[str, SupportsFloat]] | None,
-) -> dict[str, Any]:
-    listed = None if points is None else [{name: float(value) for name, value in point.items()} for point in points]
-    if listed is not None and design is None:
-        design = "list"
-    return {"design": design, "samples": samples, "seed": seed, "points": listed}
-
-
 def _request(
     preset: str | None,
     scenario: Mapping[str, Any] | None,
@@ -332,16 +332,18 @@ def _request(
     name: str | None,
     owner: str | None,
     priority: int | None,
+    tags: Iterable[str] | None,
     fields: Mapping[str, Any],
 ) -> dict[str, Any]:
     body: dict[str, Any] = {
         "preset": preset,
         "scenario": scenario,
         "set": None if changes is None else {path: _plain(value) for path, value in changes.items()},
-        "axes": None if axes is None else {axis: axis_to_json(values) for axis, values in axes.items()},
+        "axes": axes_to_json(axes),
         "name": name,
         "owner": owner,
         "priority": priority,
+        "tags": None if tags is None else list(tags),
         **fields,
     }
     return {field: value for field, value in body.items() if value is not None}

@@ -1,4 +1,4 @@
-"""What a sweep asks for: the values of its axes."""
+"""What a sweep asks for: its points, made from the values of its axes."""
 
 from __future__ import annotations
 
@@ -36,3 +36,21 @@ def axis_to_json(axis: Axis) -> dict[str, Any]:
     if isinstance(axis, Mapping):
         return dict(axis)
     return {"values": [float(value) for value in axis]}
+
+
+def axes_to_json(axes: Mapping[str, Axis] | None) -> dict[str, Any] | None:
+    """Axes by name as the service takes them."""
+    return None if axes is None else {name: axis_to_json(axis) for name, axis in axes.items()}
+
+
+def design_to_json(
+    design: str | None,
+    samples: int | None,
+    seed: int | None,
+    points: Iterable[Mapping[str, SupportsFloat]] | None,
+) -> dict[str, Any]:
+    """How points are made, as the service takes it; what is None says nothing."""
+    listed = None if points is None else [{name: float(value) for name, value in point.items()} for point in points]
+    if listed is not None and design is None:
+        design = "list"
+    return {"design": design, "samples": samples, "seed": seed, "points": listed}

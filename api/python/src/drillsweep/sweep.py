@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta, timezone
+from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
+from drillsweep.design import Axis, axes_to_json, design_to_json
 from drillsweep.point import Point
 from drillsweep.problem import FieldProblem
 from drillsweep.progress import ProgressBar, is_watched
@@ -20,6 +22,16 @@ if TYPE_CHECKING:
 
 _LONG_POLL = 30.0
 """Seconds for which the service holds an answer back until something changes."""
+
+
+class Unchanged(Enum):
+    """The kind of `UNCHANGED`."""
+
+    UNCHANGED = "unchanged"
+
+
+UNCHANGED = Unchanged.UNCHANGED
+"""What a change leaves as it is, where None means something else."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +102,29 @@ class Sweep:
         return str(self._data["owner"])
 
     @property
+    def tags(self) -> tuple[str, ...]:
+        """Words to find it by."""
+        return tuple(self._data.get("tags", ()))
+
+    @property
+    def priority(self) -> int:
+        """Higher goes first among the sweeps of one owner."""
+        return int(self._data["priority"])
+
+    @property
+    def is_pinned(self) -> bool:
+        """Whether it, and all that belongs to it, is kept whatever its age."""
+        return bool(self._data["pinned"])
+
+    @property
+    def expires(self) -> datetime | None:
+        """When it is to be deleted; None is never."""
+        text = self._data.get("expires")
+        return None if text is None else _time(text)
+
+    @property
     def state(self) -> str:
-        """Where it stands as a whole, such as `running`, `completed` or `cancelled`."""
+        """Where it stands as a whole: `running`, `paused`, `completed` or `cancelled`."""
         return str(self._data["state"])
 
     @property
@@ -219,13 +252,76 @@ class Sweep:
 
     def cancel(self) -> Sweep:
         """Cancels it: points that wait at once, points under way within a heartbeat of their worker."""
-        return self._change("cancel")
+        return self._ask("cancel")
 
     def retry(self) -> Sweep:
         """Queues its failed and cancelled points again."""
-        return self._change("retry")
+        return self._ask("retry")
 
-    def _change(self, verb: str) -> Sweep:
+    def pause(self) -> Sweep:
+        """Hands out no more of its points, but for those that another sweep wants; points under way go on."""
+        return self._ask("pause")
+
+    def resume(self) -> Sweep:
+        """Hands out its points again after a pause."""
+        return self._ask("resume")
+
+    def change(
+        self,
+        *,
+        name: str | Unchanged | None = UNCHANGED,
+        tags: Iterable[str] | Unchanged = UNCHANGED,
+        priority: int | Unchanged = UNCHANGED,
+        is_pinned: bool | Unchanged = UNCHANGED,
+        expires: datetime | timedelta | Unchanged | None = UNCHANGED,
+    ) -> Sweep:
+        """Changes what is given, and leaves the rest.
+
+        Args:
+            name: A name for people; None takes it away.
+            tags: Words to find it by, in place of those that it has.
+            priority: Higher goes first among the sweeps of one owner, -10 to 10.
+            is_pinned: Whether it, and all that belongs to it, is kept whatever its age.
+            expires: When it is to be deleted, once all its points are final and unless it is pinned: a time, a span
+                from now, or None for never. A time without a zone is this machine's.
+        """
+        if isinstance(expires, timedelta):
+            expires = datetime.now(timezone.utc) + expires
+        if isinstance(expires, datetime):
+            moment: Any = expires.astimezone(timezone.utc).isoformat()
+        else:
+            moment = expires
+        changes = {
+            "name": name,
+            "tags": tags if isinstance(tags, Unchanged) else list(tags),
+            "priority": priority,
+            "pinned": is_pinned,
+            "expires": moment,
+        }
+        body = {field: value for field, value in changes.items() if not isinstance(value, Unchanged)}
+        self._data = self._client.patch_json(self.path, body)
+        return self
+
+    def append(
+        self,
+        axes: Mapping[str, Axis] | None = None,
+        *,
+        design: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
+        **fields: Any,
+    ) -> Sweep:
+        """Adds points over its own parameters, by any design; those that it has already are passed over.
+
+        Arguments are those of `Client.submit`. Numbers of points go on from the last.
+        """
+        body = {"axes": axes_to_json(axes), **design_to_json(design, samples, seed, points), **fields}
+        body = {field: value for field, value in body.items() if value is not None}
+        self._data = self._client.post_json(f"{self.path}/points", body)
+        return self
+
+    def _ask(self, verb: str) -> Sweep:
         self._data = self._client.post_json(f"{self.path}/{verb}", {})
         return self
 

@@ -133,6 +133,22 @@ fn sweep_is_paused_changed_found_extended_and_resumed() {
 }
 
 #[test]
+fn points_that_were_given_up_are_listed() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "1"]);
+    // Without its wall the string is buckled by the weight on bit.
+    let buckled = ["submit", "paper-200m", "--set", "effects.contact=off", "--detach"];
+    let id = text(&server, &[&buckled[..], &SHORT].concat());
+    let id = id.trim();
+    assert!(!run(&server, &["watch", id]).status.success());
+    let page = json(&server, &["failures", "--class", "physical", "--json"]);
+    assert_eq!(page["failures"][0]["sweep"], id);
+    let shown = text(&server, &["failures"]);
+    assert!(shown.lines().nth(1).unwrap().contains("no equilibrium"), "{shown}");
+    assert_eq!(json(&server, &["failures", "--owner", "nobody", "--json"])["failures"], json!([]));
+}
+
+#[test]
 fn completions_are_what_the_shell_understands() {
     let script = text("", &["completions", "bash"]);
     assert!(script.contains("submit") && script.contains("--mud-density"));

@@ -88,6 +88,33 @@ impl PointRow {
         ["ordinal", "state", "parameters", "progress", "attempts", "error", "links"];
 }
 
+/// A point that was given up, in the list over all sweeps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Failure {
+    /// Identifier of its sweep.
+    pub sweep: String,
+    /// The name given to the sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep_name: Option<String>,
+    /// Whose sweep it is.
+    pub owner: String,
+    /// When it was given up.
+    pub at: Timestamp,
+    /// The point as in the list of its sweep.
+    #[serde(flatten)]
+    pub point: PointRow,
+}
+
+/// A page of points that were given up, the latest first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FailureList {
+    /// The points.
+    pub failures: Vec<Failure>,
+    /// Cursor of the next page; absent on the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+}
+
 /// The files of a point's result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ArtifactList {
@@ -168,6 +195,19 @@ pub enum FailureClass {
     Timeout,
     /// It was cancelled while it ran.
     Cancelled,
+}
+
+impl FailureClass {
+    /// The name on the wire.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            FailureClass::Physical => "physical",
+            FailureClass::Infrastructure => "infrastructure",
+            FailureClass::Crash => "crash",
+            FailureClass::Timeout => "timeout",
+            FailureClass::Cancelled => "cancelled",
+        }
+    }
 }
 
 /// Where to read more about a point.

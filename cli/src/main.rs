@@ -57,6 +57,8 @@ enum Command {
     Change(sweeps::ChangeArguments),
     /// Add points to a sweep, over its own parameters; those that it has are passed over.
     Append(submit::AppendArguments),
+    /// List the points of all sweeps that were given up, the latest first.
+    Failures(sweeps::FailuresArguments),
     /// Show the queue and the workers.
     Status(sweeps::StatusArguments),
     /// Bring a sweep's table and files.
@@ -115,6 +117,7 @@ fn main() -> anyhow::Result<()> {
         Command::Resume(arguments) => sweeps::resume(&arguments),
         Command::Change(arguments) => sweeps::change(&arguments),
         Command::Append(arguments) => submit::append(&arguments),
+        Command::Failures(arguments) => sweeps::failures(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),

@@ -38,6 +38,24 @@ pub(crate) struct ListArguments {
 }
 
 #[derive(Args)]
+pub(crate) struct FailuresArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    /// Only points of sweeps of this owner.
+    #[arg(long)]
+    owner: Option<String>,
+    /// Only points that failed in this way.
+    #[arg(long, value_parser = ["physical", "infrastructure", "crash", "timeout", "cancelled"])]
+    class: Option<String>,
+    /// At most so many, the latest first.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
+    limit: u32,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Args)]
 pub(crate) struct ShowArguments {
     #[command(flatten)]
     server: ServerArguments,
@@ -72,18 +90,13 @@ pub(crate) struct StatusArguments {
 
 /// Prints the newest sweeps.
 pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
-    let mut path = format!("/v1/sweeps?limit={}", arguments.limit);
     let filters = [
         ("owner", &arguments.owner),
         ("state", &arguments.state),
         ("name", &arguments.name),
         ("tag", &arguments.tag),
     ];
-    for (name, value) in filters {
-        if let Some(value) = value {
-            write!(path, "&{name}={}", percent_encoded(value))?;
-        }
-    }
+    let path = with_filters(format!("/v1/sweeps?limit={}", arguments.limit), &filters);
     let page = Client::new(&arguments.server).get(&path)?;
     if arguments.json {
         return print_json(&page);
@@ -97,7 +110,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
                 text(&counts["total"]),
                 text(&counts["succeeded"]),
                 text(&counts["failed"]),
-                text(&sweep["created"]).chars().take("2026-01-01T00:00:00".len()).collect(),
+                seconds(&sweep["created"]),
                 text(&sweep["owner"]),
                 text(&sweep["name"]),
                 entries(&sweep["tags"]).map(text).collect::<Vec<_>>().join(" "),
@@ -106,6 +119,34 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
         .collect();
     let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name", "tags"];
     print(&columns(&header, &rows, numbers_in(&[2, 3, 4])));
+    if !page["next"].is_null() {
+        print("older ones are left out; --limit shows more");
+    }
+    Ok(())
+}
+
+/// Prints the points of all sweeps that were given up.
+pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
+    let filters = [("owner", &arguments.owner), ("class", &arguments.class)];
+    let path = with_filters(format!("/v1/failures?limit={}", arguments.limit), &filters);
+    let page = Client::new(&arguments.server).get(&path)?;
+    if arguments.json {
+        return print_json(&page);
+    }
+    let rows: Vec<Vec<String>> = entries(&page["failures"])
+        .map(|point| {
+            vec![
+                seconds(&point["at"]),
+                text(&point["sweep"]),
+                text(&point["ordinal"]),
+                text(&point["attempts"]),
+                text(&point["error"]["class"]),
+                text(&point["error"]["reason"]),
+            ]
+        })
+        .collect();
+    let header = ["given up (UTC)", "sweep", "point", "attempts", "class", "error"];
+    print(&columns(&header, &rows, numbers_in(&[2, 3])));
     if !page["next"].is_null() {
         print("older ones are left out; --limit shows more");
     }
@@ -339,6 +380,21 @@ fn text(value: &Value) -> String {
         Value::String(text) => text.clone(),
         value => value.to_string(),
     }
+}
+
+/// A time to within the second.
+fn seconds(time: &Value) -> String {
+    text(time).chars().take("2026-01-01T00:00:00".len()).collect()
+}
+
+/// A path with the filters of a list that are given.
+fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String {
+    for (name, value) in filters {
+        if let Some(value) = value {
+            let _ = write!(path, "&{name}={}", percent_encoded(value));
+        }
+    }
+    path
 }
 
 /// A text as part of a path or query.

@@ -2,11 +2,12 @@
 
 use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::{
-    Expansion, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
+    Expansion, Failure, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
     ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, compose, key_text,
 };
 use drillsweep_store::{
-    CachePolicy, NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord, TableRecord, WorkState,
+    CachePolicy, FailureRecord, NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord,
+    TableRecord, WorkState,
 };
 use indexmap::IndexMap;
 use jiff::Timestamp;
@@ -110,6 +111,17 @@ pub(crate) fn point_row(sweep: &str, record: &PointRecord) -> Result<PointRow> {
         attempts: record.attempts.unsigned_abs(),
         error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
         links: PointLinks::new(sweep, ordinal(record.ordinal)?),
+    })
+}
+
+/// A point in the list of those that were given up.
+pub(crate) fn failure(record: &FailureRecord) -> Result<Failure> {
+    Ok(Failure {
+        sweep: record.sweep_id.clone(),
+        sweep_name: record.sweep_name.clone(),
+        owner: record.owner.clone(),
+        at: timestamp(record.at)?,
+        point: point_row(&record.sweep_id, &record.point)?,
     })
 }
 

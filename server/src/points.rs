@@ -3,7 +3,10 @@
 use axum::Json;
 use axum::extract::State;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::{PointDetail, PointList, PointRow, PointState, SelectedPointList};
+use drillsweep_api::{
+    FailureClass, FailureList, PointDetail, PointList, PointRow, PointState, SelectedPointList,
+};
+use drillsweep_store::{FailureFilter, FailurePlace};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::IntoParams;
@@ -89,6 +92,68 @@ fn select(row: &PointRow, fields: &[String]) -> Result<Map<String, Value>> {
         Err(error) => return Err(Error::internal(&error)),
     };
     Ok(fields.iter().filter_map(|name| Some((name.clone(), whole.remove(name)?))).collect())
+}
+
+/// Which failures are listed.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FailuresQuery {
+    /// Only points of sweeps of this owner.
+    owner: Option<String>,
+    /// Only points that failed in this way.
+    #[param(inline)]
+    class: Option<FailureClass>,
+    /// Entries in a page; absent means 50.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1, maximum = 500)]
+    limit: Option<u32>,
+    /// `next` of the page before.
+    cursor: Option<String>,
+}
+
+/// The points of all sweeps that were given up, the latest first
+///
+/// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
+/// of a sweep again.
+#[utoipa::path(
+    get,
+    path = "/v1/failures",
+    tag = "points",
+    operation_id = "list_failures",
+    params(FailuresQuery),
+    responses((status = 200, description = "A page of points", body = FailureList), Problems)
+)]
+pub(crate) async fn failures(
+    State(app): State<App>,
+    Query(query): Query<FailuresQuery>,
+) -> Result<Json<FailureList>> {
+    let limit = extract::page_size(query.limit)?;
+    let after = query.cursor.as_deref().map(failure_place).transpose()?;
+    let filter =
+        FailureFilter { owner: query.owner.as_deref(), class: query.class.map(FailureClass::as_str) };
+    // One more than asked for tells whether there is a next page.
+    let mut records = app.store.failures(&filter, after.as_ref(), i64::from(limit) + 1).await?;
+    let is_last = records.len() <= limit as usize;
+    records.truncate(limit as usize);
+    let next = records.last().filter(|_| !is_last).map(|record| {
+        let FailurePlace { at, sweep_id, ordinal } = record.place();
+        format!("{at}.{ordinal}.{sweep_id}")
+    });
+    let failures = records.iter().map(convert::failure).collect::<Result<_>>()?;
+    Ok(Json(FailureList { failures, next }))
+}
+
+fn failure_place(cursor: &str) -> Result<FailurePlace> {
+    let mut parts = cursor.splitn(3, '.');
+    let mut number = || parts.next().and_then(|part| part.parse().ok());
+    let (at, ordinal) = (number(), number());
+    match (at, ordinal, parts.next()) {
+        (Some(at), Some(ordinal), Some(sweep)) => {
+            Ok(FailurePlace { at, sweep_id: sweep.to_owned(), ordinal })
+        }
+        _ => Err(Error::parameter("cursor", Some(cursor), "must be `next` of the page before")),
+    }
 }
 
 /// One point: state, parameters, summary, provenance

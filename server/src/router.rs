@@ -43,6 +43,7 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::create_run))
         .routes(routes!(points::list, sweeps::append))
         .routes(routes!(points::show))
+        .routes(routes!(points::failures))
         .routes(routes!(files::list))
         .routes(routes!(files::show))
         .routes(routes!(results::profile))

@@ -73,7 +73,7 @@ pub struct Artifact {
 }
 
 #[derive(FromRow)]
-struct PointRow {
+pub(crate) struct PointRow {
     ordinal: i64,
     parameters: String,
     key: Vec<u8>,
@@ -213,7 +213,7 @@ impl Store {
 }
 
 impl PointRow {
-    fn record(self) -> Result<PointRecord> {
+    pub(crate) fn record(self) -> Result<PointRecord> {
         Ok(PointRecord {
             ordinal: self.ordinal,
             parameters_json: self.parameters,

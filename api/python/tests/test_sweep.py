@@ -148,6 +148,9 @@ def test_failed_point_says_why(client: Client) -> None:
     assert "no equilibrium" in point.error.reason
     assert point.error.node is not None
     assert point.summary is None
+    latest = next(client.failures(kind="physical"))
+    assert (latest.path, latest.error) == (point.path, point.error)
+    assert list(client.failures(kind="physical", owner="nobody")) == []
 
 
 def test_a_plan_stores_nothing(client: Client, sweep: Sweep) -> None:

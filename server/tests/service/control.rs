@@ -136,3 +136,37 @@ async fn the_cache_is_used_refreshed_or_all_there_is() {
     assert_eq!(bench.get(&format!("/v1/sweeps/{first}")).await.json()["state"], "completed");
     bench.post("/v1/sweeps?cache=none", body).await.problem(400, "invalid-parameter");
 }
+
+#[tokio::test]
+async fn what_was_given_up_is_listed_over_all_sweeps() {
+    let bench = Bench::new().await;
+    let mut ids = Vec::new();
+    for (owner, flow_rate) in [("anne", 0.01), ("bert", 0.02)] {
+        let body = json!({"preset": "paper-200m", "owner": owner, "set": {"mud.flow_rate": flow_rate}});
+        ids.push(bench.submit(body).await);
+        bench.diverge().await;
+    }
+    let page = bench.get("/v1/failures").await.json();
+    assert_eq!(page["failures"].as_array().unwrap().len(), 2);
+    let path = "/v1/failures?owner=bert&class=physical&limit=1";
+    let page = bench.get(path).await.json();
+    let failure = &page["failures"][0];
+    assert_eq!(
+        (&failure["sweep"], &failure["owner"], &failure["ordinal"], &failure["error"]["node"]),
+        (&json!(ids[1]), &json!("bert"), &json!(1), &json!(49))
+    );
+    assert_eq!(failure["links"]["self"], format!("/v1/sweeps/{}/points/1", ids[1]));
+    assert!(page.get("next").is_none());
+    assert_eq!(bench.get("/v1/failures?class=crash").await.json()["failures"], json!([]));
+
+    let first = bench.get("/v1/failures?limit=1").await.json();
+    let next = first["next"].as_str().unwrap();
+    let second = bench.get(&format!("/v1/failures?limit=1&cursor={next}")).await.json();
+    let seen: std::collections::BTreeSet<_> =
+        [&first, &second].map(|page| page["failures"][0]["sweep"].as_str().unwrap()).into();
+    assert_eq!(seen, ids.iter().map(String::as_str).collect());
+    assert!(second.get("next").is_none());
+    for query in ["cursor=1", "cursor=x.1.y", "class=unlucky", "limit=501"] {
+        bench.get(&format!("/v1/failures?{query}")).await.problem(400, "invalid-parameter");
+    }
+}

@@ -48,6 +48,7 @@ fn every_route_is_documented() {
         "post /v1/sweeps/{id}/resume",
         "post /v1/sweeps/{id}/points",
         "get /v1/sweeps/{id}/points",
+        "get /v1/failures",
         "get /v1/sweeps/{id}/table",
         "get /v1/sweeps/{id}/events",
         "get /v1/sweeps/{id}/export",

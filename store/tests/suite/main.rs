@@ -10,6 +10,7 @@ mod check;
 mod concurrency;
 mod control;
 mod counts;
+mod failure;
 mod fairness;
 mod lease;
 mod probe;

@@ -15,6 +15,7 @@ from urllib.parse import quote
 import httpx
 
 from drillsweep.design import axes_to_json, design_to_json
+from drillsweep.point import Point
 from drillsweep.problem import NoAnswer, problem
 from drillsweep.sweep import Plan, Sweep
 
@@ -149,6 +150,11 @@ class Client:
         """All sweeps, newest first; those of one owner, with a tag, or that pass the service's other filters."""
         for data in self.pages("/v1/sweeps", "sweeps", {"owner": owner, "tag": tag, **filters}):
             yield Sweep(self, data)
+
+    def failures(self, *, owner: str | None = None, kind: str | None = None) -> Iterator[Point]:
+        """Points of all sweeps that were given up, the latest first; of one owner, or of one `PointError.kind`."""
+        for data in self.pages("/v1/failures", "failures", {"owner": owner, "class": kind}):
+            yield Point(self, data)
 
     def scenarios(self) -> dict[str, str]:
         """Names and descriptions of the preset scenarios."""

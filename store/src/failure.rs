@@ -1,0 +1,107 @@
+//! What was given up, over all sweeps.
+
+use sqlx::FromRow;
+
+use crate::connection::Store;
+use crate::error::Result;
+use crate::point::{PointRecord, PointRow};
+
+/// A point that was given up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailureRecord {
+    /// The sweep.
+    pub sweep_id: String,
+    /// The sweep's name.
+    pub sweep_name: Option<String>,
+    /// Whose sweep it is.
+    pub owner: String,
+    /// When it was given up \[ms since the epoch\].
+    pub at: i64,
+    /// The point, without scenario and result.
+    pub point: PointRecord,
+}
+
+/// Which failures are listed; what is absent lets all through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FailureFilter<'a> {
+    /// Of sweeps of this owner.
+    pub owner: Option<&'a str>,
+    /// Whose error is of this class.
+    pub class: Option<&'a str>,
+}
+
+/// Where a page of failures ends: the next one goes on after it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FailurePlace {
+    /// As in [`FailureRecord::at`].
+    pub at: i64,
+    /// The sweep.
+    pub sweep_id: String,
+    /// The point's number in it.
+    pub ordinal: i64,
+}
+
+impl FailureRecord {
+    /// Its place in the list.
+    pub fn place(&self) -> FailurePlace {
+        FailurePlace { at: self.at, sweep_id: self.sweep_id.clone(), ordinal: self.point.ordinal }
+    }
+}
+
+#[derive(FromRow)]
+struct Row {
+    sweep_id: String,
+    sweep_name: Option<String>,
+    owner: String,
+    changed: i64,
+    #[sqlx(flatten)]
+    point: PointRow,
+}
+
+impl Store {
+    /// Points that failed or were given up as dead, of all sweeps that are kept, the latest first; `limit` of them after
+    /// a place in the list.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn failures(
+        &self,
+        filter: &FailureFilter<'_>,
+        after: Option<&FailurePlace>,
+        limit: i64,
+    ) -> Result<Vec<FailureRecord>> {
+        let start = FailurePlace { at: i64::MAX, sweep_id: String::new(), ordinal: 0 };
+        let after = after.unwrap_or(&start);
+        // An explicit order of the tables: the failures are few, and the index has them in this order. An error that is not
+        // JSON has no class.
+        let rows: Vec<Row> = sqlx::query_as(
+            "SELECT s.id AS sweep_id, s.name AS sweep_name, s.owner, w.changed,
+                    p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
+                    w.error, NULL AS summary, NULL AS provenance
+             FROM work w CROSS JOIN point p ON p.work_key = w.key CROSS JOIN sweep s ON s.id = p.sweep_id
+             WHERE w.state IN ('failed', 'dead') AND w.changed <= ?1 AND (w.changed, s.id, p.ordinal) < (?1, ?2, ?3)
+               AND (?4 IS NULL OR s.owner = ?4)
+               AND (?5 IS NULL OR ?5 = CASE WHEN json_valid(w.error) THEN json_extract(w.error, '$.class') END)
+             ORDER BY w.changed DESC, s.id DESC, p.ordinal DESC LIMIT ?6",
+        )
+        .bind(after.at)
+        .bind(&after.sweep_id)
+        .bind(after.ordinal)
+        .bind(filter.owner)
+        .bind(filter.class)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.into_iter()
+            .map(|row| {
+                Ok(FailureRecord {
+                    sweep_id: row.sweep_id,
+                    sweep_name: row.sweep_name,
+                    owner: row.owner,
+                    at: row.changed,
+                    point: row.point.record()?,
+                })
+            })
+            .collect()
+    }
+}

@@ -64,6 +64,7 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
         sweeps,
         results,
         artifacts,
+        scenarios,
         events,
         blobs,
         blob_bytes,
@@ -76,6 +77,7 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
             "sweeps": sweeps,
             "results": results,
             "artifacts": artifacts,
+            "scenarios": scenarios,
             "events": events,
             "blobs": blobs,
             "blob_bytes": blob_bytes,
@@ -87,7 +89,7 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
     }
     let verb = if arguments.dry_run { "would be deleted" } else { "deleted" };
     print(&format!(
-        "{verb}: {sweeps} sweeps, {results} results, {artifacts} artifacts, {events} events\n\
+        "{verb}: {sweeps} sweeps, {results} results, {artifacts} artifacts, {scenarios} scenarios, {events} events\n\
          {blobs} blobs of {:.1} MB, {unfinished_uploads} unfinished uploads of {:.1} MB",
         blob_bytes as f64 * 1e-6,
         unfinished_bytes as f64 * 1e-6

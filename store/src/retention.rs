@@ -45,6 +45,8 @@ pub struct Garbage {
     pub results: u64,
     /// Artifacts that reached their age; their results keep their summaries.
     pub artifacts: u64,
+    /// Scenarios that no work was left of.
+    pub scenarios: u64,
     /// Events.
     pub events: u64,
     /// Blobs.
@@ -79,6 +81,7 @@ impl Store {
             .await?;
         garbage.sweeps = delete_expired_sweeps(&mut tx, now).await?;
         garbage.results = delete_unwanted_work(&mut tx).await?;
+        garbage.scenarios = delete_unused_scenarios(&mut tx).await?;
         garbage.artifacts = expire_artifacts(&mut tx, policy, now).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
         let named: HashSet<String> = sqlx::query_scalar(concat!("SELECT blob FROM (", blobs_in_use!(), ")"))
@@ -163,6 +166,16 @@ async fn delete_unwanted_work(tx: &mut Transaction<'static, Sqlite>) -> Result<u
     Ok(results)
 }
 
+/// Bases that no work changes any more.
+async fn delete_unused_scenarios(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
+    Ok(sqlx::query(
+        "DELETE FROM scenario WHERE NOT EXISTS (SELECT 1 FROM work WHERE work.base = scenario.hash)",
+    )
+    .execute(&mut **tx)
+    .await?
+    .rows_affected())
+}
+
 /// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
 async fn expire_artifacts(
     tx: &mut Transaction<'static, Sqlite>,
@@ -191,7 +204,7 @@ async fn expire_artifacts(
     Ok(expired)
 }
 
-/// Events, idempotency keys and workers that nobody will ask for; tells the number of events.
+/// Events, idempotency keys, workers and owners' turns that nobody will ask for; tells the number of events.
 async fn delete_old_rows(
     tx: &mut Transaction<'static, Sqlite>,
     policy: &RetentionPolicy,
@@ -208,6 +221,13 @@ async fn delete_old_rows(
     ] {
         sqlx::query(query).bind(now - age).execute(&mut **tx).await?;
     }
+    // Who comes back begins as one who was idle, and idle time is not saved up.
+    sqlx::query(
+        "DELETE FROM owner_turn WHERE NOT EXISTS (
+             SELECT 1 FROM work WHERE work.owner = owner_turn.owner AND state IN ('waiting', 'queued', 'leased'))",
+    )
+    .execute(&mut **tx)
+    .await?;
     Ok(events)
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use drillsweep_store::{Garbage, RetentionPolicy, Role, Store, StoreError, SweepChanges};
+use drillsweep_store::{Garbage, NewSweep, RetentionPolicy, Role, Store, StoreError, SweepChanges};
 
 use crate::bench::{Bench, claim, finish, key, point_record, submit, sweep};
 
@@ -113,21 +113,27 @@ async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
     let bench = Bench::new();
     let store = bench.open().await;
     submit(&store, &sweep("goes", [1, 2])).await;
+    submit(&store, &sweep("goes too", [3])).await;
     submit(&store, &sweep("stays", [2])).await;
     submit(&store, &sweep("unfinished", [9])).await;
-    assert!(finish(&store, &claim(&store, "w").await).await);
-    assert!(finish(&store, &claim(&store, "w").await).await);
+    for _ in 0..3 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
     let now = store.now_ms().await.unwrap();
-    for id in ["goes", "unfinished"] {
+    for id in ["goes", "goes too", "unfinished"] {
         let changes = SweepChanges { expires: Some(Some(now + DAY_MS)), ..SweepChanges::default() };
         assert!(store.change_sweep(id, &changes).await.unwrap());
     }
-    assert_eq!(collect(&bench.after(DAY_MS / 2).await).await.sweeps, 0);
+    // The scenario of "stays" is not in use: its point was there, by that of "goes".
+    let found = collect(&bench.after(DAY_MS / 2).await).await;
+    assert_eq!((found.sweeps, found.scenarios), (0, 1));
     let found = collect(&bench.after(2 * DAY_MS).await).await;
-    assert_eq!((found.sweeps, found.results, found.blobs), (1, 1, 1));
+    assert_eq!((found.sweeps, found.results, found.scenarios, found.blobs), (2, 2, 1, 2));
     assert_eq!(store.sweep("goes").await.unwrap(), None);
     assert!(store.sweep("unfinished").await.unwrap().is_some());
-    assert!(point_record(&store, "stays", 1).await.summary_json.is_some());
+    let point = point_record(&store, "stays", 1).await;
+    assert!(point.summary_json.is_some());
+    assert_eq!(point.scenario.unwrap().base_json, r#"{"scenario":"goes"}"#);
     // What was forgotten can be asked for again.
     submit(&store, &sweep("again", [1])).await;
     submit(&store, &sweep("more", [9])).await;
@@ -154,4 +160,29 @@ async fn no_row_names_a_blob_that_is_gone() {
     assert!(matches!(refused, Err(StoreError::BlobMissing(_))), "{refused:?}");
     // It still holds the lease, and writes the blob again.
     assert!(finish(&store, &claim).await);
+}
+
+#[tokio::test]
+async fn an_owner_who_was_forgotten_begins_like_one_who_was_idle() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    let of = |owner: &str, id: &str, numbers: std::ops::Range<u32>| NewSweep {
+        owner: owner.to_owned(),
+        ..sweep(id, numbers)
+    };
+    submit(&store, &of("anne", "a", 0..20)).await;
+    submit(&store, &of("bert", "b", 100..110)).await;
+    for _ in 0..20 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    // Bert has had all that he asked for and is forgotten; half of what Anne asked for waits.
+    store.collect_garbage(&policy(), false).await.unwrap();
+    submit(&store, &of("bert", "c", 200..210)).await;
+    let mut of_bert = 0;
+    for _ in 0..10 {
+        let claim = claim(&store, "w").await;
+        assert!(finish(&store, &claim).await);
+        of_bert += usize::from((200..210).map(key).any(|key| key == claim.lease.key));
+    }
+    assert!((4..=6).contains(&of_bert), "{of_bert}");
 }

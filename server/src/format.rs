@@ -1,6 +1,6 @@
 //! Which format a table is served in, and how.
 
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::chart::{PNG_WIDTH, no_such_column};
@@ -214,10 +214,17 @@ pub(crate) fn respond_or_draw(
     Ok(file(body, format, name))
 }
 
-/// Bytes that are already in a format.
-pub(crate) fn file(body: impl Into<Body>, format: Format, name: &str) -> Response {
-    let mut response = body.into().into_response();
+/// Bytes that are already in a format. Their tag is a weak one, since they may be compressed on their way.
+pub(crate) fn file(body: impl Into<Bytes>, format: Format, name: &str) -> Response {
+    let body = body.into();
+    let tag = format!("W/\"{}\"", blake3::hash(&body).to_hex());
+    let mut response = Body::from(body).into_response();
     let headers = response.headers_mut();
+    if let Ok(tag) = tag.parse() {
+        headers.insert(header::ETAG, tag);
+    }
+    // A point may be computed anew, and a sweep goes on; asking whether the copy is right costs little.
+    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(format.media_type()));
     headers.insert(header::VARY, HeaderValue::from_static("accept"));
     let disposition = format!("inline; filename=\"{name}.{}\"", format.extension());

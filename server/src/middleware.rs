@@ -6,10 +6,11 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{DefaultBodyLimit, Request};
-use axum::http::{HeaderName, HeaderValue, Response, header};
+use axum::http::{HeaderName, HeaderValue, Response, StatusCode, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use drillsweep_api::{LIMITS, PROBLEM_MEDIA_TYPE, ProblemKind};
+use headers::{ETag, HeaderMapExt, IfNoneMatch};
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::predicate::{DefaultPredicate, NotForContentType, Predicate};
@@ -25,7 +26,7 @@ use crate::{auth, metrics};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Wraps the routes: request ids, spans, metrics, compression, problem documents, panics, refusal of other sites'
+/// Wraps the routes: request ids, spans, metrics, compression, copies that are still right, problem documents, panics, refusal of other sites'
 /// pages, tokens and rates, body limit; in this order from the outside.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let compressible =
@@ -37,6 +38,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
             .layer(from_fn_with_state(app.clone(), metrics::measure))
             .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
+            .layer(from_fn(tell_unchanged))
             .layer(from_fn(write_problems))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
@@ -71,6 +73,23 @@ fn log_response<B>(response: &Response<B>, latency: Duration, _: &Span) {
         latency_ms = latency.as_secs_f64() * 1e3,
         "answered"
     );
+}
+
+/// Answers 304 instead of what the client has a copy of.
+async fn tell_unchanged(request: Request, next: Next) -> Response<Body> {
+    let known = request.headers().typed_get::<IfNoneMatch>();
+    let response = next.run(request).await;
+    let tag = response.headers().typed_get::<ETag>().filter(|_| response.status() == StatusCode::OK);
+    if known.zip(tag).is_none_or(|(known, tag)| known.precondition_passes(&tag)) {
+        return response;
+    }
+    let mut unchanged = StatusCode::NOT_MODIFIED.into_response();
+    for name in [header::ETAG, header::CACHE_CONTROL, header::VARY] {
+        if let Some(value) = response.headers().get(&name) {
+            unchanged.headers_mut().insert(name, value.clone());
+        }
+    }
+    unchanged
 }
 
 /// Gives every problem its body, with the request's id as `instance`.

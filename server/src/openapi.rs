@@ -6,11 +6,12 @@ use std::sync::LazyLock;
 use axum::http::header;
 use axum::response::IntoResponse;
 use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList, Table};
+use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::openapi::{
     ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type, schema::AnyOfBuilder,
 };
-use utoipa::{IntoResponses, Modify, OpenApi, ToSchema};
+use utoipa::{IntoParams, IntoResponses, Modify, OpenApi, ToSchema};
 
 use crate::format::{Asked, Format, PictureFormat, TableFormat};
 use crate::router;
@@ -67,6 +68,20 @@ impl IntoResponses for Problems {
     }
 }
 
+/// The header by which a client asks only for what it has no copy of.
+pub(crate) struct Conditional;
+
+impl IntoParams for Conditional {
+    fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
+        let parameter = ParameterBuilder::new()
+            .name(header::IF_NONE_MATCH.as_str())
+            .parameter_in(ParameterIn::Header)
+            .description(Some("The `ETag` of a copy; 304 if it is still right."))
+            .schema(Some(ObjectBuilder::new().schema_type(Type::String)));
+        vec![parameter.build()]
+    }
+}
+
 /// A table in the format that was asked for.
 pub(crate) struct TableResponse;
 
@@ -106,7 +121,8 @@ fn table_responses(formats: &[Format]) -> BTreeMap<String, RefOr<Response>> {
         };
         response = response.content(format.media_type(), content.build());
     }
-    [("200".to_owned(), response.build().into())].into()
+    let unchanged = ResponseBuilder::new().description("The copy is right").build();
+    [("200".to_owned(), response.build().into()), ("304".to_owned(), unchanged.into())].into()
 }
 
 /// A page of points, whole or in the fields that were asked for.

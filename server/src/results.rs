@@ -16,7 +16,7 @@ use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{Path, Query, value};
 use crate::format::{self, Format, PictureFormat, TableFormat};
-use crate::openapi::{PictureResponse, Problems, TableResponse};
+use crate::openapi::{Conditional, PictureResponse, Problems, TableResponse};
 use crate::work::blocking;
 
 /// Which point's result.
@@ -67,7 +67,7 @@ pub(crate) struct PictureQuery {
     path = "/v1/sweeps/{id}/points/{n}/profile",
     tag = "points",
     operation_id = "get_profile",
-    params(PointPath, PictureQuery),
+    params(PointPath, PictureQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn profile(
@@ -98,7 +98,7 @@ pub(crate) async fn profile(
     path = "/v1/sweeps/{id}/points/{n}/statics",
     tag = "points",
     operation_id = "get_statics",
-    params(PointPath, TableQuery),
+    params(PointPath, TableQuery, Conditional),
     responses(TableResponse, Problems)
 )]
 pub(crate) async fn statics(
@@ -116,7 +116,7 @@ pub(crate) async fn statics(
     path = "/v1/sweeps/{id}/points/{n}/contacts",
     tag = "points",
     operation_id = "get_contacts",
-    params(PointPath, TableQuery),
+    params(PointPath, TableQuery, Conditional),
     responses(TableResponse, Problems)
 )]
 pub(crate) async fn contacts(
@@ -134,7 +134,7 @@ pub(crate) async fn contacts(
     path = "/v1/sweeps/{id}/points/{n}/energy",
     tag = "points",
     operation_id = "get_energy",
-    params(PointPath, TableQuery),
+    params(PointPath, TableQuery, Conditional),
     responses(TableResponse, Problems)
 )]
 pub(crate) async fn energy(
@@ -216,7 +216,7 @@ impl HistoryQuery {
     path = "/v1/sweeps/{id}/points/{n}/history",
     tag = "points",
     operation_id = "get_history",
-    params(PointPath, HistoryQuery),
+    params(PointPath, HistoryQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn history(
@@ -290,7 +290,7 @@ pub(crate) struct OrbitQuery {
     path = "/v1/sweeps/{id}/points/{n}/orbit",
     tag = "points",
     operation_id = "get_orbit",
-    params(PointPath, OrbitQuery),
+    params(PointPath, OrbitQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn orbit(
@@ -382,7 +382,7 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
     path = "/v1/sweeps/{id}/points/{n}/spectrum",
     tag = "points",
     operation_id = "get_spectrum",
-    params(PointPath, SpectrumQuery),
+    params(PointPath, SpectrumQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn spectrum(

@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::extract::{self, Path, Query, value};
 use crate::format::{self, Format};
 use crate::limit;
-use crate::openapi::{PictureResponse, Problems};
+use crate::openapi::{Conditional, PictureResponse, Problems};
 use crate::results::PictureQuery;
 use crate::status::WORKER_SILENCE;
 use crate::work::blocking;
@@ -484,7 +484,7 @@ pub(crate) async fn append(
     path = "/v1/sweeps/{id}/table",
     tag = "sweeps",
     operation_id = "get_sweep_table",
-    params(("id" = String, Path, description = "Identifier of the sweep"), PictureQuery),
+    params(("id" = String, Path, description = "Identifier of the sweep"), PictureQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn table(

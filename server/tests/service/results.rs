@@ -196,3 +196,42 @@ async fn a_point_shows_its_summary_and_provenance() {
     assert_eq!(point["progress"], 1.0);
     assert_eq!(point["links"]["self"], format!("{path}/points/1"));
 }
+
+#[tokio::test]
+async fn what_the_client_has_a_copy_of_is_not_sent_again() {
+    let bench = Bench::new().await;
+    let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
+    let path = format!("/v1/sweeps/{}", bench.submit(body).await);
+    bench.succeed().await;
+    let again = async |path: &str, tag: &str| {
+        let request = Request::get(path).header(header::IF_NONE_MATCH, tag).body(Body::empty()).unwrap();
+        bench.send(request).await
+    };
+    let table = format!("{path}/table");
+    let orbit = format!("{path}/points/1/orbit?node=49&from=1&to=2");
+    let mut tags = std::collections::HashSet::new();
+    for path in [
+        format!("{path}/points/1/profile"),
+        format!("{path}/points/1/statics?format=parquet"),
+        format!("{path}/points/1/spectrum?node=49&from=1&to=2&format=svg"),
+        format!("{table}?format=csv"),
+        table.clone(),
+        orbit.clone(),
+    ] {
+        let first = bench.get(&path).await;
+        let tag = first.headers[header::ETAG].to_str().unwrap().to_owned();
+        let unchanged = again(&path, &format!("\"other\", {tag}")).await;
+        assert_eq!((unchanged.status, unchanged.body.len()), (StatusCode::NOT_MODIFIED, 0), "{path}");
+        assert_eq!(unchanged.headers[header::ETAG], tag);
+        let other = again(&path, "\"other\"").await;
+        assert_eq!((other.status, &other.body), (StatusCode::OK, &first.body), "{path}");
+        tags.insert(tag);
+    }
+    assert_eq!(tags.len(), 6, "every body has a tag of its own");
+    // The table changes with the sweep, the orbit does not.
+    let tag_of = async |path: &str| bench.get(path).await.headers[header::ETAG].to_str().unwrap().to_owned();
+    let (table_tag, orbit_tag) = (tag_of(&table).await, tag_of(&orbit).await);
+    bench.succeed().await;
+    assert_eq!(again(&table, &table_tag).await.status, StatusCode::OK);
+    assert_eq!(again(&orbit, &orbit_tag).await.status, StatusCode::NOT_MODIFIED);
+}

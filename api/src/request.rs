@@ -20,11 +20,11 @@ use crate::problem::{FieldProblem, ProblemDetails};
 pub struct SweepRequest {
     /// A name for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_length = 200, example = "flow rate against density")]
+    #[schema(min_length = 1, max_length = 200, example = "flow rate against density")]
     pub name: Option<String>,
     /// Whose share of the workers the sweep counts against; absent means `default`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_length = 100)]
+    #[schema(min_length = 1, max_length = 100)]
     pub owner: Option<String>,
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
@@ -81,11 +81,11 @@ pub struct SweepRequest {
 pub struct RunRequest {
     /// A name for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_length = 200)]
+    #[schema(min_length = 1, max_length = 200)]
     pub name: Option<String>,
     /// Whose share of the workers the run counts against; absent means `default`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_length = 100)]
+    #[schema(min_length = 1, max_length = 100)]
     pub owner: Option<String>,
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
@@ -188,7 +188,7 @@ impl SweepRequest {
 pub struct SweepPatch {
     /// A name for people; `null` takes it away.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(value_type = Option<String>, max_length = 200)]
+    #[schema(value_type = Option<String>, min_length = 1, max_length = 200)]
     pub name: Option<Option<String>>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]

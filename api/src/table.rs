@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use utoipa::ToSchema;
+use utoipa::openapi::schema::AnyOfBuilder;
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
 
 /// A table by columns, all of one length. A value that does not exist is `null`, never NaN.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
@@ -22,18 +24,41 @@ pub struct Table {
 }
 
 /// The values of one column.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Column {
     /// Whole numbers.
     Integer(Vec<Option<i64>>),
     /// Numbers; those that are not finite in memory are `null` on the wire.
     #[serde(with = "finite_or_null")]
-    #[schema(value_type = Vec<Option<f64>>)]
     Number(Vec<f64>),
     /// Texts.
     Text(Vec<Option<String>>),
 }
+
+impl PartialSchema for Column {
+    /// Any of the forms: whole numbers are numbers too, and an empty column is one of each.
+    fn schema() -> RefOr<Schema> {
+        let forms = [
+            (<Vec<Option<i64>>>::schema(), "Whole numbers."),
+            (
+                <Vec<Option<f64>>>::schema(),
+                "Numbers; those that are not finite in memory are `null` on the wire.",
+            ),
+            (<Vec<Option<String>>>::schema(), "Texts."),
+        ];
+        let mut schema = AnyOfBuilder::new().description(Some("The values of one column."));
+        for (mut form, description) in forms {
+            if let RefOr::T(Schema::Array(array)) = &mut form {
+                array.description = Some(description.to_owned());
+            }
+            schema = schema.item(form);
+        }
+        Schema::AnyOf(schema.build()).into()
+    }
+}
+
+impl ToSchema for Column {}
 
 impl Column {
     /// The number of values.

@@ -162,6 +162,7 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "invalid type"),
         (r#"{"preset": "#, "", "EOF"),
         (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
+        (r#" [null, "anne"]"#, "", "object, not an array"),
     ] {
         let request = json_request(Method::POST, "/v1/sweeps", body.to_owned());
         let problem = bench.send(request).await.problem(400, "malformed-body");

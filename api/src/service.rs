@@ -113,6 +113,8 @@ pub struct Worker {
 pub struct Queue {
     /// Ready for a worker.
     pub queued: u64,
+    /// Wanted by paused sweeps only.
+    pub paused: u64,
     /// Waiting until a retry is due.
     pub waiting_for_retry: u64,
     /// Under way.

@@ -306,8 +306,9 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
         return print_json(&json!({ "queue": queue, "workers": workers }));
     }
     print(&format!(
-        "queue: {} waiting, {} waiting for a retry, {} running",
+        "queue: {} waiting, {} paused, {} waiting for a retry, {} running",
         text(&queue["queued"]),
+        text(&queue["paused"]),
         text(&queue["waiting_for_retry"]),
         text(&queue["running"])
     ));

@@ -51,6 +51,7 @@ pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     let depths = app.store.queue_depths().await?;
     Ok(Json(Queue {
         queued: depths.queued.unsigned_abs(),
+        paused: depths.held.unsigned_abs(),
         waiting_for_retry: depths.waiting.unsigned_abs(),
         running: depths.leased.unsigned_abs(),
     }))

@@ -9,7 +9,7 @@ use crate::state::WorkState;
 /// How much there is of what.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Census {
-    /// Work items that are not final, by state.
+    /// Work items that are not final, by state; `held` are those that only paused sweeps want.
     pub work: Vec<(&'static str, i64)>,
     /// Points of all sweeps, by state.
     pub points: Vec<(&'static str, i64)>,
@@ -47,7 +47,7 @@ impl Store {
         let oldest_queued_ms: i64 = sqlx::query_scalar(concat!(
             "SELECT coalesce(max(0, ",
             now!(),
-            " - min(changed)), 0) FROM work WHERE state = 'queued'"
+            " - min(changed)), 0) FROM work WHERE state = 'queued' AND held = 0"
         ))
         .bind(self.clock_offset_ms)
         .fetch_one(&self.pool)
@@ -65,6 +65,7 @@ impl Store {
             work: vec![
                 (WorkState::Waiting.as_str(), depths.waiting),
                 (WorkState::Queued.as_str(), depths.queued),
+                ("held", depths.held),
                 (WorkState::Leased.as_str(), depths.leased),
             ],
             points: vec![

@@ -6,7 +6,7 @@ use crate::blob::BlobId;
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
 use crate::point::ScenarioText;
-use crate::state::{WorkKey, WorkState, work_key};
+use crate::state::{WorkKey, work_key};
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
 const CRASH_LIMIT: i64 = 3;
@@ -104,6 +104,8 @@ pub struct QueueDepths {
     pub waiting: i64,
     /// Ready to be claimed.
     pub queued: i64,
+    /// Ready, but wanted by paused sweeps only.
+    pub held: i64,
     /// Under way.
     pub leased: i64,
 }
@@ -433,21 +435,14 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn queue_depths(&self) -> Result<QueueDepths> {
-        let rows: Vec<(String, i64)> = sqlx::query_as(
-            "SELECT state, count(*) FROM work WHERE state IN ('waiting', 'queued', 'leased') GROUP BY state",
+        let (waiting, queued, held, leased) = sqlx::query_as(
+            "SELECT coalesce(sum(state = 'waiting'), 0), coalesce(sum(state = 'queued' AND held = 0), 0),
+                    coalesce(sum(state = 'queued' AND held <> 0), 0), coalesce(sum(state = 'leased'), 0)
+             FROM work WHERE state IN ('waiting', 'queued', 'leased')",
         )
-        .fetch_all(&self.pool)
+        .fetch_one(&self.pool)
         .await?;
-        let mut depths = QueueDepths::default();
-        for (state, number) in rows {
-            match WorkState::parse(&state)? {
-                WorkState::Waiting => depths.waiting = number,
-                WorkState::Queued => depths.queued = number,
-                WorkState::Leased => depths.leased = number,
-                WorkState::Done | WorkState::Failed | WorkState::Dead | WorkState::Cancelled => {}
-            }
-        }
-        Ok(depths)
+        Ok(QueueDepths { waiting, queued, held, leased })
     }
 
     /// How many work items that are not final an owner has.

@@ -113,7 +113,7 @@ async fn the_service_describes_itself() {
     bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})).await;
     bench.claim().await;
     let queue = bench.get("/v1/queue").await.json();
-    assert_eq!(queue, json!({"queued": 1, "waiting_for_retry": 0, "running": 1}));
+    assert_eq!(queue, json!({"queued": 1, "paused": 0, "waiting_for_retry": 0, "running": 1}));
     let scenarios = bench.get("/v1/scenarios").await.json();
     for entry in scenarios["scenarios"].as_array().unwrap() {
         let detail = bench.get(entry["link"].as_str().unwrap()).await.json();

@@ -1,14 +1,16 @@
 //! Pausing, changing, extending and refreshing: what a sweep's owner does with it while it runs.
 
 use drillsweep_store::{
-    AppendOutcome, CachePolicy, FailureClass, NewPoint, NewSweep, StateCounts, SubmitOutcome, SweepChanges,
-    SweepFilter, WorkState,
+    AppendOutcome, CachePolicy, FailureClass, NewPoint, NewSweep, QueueDepths, StateCounts, SubmitOutcome,
+    SweepChanges, SweepFilter, WorkState,
 };
 
 use crate::bench::{
     Bench, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
     sweep_record,
 };
+
+const LONG_AGO: std::time::Duration = std::time::Duration::from_secs(86_400);
 
 #[tokio::test]
 async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
@@ -19,6 +21,9 @@ async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
     assert!(store.pause_sweep("s", true).await.unwrap());
     assert!(sweep_record(&store, "s").await.is_paused);
     assert_eq!(claim_or_none(&store, "w").await, None);
+    let depths = QueueDepths { held: 1, leased: 1, ..QueueDepths::default() };
+    assert_eq!(store.queue_depths().await.unwrap(), depths);
+    assert_eq!(bench.after(9_000).await.census(LONG_AGO).await.unwrap().oldest_queued_ms, 0);
     // What is under way goes on; what comes back waits with the rest.
     assert!(store.release(&running.lease).await.unwrap());
     assert_eq!(claim_or_none(&store, "w").await, None);

@@ -161,7 +161,8 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     }
     let request = Value::Object(request);
     if arguments.dry_run {
-        print(&serde_json::to_string_pretty(&client.post("/v1/sweeps?dry_run=true", &request)?)?);
+        let dry_run = format!("/v1/sweeps?dry_run=true&cache={}", arguments.cache);
+        print(&serde_json::to_string_pretty(&client.post(&dry_run, &request)?)?);
         return Ok(());
     }
     let key = arguments.idempotency_key.as_deref();

@@ -136,7 +136,7 @@ async fn submit(
     headers: &HeaderMap,
 ) -> Result<Response> {
     request.owner = caller.submits_as(request.owner)?;
-    let idempotency_key = idempotency_key(headers)?.map(|key| (key, *blake3::hash(&body).as_bytes()));
+    let idempotency_key = idempotency_key(headers)?.map(|key| (key, request_hash(&body, query.cache)));
     let cache = match query.cache {
         Cache::Reuse => CachePolicy::Reuse,
         Cache::Refresh => CachePolicy::Refresh,
@@ -150,9 +150,11 @@ async fn submit(
     })
     .await?;
     if query.dry_run {
-        return Ok(Json(plan(&app, expansion).await?).into_response());
+        return Ok(Json(plan(&app, expansion, cache).await?).into_response());
     }
-    limit::check_open_points(&app, &new_sweep.owner, new_sweep.points.len()).await?;
+    if cache != CachePolicy::Only {
+        limit::check_open_points(&app, &new_sweep.owner, new_sweep.points.len()).await?;
+    }
     let id = match app.store.submit_sweep(&new_sweep).await? {
         SubmitOutcome::Created => new_sweep.id,
         SubmitOutcome::Known(id) => id,
@@ -178,12 +180,28 @@ fn not_computed(missing: &[i64], total: usize) -> Error {
     Error::new(ProblemKind::NoResult, detail)
 }
 
-async fn plan(app: &App, expansion: Expansion) -> Result<DryRun> {
+async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
     let keys: Vec<_> = expansion.points.iter().map(|point| point.key).collect();
-    let known = app.store.known_results(&keys).await?;
+    let known = match cache {
+        CachePolicy::Refresh => 0,
+        CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await?,
+    };
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
     blocking(move || Ok(DryRun::new(&expansion, known, speed.as_deref(), workers))).await
+}
+
+/// What tells two requests under the same key apart.
+fn request_hash(body: &[u8], cache: Cache) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(body);
+    match cache {
+        Cache::Reuse => {}
+        // No JSON text has such an end.
+        Cache::Refresh => _ = hasher.update(b"\0refresh"),
+        Cache::Only => _ = hasher.update(b"\0only"),
+    }
+    *hasher.finalize().as_bytes()
 }
 
 /// The key under which a submission may be repeated: a text of visible ASCII.

@@ -1,8 +1,9 @@
 //! What a sweep's owner does with it after submitting it.
 
+use axum::http::Method;
 use serde_json::json;
 
-use crate::bench::Bench;
+use crate::bench::{Bench, json_request};
 
 #[tokio::test]
 async fn a_paused_sweep_says_so_and_goes_on_when_resumed() {
@@ -123,6 +124,18 @@ async fn the_cache_is_used_refreshed_or_all_there_is() {
             "{query}"
         );
     }
+    let known = async |query: &str| {
+        bench.post(&format!("/v1/sweeps?dry_run=true{query}"), body.clone()).await.json()["known"].clone()
+    };
+    assert_eq!((known("").await, known("&cache=refresh").await), (json!(2), json!(0)));
+    // Another policy is another request.
+    let keyed = async |query: &str| {
+        let mut request = json_request(Method::POST, &format!("/v1/sweeps{query}"), body.to_string());
+        request.headers_mut().insert("idempotency-key", "once".parse().unwrap());
+        bench.send(request).await
+    };
+    assert_eq!(keyed("").await.status, 201);
+    keyed("?cache=refresh").await.problem(422, "idempotency-key-reused");
     let sweep = bench.post("/v1/sweeps?cache=refresh", body.clone()).await.json();
     assert_eq!(sweep["counts"]["queued"], 2);
     // What was there is served until the new result is.

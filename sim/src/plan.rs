@@ -54,6 +54,8 @@ pub struct PlannedAccuracy {
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,
+    /// What a run does before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
+    pub start_per_node: [f64; 4],
     /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they stand still, and RK4: for each
     /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
@@ -105,8 +107,10 @@ impl Plan {
             let runs = u64::from(scenario.ensemble);
             let steps = step_count(&model, stepping).map(|steps| steps * runs);
             let cost = |steps: u64| {
-                let step = speed?.step(MethodKind::of(stepping), degrees_of_freedom, nodes);
-                Some(statics_cpu_time? + step * steps as f64)
+                let (speed, method) = (speed?, MethodKind::of(stepping));
+                let start = speed.start_per_node[method as usize] * nodes as f64 * runs as f64;
+                let step = speed.step(method, degrees_of_freedom, nodes);
+                Some(statics_cpu_time? + start + step * steps as f64)
             };
             PlannedAccuracy {
                 name: name.to_owned(),
@@ -224,8 +228,10 @@ pub struct RunTime {
     pub nodes: usize,
     /// Steps made.
     pub steps: u64,
-    /// Processor time \[s\].
-    pub cpu_time: f64,
+    /// Processor time before the first step \[s\].
+    pub start_cpu_time: f64,
+    /// Processor time of the steps \[s\].
+    pub steps_cpu_time: f64,
 }
 
 impl MachineSpeed {
@@ -234,9 +240,17 @@ impl MachineSpeed {
         statics_per_node: f64,
         runs: impl IntoIterator<Item = (CalibrationRun, RunTime)>,
     ) -> Self {
-        let mut speed = Self { statics_per_node, step_per_node: [[0.0; 3]; 4], large_mesh_factor: 1.0 };
-        for (run, RunTime { nodes, steps, cpu_time }) in runs {
-            let per_node = cpu_time / (steps as f64 * nodes as f64);
+        let mut speed = Self {
+            statics_per_node,
+            start_per_node: [0.0; 4],
+            step_per_node: [[0.0; 3]; 4],
+            large_mesh_factor: 1.0,
+        };
+        for (run, RunTime { nodes, steps, start_cpu_time, steps_cpu_time }) in runs {
+            let per_node = steps_cpu_time / (steps as f64 * nodes as f64);
+            if run.degrees_of_freedom == 6 && !run.is_large {
+                speed.start_per_node[run.method] = start_cpu_time / nodes as f64;
+            }
             let usual = &mut speed.step_per_node[run.method][run.degrees_of_freedom - 4];
             if run.is_large {
                 speed.large_mesh_factor = (per_node / *usual).max(1.0);
@@ -298,6 +312,7 @@ mod tests {
     fn cost_is_that_of_the_steps_and_the_equilibrium() {
         let speed = MachineSpeed {
             statics_per_node: 1e-4,
+            start_per_node: [2e-5, 0.0, 0.0, 0.0],
             step_per_node: [[1e-7, 2e-7, 3e-7], [1e-6; 3], [2e-6; 3], [5e-7; 3]],
             large_mesh_factor: 2.0,
         };
@@ -307,7 +322,8 @@ mod tests {
         let plan = Plan::new(&scenario, Some(&speed)).unwrap();
         let statics = 297.0 * 1e-4;
         assert_eq!(plan.simulated_time, 120.0);
-        assert!((plan.cpu_time().unwrap() - (statics + 297.0 * 240_000.0 * 3e-7)).abs() < 1e-9);
+        let (start, steps) = (2.0 * 297.0 * 2e-5, 297.0 * 240_000.0 * 3e-7);
+        assert!((plan.cpu_time().unwrap() - (statics + start + steps)).abs() < 1e-9);
         let names: Vec<_> = plan.accuracies.iter().map(|accuracy| accuracy.name.as_str()).collect();
         assert_eq!(names, ["draft", "standard", "reference"]);
 
@@ -329,11 +345,13 @@ mod tests {
             assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
             assert_eq!(plan.nodes > 1400, run.is_large);
             let per_node = if run.is_large { 4.5 } else { (i + 1) as f64 };
-            let cpu_time = per_node * 100.0 * plan.nodes as f64;
-            times.push((run, RunTime { nodes: plan.nodes, steps: 100, cpu_time }));
+            let nodes = plan.nodes;
+            let (start_cpu_time, steps_cpu_time) = (nodes as f64 * 0.5, per_node * 100.0 * nodes as f64);
+            times.push((run, RunTime { nodes, steps: 100, start_cpu_time, steps_cpu_time }));
         }
         let speed = MachineSpeed::from_times(1e-4, times);
         assert_eq!(speed.step_per_node, [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.], [10., 11., 12.]]);
+        assert_eq!(speed.start_per_node, [0.5; 4]);
         // Of generalized-alpha with six degrees of freedom: 4.5 after 3.
         assert!((speed.large_mesh_factor - 1.5).abs() < 1e-12);
         let step = |nodes| speed.step(MethodKind::GeneralizedAlpha, 6, nodes) / nodes as f64;

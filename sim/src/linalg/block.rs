@@ -2,6 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
+use super::column::Column;
 use super::lane::{Lane, Mask};
 
 /// Degrees of freedom of a node, and rows of a block where nothing else is said.
@@ -29,6 +30,37 @@ impl<L, const D: usize> IndexMut<(usize, usize)> for Block<L, D> {
     #[inline(always)]
     fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut L {
         &mut self.columns[column][row]
+    }
+}
+
+impl<const D: usize> Block<f64, D> {
+    /// `self = self + sum_k weight_k left_k right_k^T`.
+    #[inline(always)]
+    pub fn add_products<const K: usize>(&mut self, products: [(f64, &[f64; D], &[f64; D]); K]) {
+        let mut columns = self.columns.map(|column| Column::new(&column));
+        for (weight, left, right) in products {
+            let left = Column::new(left).times(weight);
+            for (column, right) in columns.iter_mut().zip(right) {
+                *column = left.mul_add(*right, *column);
+            }
+        }
+        self.columns = columns.map(Column::to_rows);
+    }
+
+    /// `sum + self x`.
+    #[inline(always)]
+    pub(super) fn times_column(&self, x: &[f64; D], sum: Column) -> Column {
+        self.columns.iter().zip(x).fold(sum, |sum, (column, x)| Column::new(column).mul_add(*x, sum))
+    }
+
+    /// Sum over all entries of the products with those of another block.
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> f64 {
+        let mut sum = Column::zero();
+        for (a, b) in self.columns.iter().zip(&other.columns) {
+            sum = Column::new(a).product(Column::new(b)).plus(sum);
+        }
+        sum.sum()
     }
 }
 

@@ -28,6 +28,13 @@ impl Four {
     pub fn to_array(self) -> [f64; 4] {
         self.0.to_array()
     }
+
+    /// The sum of the lanes, by pairs.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let [a, b, c, d] = self.to_array();
+        (a + b) + (c + d)
+    }
 }
 
 impl Add for Four {

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use wide::{f64x2, f64x4};
+use super::column::Column;
 
 /// One value for each of [`Lane::LANES`] sweep points.
 ///
@@ -203,35 +203,15 @@ impl Lane for f64 {
         if mask { if_true } else { if_false }
     }
 
-    /// In vectors of four rows and two: left to itself, the compiler goes row by row from the fifth on.
     #[inline(always)]
     fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
-        // Rows that a block does not have are zeros beside it.
-        let at = |column: &[f64; D], row: usize| if row < D { column[row] } else { 0.0 };
-        let split = |column: &[f64; D]| {
-            let at = |row| at(column, row);
-            (f64x4::new([at(0), at(1), at(2), at(3)]), f64x2::new([at(4), at(5)]))
-        };
-        let column = |j: usize| {
-            let (head, tail) = split(&columns[j]);
-            (head, f64x4::splat(x[j]), tail, f64x2::splat(x[j]))
-        };
-        let (mut head, mut tail) = split(&sum);
-        for j in (0..D).step_by(2) {
-            let (column_head, x_head, column_tail, x_tail) = column(j);
-            head = column_head.mul_add(x_head, head);
-            tail = column_tail.mul_add(x_tail, tail);
+        let column = |j: usize| Column::new(&columns[j]);
+        let (mut even, mut odd) = (column(0).mul_add(x[0], Column::new(&sum)), column(1).times(x[1]));
+        for j in 2..D {
+            let chain = if j % 2 == 0 { &mut even } else { &mut odd };
+            *chain = column(j).mul_add(x[j], *chain);
         }
-        let (column_head, x_head, column_tail, x_tail) = column(1);
-        let (mut odd_head, mut odd_tail) = (column_head * x_head, column_tail * x_tail);
-        for j in (3..D).step_by(2) {
-            let (column_head, x_head, column_tail, x_tail) = column(j);
-            odd_head = column_head.mul_add(x_head, odd_head);
-            odd_tail = column_tail.mul_add(x_tail, odd_tail);
-        }
-        (head, tail) = (head + odd_head, tail + odd_tail);
-        let (head, tail) = (head.to_array(), tail.to_array());
-        std::array::from_fn(|row| if row < 4 { head[row] } else { tail[row - 4] })
+        even.plus(odd).to_rows()
     }
 }
 

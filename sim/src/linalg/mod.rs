@@ -5,9 +5,11 @@
 //! [`Lane`]: one `f64`, or several sweep points side by side, with the same operations in the same order.
 
 mod block;
+mod column;
 mod factor;
 mod four;
 mod lane;
+mod skew;
 mod tridiagonal;
 
 #[cfg(test)]
@@ -17,6 +19,7 @@ pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
+pub use skew::SkewPart;
 pub use tridiagonal::BlockTridiagonal;
 
 /// One row of values for every node.

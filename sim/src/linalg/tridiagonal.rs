@@ -72,14 +72,14 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
         self.for_rows(x, y, |y, product| std::array::from_fn(|dof| y[dof] + product[dof]));
     }
 
-    /// `out = A x + B y` in one pass.
-    pub fn multiply_two_into(a: &Self, x: &[[L; D]], b: &Self, y: &[[L; D]], out: &mut [[L; D]]) {
+    /// `out = out - (A x + B y)` in one pass.
+    pub fn subtract_two(a: &Self, x: &[[L; D]], b: &Self, y: &[[L; D]], out: &mut [[L; D]]) {
         let rows = out.len();
         assert!(a.rows() == rows && b.rows() == rows && x.len() == rows && y.len() == rows);
         for (row, out) in out.iter_mut().enumerate() {
             // Two sums that do not wait for each other.
             let (of_a, of_b) = (a.row_product(row, x), b.row_product(row, y));
-            *out = std::array::from_fn(|dof| of_a[dof] + of_b[dof]);
+            *out = std::array::from_fn(|dof| out[dof] - (of_a[dof] + of_b[dof]));
         }
     }
 

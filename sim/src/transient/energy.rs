@@ -7,10 +7,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::NodeContact;
-use super::forms::{Forms, Integrals, half_sum};
+use super::forces::{ContactForces, side_by_side};
+use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
 use crate::contact::ContactParameters;
-use crate::linalg::BlockTridiagonal;
+use crate::linalg::{BlockTridiagonal, Four, Lane};
 use crate::model::{DynamicSystem, Model, NodalVector};
 
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
@@ -117,7 +117,7 @@ impl<const D: usize> Ledger<D> {
     pub(super) fn new(model: &Model, system: &DynamicSystem<D>, initial: &[[f64; D]]) -> Self {
         let mut ledger = Self {
             mass: system.mass.clone(),
-            stiffness: half_sum(&system.stiffness, 0.5),
+            stiffness: symmetric_part(&system.stiffness),
             load: system.load.clone(),
             forms: Forms::new(
                 [&system.structural_damping, &system.mud_damping, &system.coriolis],
@@ -141,36 +141,28 @@ impl<const D: usize> Ledger<D> {
     }
 
     /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
-    /// forces that it was solved with. Returns the powers of contact and unbalance.
+    /// forces that it was solved with.
     pub(super) fn book(
         &mut self,
         weight: f64,
         velocity: &[[f64; D]],
         displacement: &[[f64; D]],
-        contact: &[NodeContact],
+        contact: &ContactForces,
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
-    ) -> Work {
-        if self.forms.is_full() {
-            self.settle();
-        }
-        self.forms.gather(weight, velocity, displacement);
+    ) {
+        self.forms.gather((weight, velocity, displacement));
         let power = self.power(velocity, displacement, contact, unbalance);
         self.work.add(weight, &power);
-        power
     }
 
-    /// Books `weight` seconds more of the last stage, whose powers of contact and unbalance are `power`.
-    pub(super) fn book_again(
-        &mut self,
-        weight: f64,
-        velocity: &[[f64; D]],
-        displacement: &[[f64; D]],
-        power: &Work,
-    ) {
-        if !self.forms.weigh_last(weight) {
-            self.forms.gather(weight, velocity, displacement);
-        }
+    /// Books what a stage's power of contact and unbalance comes to in `weight` seconds.
+    pub(super) fn book_power(&mut self, weight: f64, power: &Work) {
         self.work.add(weight, power);
+    }
+
+    /// Books what the matrices do along stages: the seconds that each counts, its velocities and displacements.
+    pub(super) fn book_matrices<const K: usize>(&mut self, stages: [BookedStage<'_, D>; K]) {
+        self.forms.add(stages);
     }
 
     /// Powers \[W\] of contact and unbalance.
@@ -178,7 +170,7 @@ impl<const D: usize> Ledger<D> {
         &self,
         velocity: &[[f64; D]],
         displacement: &[[f64; D]],
-        contact: &[NodeContact],
+        contact: &ContactForces,
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) -> Work {
         let mut power = Work {
@@ -187,19 +179,25 @@ impl<const D: usize> Ledger<D> {
                 .sum(),
             ..Work::default()
         };
-        let mut torque = 0.0;
-        let touching = velocity.iter().zip(displacement).zip(contact).filter(|(_, contact)| contact.touching);
-        for ((v, x), contact) in touching {
+        let zero = Four::splat(0.0);
+        let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
+        for group in contact.touching() {
+            let rate = |dof| side_by_side(velocity, group.first, dof);
+            let (u, v) =
+                (side_by_side(displacement, group.first, 0), side_by_side(displacement, group.first, 1));
+            let (u_rate, v_rate) = (rate(0), rate(1));
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
-            let normal = -contact.normal_force / contact.radius * (v[0] * x[0] + v[1] * x[1]);
-            power.normal_contact += normal;
-            let twist_rate = self.twist.map_or(0.0, |twist| v[twist]);
-            power.friction +=
-                v[0] * contact.force[0] + v[1] * contact.force[1] - normal + twist_rate * contact.torque;
-            torque += contact.torque;
+            let normal = -(group.normal_by_radius * u_rate.mul_add(u, v_rate * v));
+            let twist_power = self.twist.map_or(zero, |twist| rate(twist) * group.torque);
+            let whole = u_rate.mul_add(group.force[0], v_rate.mul_add(group.force[1], twist_power));
+            normal_power = normal_power + normal;
+            friction_power = friction_power + (whole - normal);
+            torque = torque + group.torque;
         }
+        power.normal_contact = normal_power.sum();
+        power.friction = friction_power.sum();
         // The frame turns with Omega: the drive works against the friction torque there.
-        power.rotation = -torque * self.rotation_speed;
+        power.rotation = -torque.sum() * self.rotation_speed;
         power
     }
 

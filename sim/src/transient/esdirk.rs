@@ -48,17 +48,24 @@ pub(super) fn stage_coefficients(step: f64) -> StageCoefficients {
     StageCoefficients { acceleration: c * c, velocity: c }
 }
 
-/// Stage values of one step; the last stage of a step is the first of the next.
+/// Stages of one step; the last one is the first of the next step.
 #[derive(Debug, Clone)]
 pub(super) struct Esdirk<const D: usize> {
     step: f64,
     pub(super) solver: StageSolver<D>,
-    velocities: [NodalVector<D>; STAGES],
-    accelerations: [NodalVector<D>; STAGES],
-    displacement_base: NodalVector<D>,
+    /// Of the stages after the first, which is the state at the step's start.
+    stages: [Stage<D>; STAGES - 1],
     velocity_base: NodalVector<D>,
     acceleration_offset: NodalVector<D>,
     velocity_offset: NodalVector<D>,
+}
+
+/// Motion at a stage.
+#[derive(Debug, Clone)]
+struct Stage<const D: usize> {
+    displacement: NodalVector<D>,
+    velocity: NodalVector<D>,
+    acceleration: NodalVector<D>,
 }
 
 impl<const D: usize> Esdirk<D> {
@@ -72,9 +79,11 @@ impl<const D: usize> Esdirk<D> {
         Ok(Self {
             step,
             solver: StageSolver::new(system, initial, stage_coefficients(step), sweeps)?,
-            velocities: std::array::from_fn(|_| zero.clone()),
-            accelerations: std::array::from_fn(|_| zero.clone()),
-            displacement_base: zero.clone(),
+            stages: std::array::from_fn(|_| Stage {
+                displacement: zero.clone(),
+                velocity: zero.clone(),
+                acceleration: zero.clone(),
+            }),
             velocity_base: zero.clone(),
             acceleration_offset: zero.clone(),
             velocity_offset: zero,
@@ -92,78 +101,128 @@ impl<const D: usize> Esdirk<D> {
     ) {
         let h = self.step;
         let c = 1.0 / (DIAGONAL * h);
-        self.velocities[0].copy_from_slice(&state.velocity);
-        self.accelerations[0].copy_from_slice(&state.acceleration);
-        ledger.book_again(WEIGHTS[0] * h, &state.velocity, &state.displacement, &state.stage_power);
+        ledger.book_power(WEIGHTS[0] * h, &state.stage_power);
         for stage in 1..STAGES {
-            combine(&mut self.displacement_base, &state.displacement, h, stage, &self.velocities);
-            combine(&mut self.velocity_base, &state.velocity, h, stage, &self.accelerations);
-            let (xb, vb) = (flat(&self.displacement_base), flat(&self.velocity_base));
-            let last = flat(&self.accelerations[stage - 1]);
-            let a_hat = flat_mut(&mut self.acceleration_offset);
-            let v_hat = flat_mut(&mut self.velocity_offset);
-            let x = flat_mut(&mut self.solver.displacement);
-            let v = flat_mut(&mut self.solver.velocity);
-            for i in 0..xb.len() {
-                v_hat[i] = -c * xb[i];
-                a_hat[i] = c * (v_hat[i] - vb[i]);
-                // Predictor: the acceleration of the stage before.
-                v[i] = vb[i] + DIAGONAL * h * last[i];
-                x[i] = xb[i] + DIAGONAL * h * v[i];
-            }
+            self.predict(stage, state);
             let stage_time = time + NODES[stage] * h;
             self.solver.solve(system, forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
-            let v = flat(&self.solver.velocity);
-            for ((a, v), vb) in flat_mut(&mut self.accelerations[stage]).iter_mut().zip(v).zip(vb) {
-                *a = (v - vb) * c;
-            }
-            self.velocities[stage].copy_from_slice(&self.solver.velocity);
             if WEIGHTS[stage] != 0.0 {
-                state.stage_power = ledger.book(
-                    WEIGHTS[stage] * h,
+                state.stage_power = ledger.power(
                     &self.solver.velocity,
                     &self.solver.displacement,
                     &self.solver.contact,
                     forces.unbalance_at(stage_time),
                 );
+                ledger.book_power(WEIGHTS[stage] * h, &state.stage_power);
             }
+            let Stage { displacement, velocity, acceleration } = &mut self.stages[stage - 1];
+            // The next stage's predictor overwrites the solver's.
+            std::mem::swap(displacement, &mut self.solver.displacement);
+            std::mem::swap(velocity, &mut self.solver.velocity);
+            difference_times(flat(velocity), flat(&self.velocity_base), c, flat_mut(acceleration));
         }
-        let [v0, _, v2, v3, v4, v5] = &self.velocities;
+        let [_, s2, s3, s4, s5] = &self.stages;
+        let [w0, _, w2, w3, w4, w5] = WEIGHTS.map(|weight| h * weight);
+        ledger.book_matrices([
+            (w0, &state.velocity, &state.displacement),
+            (w2, &s2.velocity, &s2.displacement),
+            (w3, &s3.velocity, &s3.displacement),
+            (w4, &s4.velocity, &s4.displacement),
+            (w5, &s5.velocity, &s5.displacement),
+        ]);
         let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| h * weight);
+        let v0 = &state.velocity;
+        let [v2, v3, v4, v5] = [s2, s3, s4, s5].map(|stage| &stage.velocity);
         errors.add(v0.len(), |n, d| {
             w0 * v0[n][d] + w2 * v2[n][d] + w3 * v3[n][d] + w4 * v4[n][d] + w5 * v5[n][d]
         });
-        state.displacement.copy_from_slice(&self.solver.displacement);
-        state.velocity.copy_from_slice(&self.solver.velocity);
-        state.acceleration.copy_from_slice(&self.accelerations[STAGES - 1]);
+        // What the state held before is overwritten in the next step.
+        let Stage { displacement, velocity, acceleration } = &mut self.stages[STAGES - 2];
+        std::mem::swap(&mut state.displacement, displacement);
+        std::mem::swap(&mut state.velocity, velocity);
+        std::mem::swap(&mut state.acceleration, acceleration);
+    }
+
+    /// Offsets of a stage from those before it, and what its solution starts from.
+    fn predict(&mut self, stage: usize, state: &State<D>) {
+        let c = STRICTLY_LOWER[stage].map(|a| self.step * a);
+        match stage {
+            1 => self.predict_from([(0, c[0])], stage, state),
+            2 => self.predict_from([(0, c[0]), (1, c[1])], stage, state),
+            3 => self.predict_from([(0, c[0]), (1, c[1]), (2, c[2])], stage, state),
+            4 => self.predict_from([(0, c[0]), (1, c[1]), (2, c[2]), (3, c[3])], stage, state),
+            _ => self.predict_from([(0, c[0]), (2, c[2]), (3, c[3]), (4, c[4])], stage, state),
+        }
+    }
+
+    /// With the earlier stages that count, and what their rates are multiplied with \[s\].
+    fn predict_from<const K: usize>(&mut self, earlier: [(usize, f64); K], stage: usize, state: &State<D>) {
+        let (x0, v0, a0) = (flat(&state.displacement), flat(&state.velocity), flat(&state.acceleration));
+        let velocity = |j: usize| if j == 0 { v0 } else { flat(&self.stages[j - 1].velocity) };
+        let acceleration = |j: usize| if j == 0 { a0 } else { flat(&self.stages[j - 1].acceleration) };
+        let weights = earlier.map(|(_, weight)| weight);
+        let v_base = flat_mut(&mut self.velocity_base);
+        combine(v0, weights, earlier.map(|(j, _)| acceleration(j)), v_base);
+        // The displacements' base is in the solver's place until the predictor is.
+        let x = flat_mut(&mut self.solver.displacement);
+        combine(x0, weights, earlier.map(|(j, _)| velocity(j)), x);
+        offsets(
+            self.step,
+            v_base,
+            acceleration(stage - 1),
+            x,
+            flat_mut(&mut self.velocity_offset),
+            flat_mut(&mut self.acceleration_offset),
+            flat_mut(&mut self.solver.velocity),
+        );
     }
 }
 
-/// `out = start + h sum_j a_stage,j rates_j` over the stages before `stage`.
-fn combine<const D: usize>(
-    out: &mut NodalVector<D>,
-    start: &NodalVector<D>,
-    h: f64,
-    stage: usize,
-    rates: &[NodalVector<D>; STAGES],
+/// `out = start + sum_j weight_j rate_j`. As the functions below, one of its own: only where its slices are arguments does
+/// the compiler know that they do not overlap, and takes four values at a time.
+#[inline(never)]
+fn combine<const K: usize>(start: &[f64], weights: [f64; K], rates: [&[f64]; K], out: &mut [f64]) {
+    let n = out.len();
+    let (start, rates) = (&start[..n], rates.map(|rate| &rate[..n]));
+    for i in 0..n {
+        let mut sum = start[i];
+        for j in 0..K {
+            sum = rates[j][i].mul_add(weights[j], sum);
+        }
+        out[i] = sum;
+    }
+}
+
+/// Offsets v^ and a^ from the bases of a stage (that of the displacements in `x`), and the predictor in `x` and `v`: the acceleration
+/// of the stage before, `last`.
+#[inline(never)]
+fn offsets(
+    step: f64,
+    v_base: &[f64],
+    last: &[f64],
+    x: &mut [f64],
+    velocity_offset: &mut [f64],
+    acceleration_offset: &mut [f64],
+    v: &mut [f64],
 ) {
-    let c: [f64; STAGES - 1] = STRICTLY_LOWER[stage].map(|a| h * a);
-    let [r0, r1, r2, r3, r4, _] = rates.each_ref().map(|rate| flat(rate));
-    let (out, start) = (flat_mut(out), flat(start));
-    match stage {
-        1 => (0..out.len()).for_each(|i| out[i] = r0[i].mul_add(c[0], start[i])),
-        2 => (0..out.len()).for_each(|i| out[i] = r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i]))),
-        3 => (0..out.len()).for_each(|i| {
-            out[i] = r2[i].mul_add(c[2], r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i])));
-        }),
-        4 => (0..out.len()).for_each(|i| {
-            let s = r1[i].mul_add(c[1], r0[i].mul_add(c[0], start[i]));
-            out[i] = r3[i].mul_add(c[3], r2[i].mul_add(c[2], s));
-        }),
-        _ => (0..out.len()).for_each(|i| {
-            let s = r2[i].mul_add(c[2], r0[i].mul_add(c[0], start[i]));
-            out[i] = r4[i].mul_add(c[4], r3[i].mul_add(c[3], s));
-        }),
+    let n = x.len();
+    let (v_base, last, v) = (&v_base[..n], &last[..n], &mut v[..n]);
+    let (velocity_offset, acceleration_offset) = (&mut velocity_offset[..n], &mut acceleration_offset[..n]);
+    let (c, diagonal) = (1.0 / (DIAGONAL * step), DIAGONAL * step);
+    for i in 0..n {
+        let x_base = x[i];
+        velocity_offset[i] = -c * x_base;
+        acceleration_offset[i] = c * (velocity_offset[i] - v_base[i]);
+        v[i] = diagonal.mul_add(last[i], v_base[i]);
+        x[i] = diagonal.mul_add(v[i], x_base);
+    }
+}
+
+/// `out = (x - y) factor`.
+#[inline(never)]
+fn difference_times(x: &[f64], y: &[f64], factor: f64, out: &mut [f64]) {
+    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
+        *out = (x - y) * factor;
     }
 }
 

@@ -1,10 +1,10 @@
 //! Work that the string's matrices do along its motion.
 
-use crate::linalg::{Block, BlockTridiagonal, Four, Lane};
+use crate::linalg::{Block, BlockTridiagonal, SkewPart};
 use crate::model::NodalVector;
 
-/// Stages that are gathered before the forms' matrices are read: one vector of them.
-const GATHERED: usize = Four::LANES;
+/// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
+const GATHERED: usize = 4;
 
 /// Entries below this share of the matrix' largest entry are rounding of terms that cancel.
 const CANCELLED: f64 = 1e-13;
@@ -12,31 +12,29 @@ const CANCELLED: f64 = 1e-13;
 /// Time integrals of `v^T S v` with the symmetric parts of several matrices and of `v^T A x` with the skew part of one
 /// more: sums over stages of a weight \[s\] times the form.
 ///
-/// Stages are gathered first and then taken side by side, so that a matrix is read once for all of them.
+/// A sum of symmetric forms is the matrix times the sum of the stages' products `v v^T`, entry by entry. So only those products, of
+/// a node with itself and with the next one, are summed, once for all matrices; no matrix is read before the work is asked
+/// for, and the matrices of the time step keep the cache for themselves. The skew matrix is read, for several stages at once.
 #[derive(Debug, Clone)]
 pub(super) struct Forms<const N: usize, const D: usize> {
-    symmetric: [Form<D>; N],
-    skew: Form<D>,
-    stages: [Stage<D>; GATHERED],
-    gathered: usize,
+    symmetric: [SymmetricPart<D>; N],
+    skew: SkewPart<D>,
+    /// Sums of `w v v^T` and of `w v v_next^T`, of every node.
+    moments: Vec<[Block<f64, D>; 2]>,
+    skew_sum: f64,
+    gathered: [GatheredStage<D>; GATHERED],
+    count: usize,
 }
 
-/// Velocities and displacements at a stage.
+/// A stage as the forms take it: the seconds that it counts, its velocities and displacements.
+pub(super) type BookedStage<'a, const D: usize> = (f64, &'a [[f64; D]], &'a [[f64; D]]);
+
 #[derive(Debug, Clone)]
-struct Stage<const D: usize> {
+struct GatheredStage<const D: usize> {
     weight: f64,
     velocity: NodalVector<D>,
     displacement: NodalVector<D>,
 }
-
-/// What is left of a matrix at each node: the block on the diagonal and the one above it, or nothing. The symmetric
-/// part of the Coriolis matrix lives where the section changes, the skew part of the stiffness where the torque does
-/// and at the free end: between equal neighbours the element's boundary terms cancel.
-#[derive(Debug, Clone)]
-struct Form<const D: usize>(Vec<Option<Box<[Block<f64, D>; 2]>>>);
-
-/// Values of a node at the gathered stages, side by side.
-type Values<const D: usize> = [Four; D];
 
 /// Integrals of the forms: the symmetric ones, then the skew one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,154 +43,119 @@ pub(super) struct Integrals<const N: usize> {
     pub(super) skew: f64,
 }
 
+/// What is left of a matrix' symmetric part, with the nodes where it is: blocks on the diagonal and blocks above it. Between
+/// equal neighbours the Coriolis matrices' boundary terms cancel: theirs lives where the section changes.
+#[derive(Debug, Clone)]
+struct SymmetricPart<const D: usize> {
+    diagonal: Vec<(usize, Block<f64, D>)>,
+    upper: Vec<(usize, Block<f64, D>)>,
+}
+
 impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn new(symmetric: [&BlockTridiagonal<f64, D>; N], skew: &BlockTridiagonal<f64, D>) -> Self {
         let zero = vec![[0.0; D]; skew.rows()];
-        let stage = Stage { weight: 0.0, velocity: zero.clone(), displacement: zero };
+        let stage = GatheredStage { weight: 0.0, velocity: zero.clone(), displacement: zero };
         Self {
-            symmetric: symmetric.map(|m| Form::new(m, 0.5)),
-            skew: Form::new(skew, -0.5),
-            stages: std::array::from_fn(|_| stage.clone()),
-            gathered: 0,
+            symmetric: symmetric.map(SymmetricPart::new),
+            skew: SkewPart::new(skew, CANCELLED * largest(skew)),
+            moments: vec![[Block::zero(); 2]; skew.rows()],
+            skew_sum: 0.0,
+            gathered: std::array::from_fn(|_| stage.clone()),
+            count: 0,
         }
     }
 
-    /// Whether the next stage needs [`Forms::take`] first.
-    pub(super) fn is_full(&self) -> bool {
-        self.gathered == GATHERED
+    /// Adds stages.
+    pub(super) fn add<const K: usize>(&mut self, stages: [BookedStage<'_, D>; K]) {
+        add_products(&mut self.moments, stages.map(|(weight, velocity, _)| (weight, velocity)));
+        self.skew_sum += self.skew.product(stages);
     }
 
-    /// Forgets the stages gathered.
-    pub(super) fn forget(&mut self) {
-        self.gathered = 0;
-    }
-
-    /// Gathers a stage.
-    pub(super) fn gather(&mut self, weight: f64, velocity: &[[f64; D]], displacement: &[[f64; D]]) {
-        let stage = &mut self.stages[self.gathered];
+    /// Adds one stage, together with others of its kind.
+    pub(super) fn gather(&mut self, (weight, velocity, displacement): BookedStage<'_, D>) {
+        if self.count == GATHERED {
+            self.add_gathered();
+        }
+        let stage = &mut self.gathered[self.count];
         stage.weight = weight;
         stage.velocity.copy_from_slice(velocity);
         stage.displacement.copy_from_slice(displacement);
-        self.gathered += 1;
+        self.count += 1;
     }
 
-    /// Adds to the weight of the last stage; false when there is none.
-    pub(super) fn weigh_last(&mut self, weight: f64) -> bool {
-        let Some(last) = self.stages[..self.gathered].last_mut() else { return false };
-        last.weight += weight;
-        true
+    /// Forgets everything since the last [`Forms::take`].
+    pub(super) fn forget(&mut self) {
+        self.count = 0;
+        self.skew_sum = 0.0;
+        self.moments.fill([Block::zero(); 2]);
     }
 
-    /// Integrals over the stages gathered, which are forgotten.
+    /// Integrals over the stages since the last take, which are forgotten.
     pub(super) fn take(&mut self) -> Integrals<N> {
-        for stage in &mut self.stages[self.gathered..] {
+        self.add_gathered();
+        let symmetric = self.symmetric.each_ref().map(|part| {
+            let diagonal = part.diagonal.iter().map(|(node, block)| block.dot(&self.moments[*node][0]));
+            // What stands above the diagonal is mirrored below.
+            let upper = part.upper.iter().map(|(node, block)| 2.0 * block.dot(&self.moments[*node][1]));
+            diagonal.sum::<f64>() + upper.sum::<f64>()
+        });
+        let skew = self.skew_sum;
+        self.forget();
+        Integrals { symmetric, skew }
+    }
+
+    fn add_gathered(&mut self) {
+        if self.count == 0 {
+            return;
+        }
+        // A stage that is not there weighs nothing.
+        for stage in &mut self.gathered[self.count..] {
             stage.weight = 0.0;
         }
-        self.gathered = 0;
-        let stages = &self.stages;
-        let weight = Four::new(std::array::from_fn(|lane| stages[lane].weight));
-        let velocity = |node: usize| side_by_side(stages.each_ref().map(|stage| stage.velocity.get(node)));
-        let displacement =
-            |node: usize| side_by_side(stages.each_ref().map(|stage| stage.displacement.get(node)));
-        let zero = Four::splat(0.0);
-        let (mut symmetric, mut skew) = ([zero; N], zero);
-        let (mut v, mut x) = (velocity(0), displacement(0));
-        for node in 0..self.skew.0.len() {
-            let (v_next, x_next) = (velocity(node + 1), displacement(node + 1));
-            let weighted = v.map(|v| weight * v);
-            for (sum, form) in symmetric.iter_mut().zip(&self.symmetric) {
-                if let Some(blocks) = &form.0[node] {
-                    *sum = add_symmetric(*sum, blocks, &weighted, &v, &v_next);
-                }
-            }
-            if let Some(blocks) = &self.skew.0[node] {
-                let weighted_displacement = x.map(|x| weight * x);
-                skew = add_skew(skew, blocks, (&weighted, &v_next), (&weighted_displacement, &x, &x_next));
-            }
-            (v, x) = (v_next, x_next);
+        let stages = self.gathered.each_ref().map(|s| (s.weight, &*s.velocity, &*s.displacement));
+        add_products(&mut self.moments, stages.map(|(weight, velocity, _)| (weight, velocity)));
+        self.skew_sum += self.skew.product(stages);
+        self.count = 0;
+    }
+}
+
+fn add_products<const K: usize, const D: usize>(
+    moments: &mut [[Block<f64, D>; 2]],
+    stages: [(f64, &[[f64; D]]); K],
+) {
+    let rows = moments.len();
+    let stages = stages.map(|(weight, v)| (weight, &v[..rows]));
+    for (node, [own, next]) in moments.iter_mut().enumerate() {
+        own.add_products(stages.map(|(weight, v)| (weight, &v[node], &v[node])));
+        if node + 1 < rows {
+            next.add_products(stages.map(|(weight, v)| (weight, &v[node], &v[node + 1])));
         }
-        let total = |lanes: Four| {
-            let [a, b, c, d] = lanes.to_array();
-            (a + b) + (c + d)
-        };
-        Integrals { symmetric: symmetric.map(total), skew: total(skew) }
     }
 }
 
-impl<const D: usize> Form<D> {
-    /// The symmetric part of `m` for `with_transpose` = 1/2, the skew part for -1/2.
-    fn new(m: &BlockTridiagonal<f64, D>, with_transpose: f64) -> Self {
-        let part = half_sum(m, with_transpose);
+impl<const D: usize> SymmetricPart<D> {
+    fn new(m: &BlockTridiagonal<f64, D>) -> Self {
+        let part = symmetric_part(m);
         let threshold = CANCELLED * largest(m);
-        let rows = part.diagonal.iter().zip(&part.upper).map(|(diagonal, upper)| {
-            let entries = diagonal.columns.as_flattened().iter().chain(upper.columns.as_flattened());
-            let present = entries.fold(0.0_f64, |most, v| most.max(v.abs())) > threshold;
-            present.then(|| Box::new([*diagonal, *upper]))
-        });
-        Self(rows.collect())
+        let present = |blocks: &[Block<f64, D>]| {
+            blocks.iter().copied().enumerate().filter(|(_, block)| largest_entry(block) > threshold).collect()
+        };
+        let above = part.upper.len() - 1;
+        Self { diagonal: present(&part.diagonal), upper: present(&part.upper[..above]) }
     }
 }
 
-/// Adds `w v_n^T (D v_n + 2 U v_(n+1))`, U being mirrored below the diagonal; `weighted` is w v_n.
-#[inline(always)]
-fn add_symmetric<const D: usize>(
-    sum: Four,
-    [d, u]: &[Block<f64, D>; 2],
-    weighted: &Values<D>,
-    v: &Values<D>,
-    v_next: &Values<D>,
-) -> Four {
-    let mut sum = sum;
-    let twice = v_next.map(|v| v + v);
-    for (row, weighted) in weighted.iter().enumerate() {
-        let own = row_product(d, row, v, Four::splat(0.0));
-        sum = weighted.mul_add(row_product(u, row, &twice, own), sum);
-    }
-    sum
-}
-
-/// Adds `w v_n^T (D x_n + U x_(n+1)) - w x_n^T U v_(n+1)`: below the diagonal stands minus the transposed U.
-#[inline(always)]
-fn add_skew<const D: usize>(
-    sum: Four,
-    [d, u]: &[Block<f64, D>; 2],
-    (weighted_velocity, v_next): (&Values<D>, &Values<D>),
-    (weighted_displacement, x, x_next): (&Values<D>, &Values<D>, &Values<D>),
-) -> Four {
-    let mut sum = sum;
-    for row in 0..D {
-        let own = row_product(d, row, x, Four::splat(0.0));
-        sum = weighted_velocity[row].mul_add(row_product(u, row, x_next, own), sum);
-        let pulled = row_product(u, row, v_next, Four::splat(0.0));
-        sum = (-weighted_displacement[row]).mul_add(pulled, sum);
-    }
-    sum
-}
-
-#[inline(always)]
-fn row_product<const D: usize>(block: &Block<f64, D>, row: usize, x: &Values<D>, sum: Four) -> Four {
-    let columns = block.columns.iter().zip(x);
-    columns.fold(sum, |sum, (column, x)| Four::splat(column[row]).mul_add(*x, sum))
-}
-
-/// Values of one node at all stages; zero beyond the bit.
-#[inline(always)]
-fn side_by_side<const D: usize>(stages: [Option<&[f64; D]>; GATHERED]) -> Values<D> {
-    let [a, b, c, d] = stages.map(|values| values.unwrap_or(&[0.0; D]));
-    std::array::from_fn(|dof| Four::new([a[dof], b[dof], c[dof], d[dof]]))
-}
-
-/// `m / 2 + with_transpose m^T`.
-pub(super) fn half_sum<const D: usize>(
-    m: &BlockTridiagonal<f64, D>,
-    with_transpose: f64,
-) -> BlockTridiagonal<f64, D> {
-    BlockTridiagonal::combine(0.5, m, with_transpose, &transpose(m), 0.0, m)
+/// `(m + m^T) / 2`.
+pub(super) fn symmetric_part<const D: usize>(m: &BlockTridiagonal<f64, D>) -> BlockTridiagonal<f64, D> {
+    BlockTridiagonal::combine(0.5, m, 0.5, &transpose(m), 0.0, m)
 }
 
 fn largest<const D: usize>(m: &BlockTridiagonal<f64, D>) -> f64 {
-    let blocks = m.lower.iter().chain(&m.diagonal).chain(&m.upper);
-    blocks.flat_map(|block| block.columns.iter().flatten()).fold(0.0_f64, |most, v| most.max(v.abs()))
+    m.lower.iter().chain(&m.diagonal).chain(&m.upper).map(largest_entry).fold(0.0, f64::max)
+}
+
+fn largest_entry<const D: usize>(block: &Block<f64, D>) -> f64 {
+    block.columns.as_flattened().iter().fold(0.0_f64, |most, v| most.max(v.abs()))
 }
 
 fn transpose<const D: usize>(m: &BlockTridiagonal<f64, D>) -> BlockTridiagonal<f64, D> {
@@ -250,29 +213,28 @@ mod tests {
         for full in [0, 3, 100] {
             let (m, other) = (matrix(rows, full), matrix(rows, 100));
             let mut forms = Forms::new([&m, &other], &m);
-            forms.gather(7.0, &x, &v);
+            for _ in 0..2 * GATHERED {
+                forms.gather((7.0, &x, &v));
+            }
             forms.forget();
-            forms.gather(0.5, &v, &x);
-            assert!(forms.weigh_last(0.25));
-            forms.gather(0.4, &v2, &x2);
-            let integrals = forms.take();
+            forms.add([(0.5, &*v, &*x), (0.25, &*v, &*x)]);
+            for _ in 0..GATHERED + 1 {
+                forms.gather((0.4 / (GATHERED + 1) as f64, &v2, &x2));
+            }
             // v^T M v sees the symmetric part alone; (v^T M x - x^T M v) / 2 the skew one.
             let square = |m| 0.75 * product(&v, m, &v) + 0.4 * product(&v2, m, &v2);
             let skew = |v: &[_], x: &[_]| 0.5 * (product(v, &m, x) - product(x, &m, v));
-            let wanted = Integrals {
-                symmetric: [square(&m), square(&other)],
-                skew: 0.75 * skew(&v, &x) + 0.4 * skew(&v2, &x2),
-            };
-            assert!(
-                (integrals.symmetric[0] - wanted.symmetric[0]).abs() < tolerance,
-                "{integrals:?} {wanted:?}"
+            let integrals = forms.take();
+            for (got, wanted) in integrals.symmetric.into_iter().zip([square(&m), square(&other)]) {
+                assert!((got - wanted).abs() < tolerance, "{got} against {wanted}");
+            }
+            let wanted = 0.75 * skew(&v, &x) + 0.4 * skew(&v2, &x2);
+            assert!((integrals.skew - wanted).abs() < tolerance, "{} against {wanted}", integrals.skew);
+            assert_eq!(
+                forms.take(),
+                Integrals { symmetric: [0.0; 2], skew: 0.0 },
+                "taken stages are forgotten"
             );
-            assert!(
-                (integrals.symmetric[1] - wanted.symmetric[1]).abs() < tolerance,
-                "{integrals:?} {wanted:?}"
-            );
-            assert!((integrals.skew - wanted.skew).abs() < tolerance, "{integrals:?} {wanted:?}");
-            assert!(!forms.weigh_last(1.0) && forms.take().skew == 0.0, "taken stages are forgotten");
         }
     }
 }

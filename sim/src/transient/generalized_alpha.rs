@@ -36,6 +36,7 @@ pub(super) struct GeneralizedAlpha<const D: usize> {
     acceleration_offset: NodalVector<D>,
     velocity_offset: NodalVector<D>,
     mean_velocity: NodalVector<D>,
+    next_displacement: NodalVector<D>,
 }
 
 impl<const D: usize> GeneralizedAlpha<D> {
@@ -54,7 +55,8 @@ impl<const D: usize> GeneralizedAlpha<D> {
             solver,
             acceleration_offset: zero.clone(),
             velocity_offset: zero.clone(),
-            mean_velocity: zero,
+            mean_velocity: zero.clone(),
+            next_displacement: zero,
         })
     }
 
@@ -67,42 +69,31 @@ impl<const D: usize> GeneralizedAlpha<D> {
         state: &mut State<D>,
         Books { ledger, errors }: Books<'_, D>,
     ) {
-        let (alpha_m, alpha_f, beta, gamma) = parameters(self.spectral_radius);
+        let (_, alpha_f, beta, _) = parameters(self.spectral_radius);
         let h = self.step;
-        let (c_a, c_v) = ((1.0 - alpha_m) / ((1.0 - alpha_f) * beta * h * h), gamma / (beta * h));
-        let acceleration_from_v = -(1.0 - alpha_m) / (beta * h);
-        let acceleration_from_a = alpha_m - (1.0 - alpha_m) * (0.5 - beta) / beta;
-        let velocity_from_v = 1.0 - (1.0 - alpha_f) * gamma / beta;
-        let velocity_from_a = (1.0 - alpha_f) * h * (1.0 - gamma - gamma * (0.5 - beta) / beta);
         let solver = &mut self.solver;
-        let (x0, v0, a0) = (flat(&state.displacement), flat(&state.velocity), flat(&state.acceleration));
-        let a_hat = flat_mut(&mut self.acceleration_offset);
-        let v_hat = flat_mut(&mut self.velocity_offset);
-        let x = flat_mut(&mut solver.displacement);
-        let v = flat_mut(&mut solver.velocity);
-        for i in 0..x0.len() {
-            a_hat[i] = acceleration_from_a * a0[i] + acceleration_from_v * v0[i] - c_a * x0[i];
-            v_hat[i] = velocity_from_v * v0[i] + velocity_from_a * a0[i] - c_v * x0[i];
-            // Predictor: the acceleration stays as it is.
-            x[i] = x0[i] + (1.0 - alpha_f) * h * (v0[i] + 0.5 * h * a0[i]);
-            v[i] = v0[i] + (1.0 - alpha_f) * h * a0[i];
-        }
-        let level = time + (1.0 - alpha_f) * h;
-        solver.solve(system, forces, level, &self.acceleration_offset, &self.velocity_offset);
-
-        let mean_velocity = flat_mut(&mut self.mean_velocity);
-        let (y, x0) = (flat(&solver.displacement), flat_mut(&mut state.displacement));
-        let (v0, a0) = (flat_mut(&mut state.velocity), flat_mut(&mut state.acceleration));
-        let before = flat_mut(&mut self.acceleration_offset);
-        before.copy_from_slice(a0);
-        for i in 0..y.len() {
-            let d = (y[i] - x0[i]) / (1.0 - alpha_f);
-            let a1 = (d / h - v0[i]) / (beta * h) - (0.5 - beta) / beta * a0[i];
-            v0[i] += h * ((1.0 - gamma) * a0[i] + gamma * a1);
-            a0[i] = a1;
-            x0[i] += d;
-            mean_velocity[i] = d / h;
-        }
+        level_offsets(
+            &LevelCoefficients::new(h, self.spectral_radius),
+            state,
+            flat_mut(&mut self.acceleration_offset),
+            flat_mut(&mut self.velocity_offset),
+            flat_mut(&mut solver.displacement),
+            flat_mut(&mut solver.velocity),
+        );
+        let level_time = time + (1.0 - alpha_f) * h;
+        solver.solve(system, forces, level_time, &self.acceleration_offset, &self.velocity_offset);
+        step_end(
+            &EndCoefficients::new(h, self.spectral_radius),
+            state,
+            flat(&solver.displacement),
+            flat_mut(&mut self.next_displacement),
+            flat_mut(&mut self.velocity_offset),
+            flat_mut(&mut self.acceleration_offset),
+            flat_mut(&mut self.mean_velocity),
+        );
+        std::mem::swap(&mut state.displacement, &mut self.next_displacement);
+        std::mem::swap(&mut state.velocity, &mut self.velocity_offset);
+        std::mem::swap(&mut state.acceleration, &mut self.acceleration_offset);
         // The Taylor series of a step has h^2/6 where the method has h^2 beta before the change of acceleration.
         let (before, after) = (&self.acceleration_offset, &state.acceleration);
         errors.add(before.len(), |n, d| h * h * (beta - 1.0 / 6.0) * (after[n][d] - before[n][d]));
@@ -111,8 +102,110 @@ impl<const D: usize> GeneralizedAlpha<D> {
             &self.mean_velocity,
             &solver.displacement,
             &solver.contact,
-            forces.unbalance_at(level),
+            forces.unbalance_at(level_time),
         );
+    }
+}
+
+/// What the offsets and the predictor of a step's level take from the state at its start.
+struct LevelCoefficients {
+    step_to_level: f64,
+    half_step: f64,
+    /// Of displacement, velocity and acceleration in a^.
+    acceleration: [f64; 3],
+    /// The same in v^.
+    velocity: [f64; 3],
+}
+
+impl LevelCoefficients {
+    fn new(h: f64, spectral_radius: f64) -> Self {
+        let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
+        let StageCoefficients { acceleration, velocity } = stage_coefficients(h, spectral_radius);
+        Self {
+            step_to_level: (1.0 - alpha_f) * h,
+            half_step: 0.5 * h,
+            acceleration: [
+                -acceleration,
+                -(1.0 - alpha_m) / (beta * h),
+                alpha_m - (1.0 - alpha_m) * (0.5 - beta) / beta,
+            ],
+            velocity: [
+                -velocity,
+                1.0 - (1.0 - alpha_f) * gamma / beta,
+                (1.0 - alpha_f) * h * (1.0 - gamma - gamma * (0.5 - beta) / beta),
+            ],
+        }
+    }
+}
+
+/// Offsets a^ and v^ of a level, and its predictor in `x` and `v`: the acceleration stays as it is. As the function below, one
+/// of its own: only where its slices are arguments does the compiler know that they do not overlap, and takes four values at
+/// a time.
+#[inline(never)]
+fn level_offsets<const D: usize>(
+    c: &LevelCoefficients,
+    start: &State<D>,
+    acceleration_offset: &mut [f64],
+    velocity_offset: &mut [f64],
+    x: &mut [f64],
+    v: &mut [f64],
+) {
+    let n = x.len();
+    let [x0, v0, a0] = [&start.displacement, &start.velocity, &start.acceleration].map(|s| &flat(s)[..n]);
+    let (acceleration_offset, velocity_offset) = (&mut acceleration_offset[..n], &mut velocity_offset[..n]);
+    let v = &mut v[..n];
+    let sum = |c: &[f64; 3], i: usize| c[2].mul_add(a0[i], c[1].mul_add(v0[i], c[0] * x0[i]));
+    for i in 0..n {
+        acceleration_offset[i] = sum(&c.acceleration, i);
+        velocity_offset[i] = sum(&c.velocity, i);
+        x[i] = c.step_to_level.mul_add(c.half_step.mul_add(a0[i], v0[i]), x0[i]);
+        v[i] = c.step_to_level.mul_add(a0[i], v0[i]);
+    }
+}
+
+/// What the step's end takes from its level and its start.
+struct EndCoefficients {
+    /// 1 / (1 - alpha_f): draws the change up to the level out to the whole step.
+    drawn_out: f64,
+    per_step: f64,
+    /// Of the mean velocity less that at the start, and of the acceleration at the start, in the acceleration at the end.
+    acceleration: [f64; 2],
+    /// Of the accelerations at the start and at the end in the velocity at the end.
+    velocity: [f64; 2],
+}
+
+impl EndCoefficients {
+    fn new(h: f64, spectral_radius: f64) -> Self {
+        let (_, alpha_f, beta, gamma) = parameters(spectral_radius);
+        Self {
+            drawn_out: 1.0 / (1.0 - alpha_f),
+            per_step: 1.0 / h,
+            acceleration: [1.0 / (beta * h), -(0.5 - beta) / beta],
+            velocity: [h * (1.0 - gamma), h * gamma],
+        }
+    }
+}
+
+/// The step's end, and its mean velocity, from the displacements `level`.
+#[inline(never)]
+fn step_end<const D: usize>(
+    c: &EndCoefficients,
+    start: &State<D>,
+    level: &[f64],
+    x: &mut [f64],
+    v: &mut [f64],
+    a: &mut [f64],
+    mean_velocity: &mut [f64],
+) {
+    let n = x.len();
+    let [x0, v0, a0] = [&start.displacement, &start.velocity, &start.acceleration].map(|s| &flat(s)[..n]);
+    let (level, v, a, mean_velocity) = (&level[..n], &mut v[..n], &mut a[..n], &mut mean_velocity[..n]);
+    for i in 0..n {
+        let change = (level[i] - x0[i]) * c.drawn_out;
+        mean_velocity[i] = change * c.per_step;
+        a[i] = (mean_velocity[i] - v0[i]).mul_add(c.acceleration[0], c.acceleration[1] * a0[i]);
+        v[i] = c.velocity[1].mul_add(a[i], c.velocity[0].mul_add(a0[i], v0[i]));
+        x[i] = x0[i] + change;
     }
 }
 

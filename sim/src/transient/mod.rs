@@ -33,7 +33,7 @@ use crate::statics::Equilibrium;
 use energy::{Ledger, Work};
 use error::ErrorSum;
 use esdirk::Esdirk;
-use forces::{ContactForces, Forces, NodeContact};
+use forces::{ContactForces, Forces};
 use generalized_alpha::GeneralizedAlpha;
 use rk4::Rk4;
 
@@ -432,7 +432,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let n = state.displacement.len();
         let mut right = vec![[0.0; D]; n];
         let mut linear = vec![[0.0; D]; n];
-        let mut contact: ContactForces = vec![NodeContact::default(); n];
+        let mut contact = ContactForces::none(n);
         self.forces.external_into(0.0, &mut right);
         self.forces.contact_into(&state.displacement, &state.velocity, &mut contact);
         self.forces.add_contact(&mut right, &contact);
@@ -446,11 +446,7 @@ impl<'m, const D: usize> Run<'m, D> {
         state.acceleration = right;
         state.stage_power =
             self.ledger.power(&state.velocity, &state.displacement, &contact, self.forces.unbalance_at(0.0));
-        for ((statistics, x), contact) in
-            self.progress.contacts.iter_mut().zip(&state.displacement).zip(&contact)
-        {
-            statistics.observe(x, contact, 0.0);
-        }
+        observe(&mut self.progress.contacts, state, &contact, 0.0);
         Ok(())
     }
 
@@ -629,10 +625,10 @@ pub fn recorded_nodes(model: &Model) -> Vec<usize> {
 fn observe<const D: usize>(
     statistics: &mut [ContactStatistics],
     state: &State<D>,
-    contact: &[NodeContact],
+    contact: &ContactForces,
     duration: f64,
 ) {
-    for ((statistics, x), contact) in statistics.iter_mut().zip(&state.displacement).zip(contact) {
-        statistics.observe(x, contact, duration);
+    for ((statistics, x), contact) in statistics.iter_mut().zip(&state.displacement).zip(contact.nodes()) {
+        statistics.observe(x, &contact, duration);
     }
 }

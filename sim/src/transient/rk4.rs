@@ -4,7 +4,7 @@
 
 use super::energy::Ledger;
 use super::error::ErrorSum;
-use super::forces::{ContactForces, Forces, NodeContact};
+use super::forces::{ContactForces, Forces};
 use super::implicit::{flat, flat_mut, held_list};
 use super::{Books, State, steps_per_interval};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
@@ -25,7 +25,6 @@ pub(super) struct Rk4<const D: usize> {
     rates: [(NodalVector<D>, NodalVector<D>); 4],
     stage: (NodalVector<D>, NodalVector<D>),
     right: NodalVector<D>,
-    linear: NodalVector<D>,
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
     pub(super) steps: u64,
@@ -52,9 +51,8 @@ impl<const D: usize> Rk4<D> {
             hole_radius,
             rates: std::array::from_fn(|_| (zero.clone(), zero.clone())),
             stage: (zero.clone(), zero.clone()),
-            right: zero.clone(),
-            linear: zero,
-            contact: vec![NodeContact::default(); n],
+            right: zero,
+            contact: ContactForces::none(n),
             rejected: 0,
             steps: 0,
         })
@@ -154,10 +152,7 @@ impl<const D: usize> Rk4<D> {
             forces.external_into(stage_time, &mut self.right);
             forces.contact_into(x, v, &mut self.contact);
             forces.add_contact(&mut self.right, &self.contact);
-            BlockTridiagonal::multiply_two_into(&system.damping, v, &system.stiffness, x, &mut self.linear);
-            for (right, linear) in flat_mut(&mut self.right).iter_mut().zip(flat(&self.linear)) {
-                *right -= linear;
-            }
+            BlockTridiagonal::subtract_two(&system.damping, v, &system.stiffness, x, &mut self.right);
             for &(node, dof) in &self.held {
                 self.right[node][dof] = 0.0;
             }

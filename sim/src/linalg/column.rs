@@ -1,0 +1,65 @@
+//! A column of a block in vectors of four rows and two: left to itself, the compiler goes row by row from the fifth on.
+
+use wide::{f64x2, f64x4};
+
+/// Up to six rows of one `f64` each; rows that a block does not have are zeros.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Column {
+    head: f64x4,
+    tail: f64x2,
+}
+
+impl Column {
+    pub(super) fn zero() -> Self {
+        Column { head: f64x4::splat(0.0), tail: f64x2::splat(0.0) }
+    }
+
+    #[inline(always)]
+    pub(super) fn new<const D: usize>(rows: &[f64; D]) -> Self {
+        let at = |row: usize| if row < D { rows[row] } else { 0.0 };
+        Column { head: f64x4::new([at(0), at(1), at(2), at(3)]), tail: f64x2::new([at(4), at(5)]) }
+    }
+
+    /// `self * factor + addend`, each row rounded once.
+    #[inline(always)]
+    pub(super) fn mul_add(self, factor: f64, addend: Self) -> Self {
+        Column {
+            head: self.head.mul_add(f64x4::splat(factor), addend.head),
+            tail: self.tail.mul_add(f64x2::splat(factor), addend.tail),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn times(self, factor: f64) -> Self {
+        Column { head: self.head * f64x4::splat(factor), tail: self.tail * f64x2::splat(factor) }
+    }
+
+    /// Row by row.
+    #[inline(always)]
+    pub(super) fn product(self, other: Self) -> Self {
+        Column { head: self.head * other.head, tail: self.tail * other.tail }
+    }
+
+    #[inline(always)]
+    pub(super) fn minus(self, other: Self) -> Self {
+        Column { head: self.head - other.head, tail: self.tail - other.tail }
+    }
+
+    #[inline(always)]
+    pub(super) fn plus(self, other: Self) -> Self {
+        Column { head: self.head + other.head, tail: self.tail + other.tail }
+    }
+
+    /// The sum of all rows, by pairs.
+    #[inline(always)]
+    pub(super) fn sum(self) -> f64 {
+        let ([a, b, c, d], [e, f]) = (self.head.to_array(), self.tail.to_array());
+        ((a + b) + (c + d)) + (e + f)
+    }
+
+    #[inline(always)]
+    pub(super) fn to_rows<const D: usize>(self) -> [f64; D] {
+        let (head, tail) = (self.head.to_array(), self.tail.to_array());
+        std::array::from_fn(|row| if row < 4 { head[row] } else { tail[row - 4] })
+    }
+}

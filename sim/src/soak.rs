@@ -107,7 +107,7 @@ fn statics_cause(error: &StaticsError) -> &'static str {
     match error {
         StaticsError::NotConverged { .. } => "no equilibrium",
         StaticsError::Singular(_) => "singular tangent",
-        StaticsError::Mud(_) => "mud without a flow",
+        StaticsError::Mud { .. } => "mud without a flow",
         StaticsError::HydraulicsNotConverged { .. } => "string and mud do not settle",
     }
 }

@@ -47,10 +47,10 @@ fn time_of(scenario: &Scenario) -> Result<RunTime, ComputeError> {
     };
     for _ in 0..REPETITIONS {
         let watch = Stopwatch::start();
-        let run = Transient::new(&model, &equilibrium)?;
+        let run = Transient::new(&model, &equilibrium).map_err(ComputeError::Transient)?;
         time.start_cpu_time = time.start_cpu_time.min(watch.elapsed().1);
         let watch = Stopwatch::start();
-        match run.run(&Control::new())? {
+        match run.run(&Control::new()).map_err(ComputeError::Transient)? {
             Outcome::Finished(records) => {
                 time.steps = records.effort.steps;
                 time.steps_cpu_time = time.steps_cpu_time.min(watch.elapsed().1);

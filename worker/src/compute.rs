@@ -86,7 +86,7 @@ pub enum ComputeError {
     Statics(#[from] StaticsError),
     /// The run in time cannot be set up.
     #[error(transparent)]
-    Transient(#[from] TransientError),
+    Transient(TransientError),
     /// The run in time failed; beside it, whether the scene itself is unstable.
     #[error("{error}; {}", .stability.map_or_else(String::new, |stability| stability.to_string()))]
     Run {
@@ -115,8 +115,15 @@ impl ComputeError {
                 }
                 error["stability"] = json!(stability);
             }
-            ComputeError::Statics(StaticsError::NotConverged { node, .. }) => error["node"] = json!(node),
-            ComputeError::Statics(StaticsError::Singular(block)) => error["node"] = json!(block.row + 1),
+            // What fails before the first step fails at its time.
+            ComputeError::Statics(failure) => {
+                error["time"] = json!(0.0);
+                error["node"] = json!(failure.node());
+            }
+            ComputeError::Transient(failure) => {
+                error["time"] = json!(0.0);
+                error["node"] = json!(failure.node());
+            }
             _ => {}
         }
         error
@@ -238,9 +245,9 @@ pub fn compute_from(
         is_resumed = resumed.is_some();
         let transient = match resumed {
             Some(transient) => transient,
-            None => Transient::new(&model, &equilibrium)?,
+            None => Transient::new(&model, &equilibrium).map_err(failed)?,
         };
-        match transient.run(&control.part())? {
+        match transient.run(&control.part()).map_err(failed)? {
             Outcome::Finished(records) => Some(*records),
             Outcome::Suspended(checkpoint) => return Ok(Computation::Suspended(checkpoint)),
             Outcome::Cancelled => return Err(ComputeError::Cancelled),
@@ -318,4 +325,43 @@ impl Stopwatch {
 fn thread_cpu_time() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_sim::scenario::{Effect, Switch, preset};
+
+    use super::*;
+
+    fn failure(scenario: &Scenario) -> Value {
+        let ended = compute(scenario, &Control::new());
+        ended.expect_err("it must fail").to_json()
+    }
+
+    #[test]
+    fn a_run_that_diverges_tells_time_and_node_and_that_the_scene_is_unstable() {
+        // Beyond flutter (Paidoussis 1998, chapter 3), with no wall to hold it.
+        let mut scenario = preset("hard/flow-flutter").expect("shipped preset");
+        scenario.duration = 30.0;
+        scenario.recording.orbit_window = None;
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        let error = failure(&scenario);
+        assert_eq!(error["class"], "physical");
+        let (time, node) = (error["time"].as_f64().unwrap(), error["node"].as_u64().unwrap());
+        assert!(time > 0.5 && time < 30.0, "{error}");
+        assert!((2..=61).contains(&node), "{error}");
+        assert_eq!(error["stability"]["stable"], false, "{error}");
+        assert!(error["reason"].as_str().unwrap().contains("flutter"), "{error}");
+    }
+
+    #[test]
+    fn a_string_without_equilibrium_tells_where_and_at_the_start() {
+        // Without its wall the string buckles under the weight on bit.
+        let mut scenario = preset("paper-200m").expect("shipped preset");
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        let error = failure(&scenario);
+        assert_eq!(error["time"], 0.0);
+        assert!((1..=297).contains(&error["node"].as_u64().unwrap()), "{error}");
+        assert!(error["reason"].as_str().unwrap().contains("no equilibrium"), "{error}");
+    }
 }

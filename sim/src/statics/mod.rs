@@ -83,17 +83,37 @@ pub enum StaticsError {
     /// The tangent broke down.
     #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
     Singular(#[from] SingularBlock),
-    /// The flow has no solution.
-    #[error("mud: {0}")]
-    Mud(#[from] MudError),
+    /// The flow past the string has no solution.
+    #[error("the mud at node {node}: {error}")]
+    Mud {
+        /// Upper node of the first element where that shows, from 1.
+        node: usize,
+        /// What is wrong with it.
+        error: MudError,
+    },
     /// String and mud keep moving each other.
-    #[error("the eccentricities still change by {change:.1e} after {passes} hydraulic passes")]
+    #[error(
+        "string and mud do not settle: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
+    )]
     HydraulicsNotConverged {
         /// Passes made.
         passes: usize,
         /// Last change of an eccentricity.
         change: f64,
+        /// Upper node of the element where it is largest, from 1.
+        node: usize,
     },
+}
+
+impl StaticsError {
+    /// The node where the failure shows most, from 1.
+    pub fn node(&self) -> usize {
+        match self {
+            Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,
+            Self::HydraulicsNotConverged { node, .. } => *node,
+            Self::Singular(block) => block.row + 1,
+        }
+    }
 }
 
 impl Equilibrium {
@@ -126,10 +146,12 @@ impl Equilibrium {
             newton_iterations += outcome.iterations;
             // Later passes start next to the solution: plain Newton from there.
             settings.initial_shift = 0.0;
-            let mut change: f64 = 0.0;
+            let (mut change, mut node) = (0.0, 1);
             for (e, old) in eccentricity.iter_mut().enumerate() {
                 let new = model.eccentricity(e, &displacement);
-                change = change.max((new - *old).abs());
+                if (new - *old).abs() > change {
+                    (change, node) = ((new - *old).abs(), e + 1);
+                }
                 *old = new;
             }
             if flows.is_empty() || change <= ECCENTRICITY_STANDSTILL {
@@ -138,7 +160,7 @@ impl Equilibrium {
                 return Self::assemble(model, displacement, flows, drag, effort);
             }
             if pass == HYDRAULIC_PASSES {
-                return Err(StaticsError::HydraulicsNotConverged { passes: pass, change });
+                return Err(StaticsError::HydraulicsNotConverged { passes: pass, change, node });
             }
         }
         unreachable!("the last pass returns")
@@ -182,8 +204,9 @@ impl Equilibrium {
                 contact_at(model, &law, node, &displacement[node]).map_or(0.0, |contact| contact.normal)
             })
             .collect();
-        let pressures =
-            model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose()?;
+        let pressures = model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose();
+        // Pressures add up along the whole string: they are largest at its end.
+        let pressures = pressures.map_err(|error| StaticsError::Mud { node: model.node_count(), error })?;
         Ok(Self { displacement, tension, torque, normal_force, flows, drag, pressures, effort })
     }
 }
@@ -271,16 +294,17 @@ struct Sections {
 }
 
 impl Sections {
-    fn new(model: &Model) -> Result<Self, MudError> {
+    fn new(model: &Model) -> Result<Self, StaticsError> {
         let mut sections = Self { distinct: Vec::new(), of_element: Vec::new() };
         let Some(mud) = &model.scenario.mud else { return Ok(sections) };
         let mut seen: Vec<FlowGeometry> = Vec::new();
-        for element in &model.elements {
+        for (e, element) in model.elements.iter().enumerate() {
             let geometry = element.flow_geometry;
             let index = match seen.iter().position(|other| *other == geometry) {
                 Some(index) => index,
                 None => {
-                    sections.distinct.push(SectionFlow::new(mud, &geometry, model.rotation_speed)?);
+                    let flow = SectionFlow::new(mud, &geometry, model.rotation_speed);
+                    sections.distinct.push(flow.map_err(|error| StaticsError::Mud { node: e + 1, error })?);
                     seen.push(geometry);
                     seen.len() - 1
                 }
@@ -291,9 +315,13 @@ impl Sections {
     }
 
     /// The flow past every element at its eccentricity; empty without mud.
-    fn flows(&self, eccentricity: &[f64]) -> Result<Vec<ElementFlow>, MudError> {
-        let elements = self.of_element.iter().zip(eccentricity);
-        elements.map(|(&section, &e)| self.distinct[section].at_eccentricity(e)).collect()
+    fn flows(&self, eccentricity: &[f64]) -> Result<Vec<ElementFlow>, StaticsError> {
+        let elements = self.of_element.iter().zip(eccentricity).enumerate();
+        let flow = |(e, (&section, &eccentricity)): (usize, (&usize, &f64))| {
+            let flow = self.distinct[section].at_eccentricity(eccentricity);
+            flow.map_err(|error| StaticsError::Mud { node: e + 1, error })
+        };
+        elements.map(flow).collect()
     }
 }
 

@@ -230,6 +230,17 @@ pub enum DivergenceReason {
     StepCollapsed,
 }
 
+impl TransientError {
+    /// The node where the failure shows, from 1; absent where it is the whole string's.
+    pub fn node(&self) -> Option<usize> {
+        match self {
+            Self::Singular(block) => Some(block.row + 1),
+            Self::StepBeyondStability { .. } => None,
+            Self::ContactTooStiff { node, .. } | Self::Diverged { node, .. } => Some(*node),
+        }
+    }
+}
+
 impl<'m> Transient<'m> {
     /// A run of `model` from its equilibrium, as its scenario says.
     ///

@@ -92,7 +92,7 @@ fn report(out: &mut impl std::io::Write) -> std::io::Result<()> {
         ),
     ];
     for (name, accuracy, stages, duration) in methods {
-        let (steps, time) = run(accuracy, duration);
+        let Timed { steps, time, .. } = run(accuracy, duration, 1.0);
         let step = time / steps as f64;
         let share = if name.contains("RK4,") {
             String::new()
@@ -107,30 +107,54 @@ fn report(out: &mut impl std::io::Write) -> std::io::Result<()> {
             step / stages * 1e6
         )?;
     }
+    writeln!(out, "\nmeshes, draft              elements  us/step  ns/step and element")?;
+    for (lengths, duration) in [(6.0, 0.1), (1.0, 0.1), (0.2, 0.03), (0.05, 0.01)] {
+        let Timed { elements, steps, time } = run(preset(AccuracyPreset::Draft), duration, lengths);
+        let step = time / steps as f64;
+        writeln!(
+            out,
+            "  lengths x {lengths:<14} {elements:10} {:8.1} {:12.0}",
+            step * 1e6,
+            step / elements as f64 * 1e9
+        )?;
+    }
     Ok(())
 }
 
-/// Steps and shortest time \[s\] of a run without its start.
-fn run(accuracy: Accuracy, duration: f64) -> (u64, f64) {
+/// A run without its start.
+struct Timed {
+    elements: usize,
+    steps: u64,
+    /// Shortest processor time \[s\].
+    time: f64,
+}
+
+/// Runs the base case, the lengths of its elements multiplied.
+fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     let mut scenario: Scenario = preset("paper-200m").expect("it ships with the program");
     scenario.duration = duration;
     scenario.accuracy = accuracy;
     scenario.recording.spectrum_windows.clear();
     scenario.recording.orbit_window = None;
+    let mesh = &mut scenario.mesh;
+    for length in
+        [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
+    {
+        *length *= lengths;
+    }
     let model = Model::new(&scenario).expect("the preset has a model");
     let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
-    let mut steps = 0;
-    let mut shortest = f64::INFINITY;
+    let mut timed = Timed { elements: model.elements.len(), steps: 0, time: f64::INFINITY };
     for _ in 0..REPEATS {
         let run = Transient::new(&model, &equilibrium).expect("the preset can be run");
         let started = processor_time();
         let Ok(Outcome::Finished(records)) = run.run(&Control::new()) else {
             unreachable!("nothing stops it")
         };
-        shortest = shortest.min(processor_time() - started);
-        steps = records.effort.steps;
+        timed.time = timed.time.min(processor_time() - started);
+        timed.steps = records.effort.steps;
     }
-    (steps, shortest)
+    timed
 }
 
 /// Shortest time \[s\] of `M a + C v`, a solve and a factorisation, all lanes together.

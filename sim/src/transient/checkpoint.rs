@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Progress, State, TransientError};
+use super::TransientError;
+use super::run::{Progress, State};
 use crate::PHYSICS_VERSION;
 use crate::scenario::Scenario;
 

@@ -2,7 +2,7 @@
 
 use super::forces::Forces;
 use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut};
-use super::{Books, State};
+use super::run::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
 

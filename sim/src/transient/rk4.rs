@@ -6,7 +6,7 @@ use super::energy::Ledger;
 use super::error::ErrorSum;
 use super::forces::{ContactForces, Forces};
 use super::implicit::{flat, flat_mut, held_list};
-use super::{Books, State, steps_per_interval};
+use super::run::{Books, State, steps_per_interval};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 

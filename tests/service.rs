@@ -198,6 +198,16 @@ fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
         assert_eq!(value, &alone[name], "{name}: the same bits wherever a point runs");
     }
 
+    let workers = get(&format!("{server}/v1/workers"));
+    let of_host = |worker: &&Value| worker["id"] == point["provenance"]["worker"];
+    let worker =
+        workers["workers"].as_array().unwrap().iter().find(of_host).expect("a worker that is listed");
+    assert_eq!(point["provenance"]["host"], worker["host"]);
+    for time in ["started", "ended"] {
+        let text = point["provenance"][time].as_str().unwrap();
+        assert!(text.starts_with("20") && text.ends_with('Z'), "UTC: {text}");
+    }
+
     // The density of the annulus' mud can be read off the pressures of the profile: hydrostatics dominate.
     let profile = get(&format!("{server}/v1/sweeps/{id}/points/1/profile"));
     assert_eq!(profile["columns"]["friction_coefficient"].as_array().unwrap().len(), 296);
@@ -222,6 +232,24 @@ fn killed_workers_points_are_taken_over_when_their_leases_end() {
         .map(|n| get(&format!("{server}/v1/sweeps/{id}/points/{n}"))["attempts"].as_u64().unwrap())
         .collect();
     assert_eq!(attempts.iter().sum::<u64>(), 3, "one point was started twice: {attempts:?}");
+}
+
+#[test]
+fn points_of_a_killed_child_are_taken_over_without_waiting_for_its_lease() {
+    let data = tempfile::tempdir().unwrap();
+    // No lease of an hour ends while the test has patience.
+    let (_up, server) = listen(data.path(), &["up", "--workers", "1", "--lease-seconds", "3600"]);
+    let id = submit(&server, 20.0, &json!({}));
+    wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
+    let workers = get(&format!("{server}/v1/workers"));
+    let process = workers["workers"][0]["process"].as_i64().unwrap() as i32;
+    kill_process(Pid::from_raw(process).unwrap(), Signal::KILL).unwrap();
+    let again = |sweep: &Value| {
+        sweep["counts"]["running"] == 1
+            && get(&format!("{server}/v1/sweeps/{id}/points/1"))["attempts"].as_u64().unwrap() == 2
+    };
+    wait(&server, &id, again);
+    post(&format!("{server}/v1/sweeps/{id}/cancel"), &json!({}));
 }
 
 #[test]

@@ -89,7 +89,7 @@ mod tests {
         let request = json!({"preset": "paper-200m", "set": {"accuracy": "draft"},
             "axes": {"flow_rate": {"from": 0.01, "to": 0.06, "count": 100}}});
         let expansion = || expand(&serde_json::from_value(request.clone()).unwrap()).unwrap();
-        let speed = json!({"statics_per_node": 0.0, "step_per_node":
+        let speed = json!({"statics_per_node": 0.0, "start_per_node": [0.0, 0.0, 0.0, 0.0], "step_per_node":
             [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]],
             "large_mesh_factor": 2.0});
         let planned = DryRun::new(&expansion(), 40, Some(&speed.to_string()), 2);

@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::Args;
 use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits};
 use drillsweep_store::{Role, Store, StoreConfig};
-use drillsweep_worker::WorkerConfig;
+use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::process::{Signal, set_parent_process_death_signal};
 use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
@@ -240,8 +240,8 @@ async fn keep_workers(
     lease(arguments.lease_seconds)?;
     let keepers = (0..number).map(|_| {
         let command = worker_command(arguments);
-        let stop = stop.clone();
-        tokio::spawn(async move { keep_worker(command?, stop).await })
+        let (stop, store) = (stop.clone(), arguments.data.store(Role::Server));
+        tokio::spawn(async move { keep_worker(command?, &store, stop).await })
     });
     for keeper in keepers.collect::<Vec<_>>() {
         keeper.await??;
@@ -270,12 +270,20 @@ fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
     Ok(command)
 }
 
-async fn keep_worker(mut command: Command, stop: watch::Receiver<bool>) -> anyhow::Result<()> {
+async fn keep_worker(
+    mut command: Command,
+    store: &StoreConfig,
+    stop: watch::Receiver<bool>,
+) -> anyhow::Result<()> {
     while !*stop.borrow() {
         let mut child = command.spawn().context("a worker cannot be started")?;
+        let process = child.id();
         tokio::select! {
             status = child.wait() => {
                 tracing::warn!(status = %status?, "a worker ended; another one is started");
+                if let Some(process) = process && let Err(error) = bury(store, process).await {
+                    tracing::warn!(%error, "its point is taken over when its lease ends");
+                }
                 tokio::select! {
                     () = tokio::time::sleep(Duration::from_secs(1)) => {}
                     () = stopped(stop.clone()) => {}
@@ -284,6 +292,14 @@ async fn keep_worker(mut command: Command, stop: watch::Receiver<bool>) -> anyho
             () = stopped(stop.clone()) => end_child(child).await?,
         }
     }
+    Ok(())
+}
+
+/// Frees the points of a worker that is gone: a process that was waited for writes nothing more.
+async fn bury(store: &StoreConfig, process: u32) -> drillsweep_store::Result<()> {
+    let store = Store::open(store).await?;
+    store.bury_worker(&host_name(), i64::from(process)).await?;
+    store.close().await;
     Ok(())
 }
 

@@ -58,6 +58,32 @@ impl Store {
         Ok(())
     }
 
+    /// Takes the word of who watches a worker's process that it is gone: its leases end now, and the next claim sees them as run
+    /// out. Returns how many there were.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn bury_worker(&self, host: &str, process: i64) -> Result<u64> {
+        let query = concat!(
+            "UPDATE work SET lease_until = ",
+            now!(),
+            " - 1 WHERE state = 'leased' AND lease_owner IN (SELECT id FROM worker WHERE host = ?2 AND process = ?3)"
+        );
+        let ended = sqlx::query(query)
+            .bind(self.clock_offset_ms)
+            .bind(host)
+            .bind(process)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
+        sqlx::query("DELETE FROM worker WHERE host = ?1 AND process = ?2")
+            .bind(host)
+            .bind(process)
+            .execute(&self.pool)
+            .await?;
+        Ok(ended)
+    }
+
     /// Workers heard of within the last `within_ms` milliseconds, oldest first.
     ///
     /// # Errors

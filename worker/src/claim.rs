@@ -10,6 +10,7 @@ use drillsweep_sim::transient::Checkpoint;
 use drillsweep_store::{
     BlobId, Claim, FailureClass, Lease, NewArtifact, Role, Store, StoreConfig, StoreError, WorkerRecord,
 };
+use jiff::Timestamp;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
@@ -117,20 +118,24 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
     let store = Store::open(&config.store).await?;
     let record = WorkerRecord {
         id: id.clone(),
-        host: rustix::system::uname().nodename().to_string_lossy().into_owned(),
+        host: host_name(),
         process: i64::from(std::process::id()),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         physics_version: i64::from(PHYSICS_VERSION),
         started: 0,
         last_seen: 0,
     };
+    // Before the first claim, so that who holds a point can always be found.
+    store.register_worker(&record).await?;
     keep_speed(&store, &record.host).await;
-    let heartbeat = Heartbeat::start(config.store.clone(), record, config.lease)?;
+    let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease)?;
     tracing::info!(worker = %id, "worker ready");
     while !*stop.borrow() {
         let lease_ms = config.lease.as_millis() as i64;
         match store.claim(&id, i64::from(PHYSICS_VERSION), lease_ms).await {
-            Ok(Some(claim)) => work_on(&store, &heartbeat, claim, config.point_timeout, &mut stop).await,
+            Ok(Some(claim)) => {
+                work_on(&store, &heartbeat, &record, claim, config.point_timeout, &mut stop).await;
+            }
             Ok(None) if config.drain => break,
             Ok(None) => idle(config.poll_interval, &mut stop).await,
             Err(error) => {
@@ -143,6 +148,11 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
     store.close().await;
     tracing::info!(worker = %id, "worker done");
     Ok(())
+}
+
+/// The name of this host, as workers register it.
+pub fn host_name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
 
 /// Turns true after some time, or with `stop` before that.
@@ -172,6 +182,7 @@ async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
 async fn work_on(
     store: &Store,
     heartbeat: &Heartbeat,
+    worker: &WorkerRecord,
     claim: Claim,
     timeout: Option<Duration>,
     stop: &mut watch::Receiver<bool>,
@@ -197,6 +208,7 @@ async fn work_on(
         verdict: verdict.clone(),
     }));
     let watched = control.clone();
+    let started = Timestamp::now();
     let checkpoint = read_checkpoint(store, claim.checkpoint).await;
     let mut computing = tokio::task::spawn_blocking(move || compute_from(&scenario, &watched, checkpoint));
     let timeout = timeout.map(|time| (time, tokio::time::Instant::now() + time));
@@ -225,6 +237,16 @@ async fn work_on(
         }
     };
     let ended = match joined {
+        Ok(Ok(Computation::Finished(mut computed))) => {
+            let provenance = &mut computed.provenance;
+            provenance.insert("host".into(), json!(worker.host));
+            provenance.insert("worker".into(), json!(worker.id));
+            provenance.insert("attempt".into(), json!(lease.attempt));
+            // By the clock of that host, for people; nothing is decided by them.
+            provenance.insert("started".into(), json!(started));
+            provenance.insert("ended".into(), json!(Timestamp::now()));
+            Ended::Computed(Ok(Computation::Finished(computed)))
+        }
         Ok(result) => Ended::Computed(result),
         Err(error) => Ended::Panicked(panic_text(error)),
     };

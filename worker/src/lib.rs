@@ -13,7 +13,7 @@ mod lease;
 mod tables;
 
 pub use calibration::calibrate;
-pub use claim::{WorkerConfig, WorkerError, run};
+pub use claim::{WorkerConfig, WorkerError, host_name, run};
 pub use compute::{
     Computation, ComputeError, Computed, EncodedArtifact, compute, compute_from, simulated_time_total,
 };

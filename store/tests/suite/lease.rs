@@ -1,6 +1,6 @@
 //! Leases: who holds a point, until when, and what becomes of it when its worker falls silent.
 
-use drillsweep_store::{FailureClass, NewSweep, Renewal, StateCounts, WorkState};
+use drillsweep_store::{FailureClass, NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
 
 use crate::bench::{
     Bench, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
@@ -21,6 +21,38 @@ async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before() {
     let second = claim(&later, "second").await;
     assert_eq!((second.lease.key, second.lease.attempt), (key(1), 2));
     assert_eq!(point_record(&later, "s", 1).await.attempts, 2);
+}
+
+#[tokio::test]
+async fn a_buried_workers_points_are_free_at_once_and_nobody_elses() {
+    let bench = Bench::new();
+    let store = bench.open().await;
+    for (id, process) in [("dead", 7), ("alive", 8)] {
+        let worker = WorkerRecord {
+            id: id.to_owned(),
+            host: "here".to_owned(),
+            process,
+            version: "1".to_owned(),
+            physics_version: PHYSICS,
+            started: 0,
+            last_seen: 0,
+        };
+        store.register_worker(&worker).await.unwrap();
+    }
+    submit(&store, &sweep("s", [1, 2])).await;
+    let lost = claim(&store, "dead").await;
+    let kept = claim(&store, "alive").await;
+    // A process of the same number elsewhere is another one.
+    assert_eq!(store.bury_worker("elsewhere", 7).await.unwrap(), 0);
+    assert_eq!(claim_or_none(&store, "heir").await, None);
+    assert_eq!(store.bury_worker("here", 7).await.unwrap(), 1);
+
+    let heir = claim(&bench.after(1).await, "heir").await;
+    assert_eq!((heir.lease.key, heir.lease.attempt), (lost.lease.key, 2));
+    assert!(!finish(&store, &lost).await, "its late result is refused");
+    assert!(finish(&store, &kept).await);
+    let left = store.workers(LEASE_MS).await.unwrap();
+    assert_eq!(left.iter().map(|worker| worker.id.as_str()).collect::<Vec<_>>(), ["alive"]);
 }
 
 #[tokio::test]

@@ -112,9 +112,9 @@ fn beat(
     loop {
         match inbox.recv_timeout(next.saturating_duration_since(Instant::now())) {
             Ok(watched) => {
+                // The next beat stays when it was due: a worker of many short points must be heard of too.
                 point = watched;
                 renewed = Instant::now();
-                next = renewed + interval;
                 continue;
             }
             Err(RecvTimeoutError::Disconnected) => {
@@ -167,4 +167,42 @@ async fn renew(
     point.verdict.set(reason);
     point.control.cancel();
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_store::Role;
+
+    use super::*;
+
+    #[test]
+    fn a_worker_of_many_short_points_is_heard_of() {
+        let directory = tempfile::tempdir().unwrap();
+        let config = StoreConfig {
+            database_path: directory.path().join("store.sqlite"),
+            blob_directory: directory.path().join("blobs"),
+            role: Role::Worker,
+            clock_offset_ms: 0,
+        };
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        let store = runtime.block_on(Store::open(&config)).unwrap();
+        let worker = WorkerRecord {
+            id: "busy".to_owned(),
+            host: "here".to_owned(),
+            process: 1,
+            version: "1".to_owned(),
+            physics_version: 1,
+            started: 0,
+            last_seen: 0,
+        };
+        runtime.block_on(store.register_worker(&worker)).unwrap();
+        let last_seen = || runtime.block_on(store.workers(i64::MAX / 2)).unwrap()[0].last_seen;
+        let (first, patience) = (last_seen(), Instant::now() + Duration::from_secs(30));
+        let heartbeat = Heartbeat::start(config, worker, Duration::from_millis(300)).unwrap();
+        while last_seen() < first + 500 {
+            assert!(Instant::now() < patience, "never heard of again");
+            heartbeat.watch(None);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
 }

@@ -47,10 +47,17 @@ impl<const D: usize> Block<f64, D> {
         self.columns = columns.map(Column::to_rows);
     }
 
-    /// `sum + self x`.
+    /// `sums_k + self x_k`, each column read once for all of them.
     #[inline(always)]
-    pub(super) fn times_column(&self, x: &[f64; D], sum: Column) -> Column {
-        self.columns.iter().zip(x).fold(sum, |sum, (column, x)| Column::new(column).mul_add(*x, sum))
+    pub(super) fn times_each<const K: usize>(&self, x: [&[f64; D]; K], sums: [Column; K]) -> [Column; K] {
+        let mut sums = sums;
+        for (j, column) in self.columns.iter().enumerate() {
+            let column = Column::new(column);
+            for (sum, x) in sums.iter_mut().zip(x) {
+                *sum = column.mul_add(x[j], *sum);
+            }
+        }
+        sums
     }
 
     /// Sum over all entries of the products with those of another block.

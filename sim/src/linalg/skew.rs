@@ -39,16 +39,17 @@ impl<const D: usize> SkewPart<D> {
     /// When a vector has fewer rows than the matrix.
     pub fn product<const K: usize>(&self, pairs: [(f64, &[[f64; D]], &[[f64; D]]); K]) -> f64 {
         let mut sums = [Column::zero(); K];
+        let beyond = [0.0; D];
         for SkewRow { row, diagonal, upper } in &self.0 {
-            let beyond = [0.0; D];
-            for (sum, (_, v, x)) in sums.iter_mut().zip(&pairs) {
-                let (v_next, x_next) = (v.get(row + 1).unwrap_or(&beyond), x.get(row + 1).unwrap_or(&beyond));
-                // Three chains that do not wait for each other.
-                let own = diagonal.times_column(&x[*row], Column::zero());
-                let pushed = upper.times_column(x_next, Column::zero()).plus(own);
-                let pulled = upper.times_column(v_next, Column::zero());
-                let power = pushed.product(Column::new(&v[*row]));
-                *sum = power.minus(pulled.product(Column::new(&x[*row]))).plus(*sum);
+            let v = pairs.map(|(_, v, _)| &v[*row]);
+            let x = pairs.map(|(_, _, x)| &x[*row]);
+            let v_next = pairs.map(|(_, v, _)| v.get(row + 1).unwrap_or(&beyond));
+            let x_next = pairs.map(|(_, _, x)| x.get(row + 1).unwrap_or(&beyond));
+            let pushed = upper.times_each(x_next, diagonal.times_each(x, [Column::zero(); K]));
+            let pulled = upper.times_each(v_next, [Column::zero(); K]);
+            for k in 0..K {
+                let power = pushed[k].product(Column::new(v[k]));
+                sums[k] = power.minus(pulled[k].product(Column::new(x[k]))).plus(sums[k]);
             }
         }
         sums.iter().zip(pairs).map(|(sum, (weight, ..))| weight * sum.sum()).sum()

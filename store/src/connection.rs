@@ -58,6 +58,13 @@ macro_rules! now {
 }
 pub(crate) use now;
 
+/// Pages that a connection keeps, in KiB (hence the sign). A large submission touches the indexes of keys, which are hashes, all
+/// over: with SQLite's 2 MB it would read and write the same pages again and again.
+const SERVER_CACHE: &str = "-65536";
+
+/// The same for a worker, which handles a point at a time.
+const WORKER_CACHE: &str = "-8192";
+
 impl Store {
     /// Opens the store and brings its schema up to date. Any number of processes may do so at once.
     ///
@@ -78,7 +85,14 @@ impl Store {
                 Role::Server => SqliteSynchronous::Full,
                 Role::Worker => SqliteSynchronous::Normal,
             })
-            .pragma("journal_size_limit", JOURNAL_SIZE_LIMIT);
+            .pragma("journal_size_limit", JOURNAL_SIZE_LIMIT)
+            .pragma(
+                "cache_size",
+                match config.role {
+                    Role::Server => SERVER_CACHE,
+                    Role::Worker => WORKER_CACHE,
+                },
+            );
         let connections = match config.role {
             Role::Server => 4,
             Role::Worker => 2,

@@ -207,9 +207,9 @@ impl Lane for f64 {
     fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
         let column = |j: usize| Column::new(&columns[j]);
         let (mut even, mut odd) = (column(0).mul_add(x[0], Column::new(&sum)), column(1).times(x[1]));
-        for j in 2..D {
+        for (j, x) in x.iter().enumerate().skip(2) {
             let chain = if j % 2 == 0 { &mut even } else { &mut odd };
-            *chain = column(j).mul_add(x[j], *chain);
+            *chain = column(j).mul_add(*x, *chain);
         }
         even.plus(odd).to_rows()
     }

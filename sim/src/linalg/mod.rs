@@ -19,7 +19,7 @@ pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
-pub use skew::SkewPart;
+pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::BlockTridiagonal;
 
 /// One row of values for every node.

@@ -8,6 +8,9 @@ use super::tridiagonal::BlockTridiagonal;
 #[derive(Debug, Clone)]
 pub struct SkewPart<const D: usize = DOFS>(Vec<SkewRow<D>>);
 
+/// A weight, and the vectors to its left and right.
+pub type WeightedPair<'a, const D: usize> = (f64, &'a [[f64; D]], &'a [[f64; D]]);
+
 /// Blocks on the diagonal and above it; below stands minus the transposed one.
 #[derive(Debug, Clone)]
 struct SkewRow<const D: usize> {
@@ -37,7 +40,7 @@ impl<const D: usize> SkewPart<D> {
     ///
     /// # Panics
     /// When a vector has fewer rows than the matrix.
-    pub fn product<const K: usize>(&self, pairs: [(f64, &[[f64; D]], &[[f64; D]]); K]) -> f64 {
+    pub fn product<const K: usize>(&self, pairs: [WeightedPair<'_, D>; K]) -> f64 {
         let mut sums = [Column::zero(); K];
         let beyond = [0.0; D];
         for SkewRow { row, diagonal, upper } in &self.0 {

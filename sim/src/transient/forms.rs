@@ -1,6 +1,6 @@
 //! Work that the string's matrices do along its motion.
 
-use crate::linalg::{Block, BlockTridiagonal, SkewPart};
+use crate::linalg::{Block, BlockTridiagonal, SkewPart, WeightedPair};
 use crate::model::NodalVector;
 
 /// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
@@ -27,7 +27,7 @@ pub(super) struct Forms<const N: usize, const D: usize> {
 }
 
 /// A stage as the forms take it: the seconds that it counts, its velocities and displacements.
-pub(super) type BookedStage<'a, const D: usize> = (f64, &'a [[f64; D]], &'a [[f64; D]]);
+pub(super) type BookedStage<'a, const D: usize> = WeightedPair<'a, D>;
 
 #[derive(Debug, Clone)]
 struct GatheredStage<const D: usize> {

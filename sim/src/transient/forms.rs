@@ -108,9 +108,11 @@ impl<const N: usize, const D: usize> Forms<N, D> {
         if self.count == 0 {
             return;
         }
-        // A stage that is not there weighs nothing.
+        // A stage that is not there counts nothing, and what a rejected step left in its place may not be finite.
         for stage in &mut self.gathered[self.count..] {
             stage.weight = 0.0;
+            stage.velocity.fill([0.0; D]);
+            stage.displacement.fill([0.0; D]);
         }
         let stages = self.gathered.each_ref().map(|s| (s.weight, &*s.velocity, &*s.displacement));
         add_products(&mut self.moments, stages.map(|(weight, velocity, _)| (weight, velocity)));
@@ -235,6 +237,16 @@ mod tests {
                 Integrals { symmetric: [0.0; 2], skew: 0.0 },
                 "taken stages are forgotten"
             );
+
+            // A rejected step may have left anything.
+            let not_finite = vec![[f64::NAN; DOFS]; rows];
+            for _ in 0..GATHERED {
+                forms.gather((7.0, &not_finite, &not_finite));
+            }
+            forms.forget();
+            forms.gather((1.0, &v, &x));
+            let wanted = product(&v, &m, &v);
+            assert!((forms.take().symmetric[0] - wanted).abs() < tolerance);
         }
     }
 }

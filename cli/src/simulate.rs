@@ -98,7 +98,14 @@ pub(crate) fn read_scenario(name: &str) -> anyhow::Result<Scenario> {
 /// `path=value`; the value is JSON, or else a text.
 pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
     let (path, value) = text.split_once('=').with_context(|| format!("write PATH=VALUE, got {text:?}"))?;
-    let value = serde_json::from_str(value).unwrap_or_else(|_| json!(value));
+    let value = match serde_json::from_str(value) {
+        Ok(value) => value,
+        // What begins like JSON was meant to be: as a text it would only be refused for another reason.
+        Err(error) if value.starts_with(['{', '[', '"']) => {
+            bail!("{path} is not JSON (as in {{\"from\": 2, \"to\": 5}}): {error}")
+        }
+        Err(_) => json!(value),
+    };
     Ok((path.trim().to_owned(), value))
 }
 
@@ -243,4 +250,20 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         cost("hydraulic_passes")
     )?;
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_json_or_a_word_and_broken_json_is_no_word() {
+        let set = |text: &str| parse_set(text).map(|(path, value)| (path, value.to_string()));
+        assert_eq!(set("mud.flow_rate=0.04").unwrap(), ("mud.flow_rate".into(), "0.04".into()));
+        assert_eq!(set("accuracy=draft").unwrap(), ("accuracy".into(), "\"draft\"".into()));
+        assert_eq!(set("a={\"from\": 2}").unwrap(), ("a".into(), "{\"from\":2}".into()));
+        let error = set("recording.orbit_window={from=2,to=5}").unwrap_err().to_string();
+        assert!(error.starts_with("recording.orbit_window is not JSON"), "{error}");
+        assert!(set("mud").is_err());
+    }
 }

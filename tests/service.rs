@@ -178,6 +178,87 @@ fn a_token_opens_the_service_to_other_machines_and_shows_in_no_log() {
 }
 
 #[test]
+fn outputs_decide_which_tables_are_kept_and_change_no_number() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);
+    let run = |outputs: &Value| {
+        let windows = json!([{"from": 0.1, "to": 0.3}, {"from": 0.25, "to": 0.5}]);
+        let set = json!({"duration": 0.5, "accuracy": "draft", "recording.spectrum_windows": windows,
+            "recording.orbit_window": {"from": 0.1, "to": 0.5}});
+        let request = json!({"preset": "paper-200m", "set": set, "outputs": outputs});
+        post(&format!("{server}/v1/runs"), &request)["id"].as_str().unwrap().to_owned()
+    };
+    let part =
+        json!({"orbits": {"nodes": [{"node": 49}], "window": {"from": 0.2, "to": 0.4}, "decimation": 4}});
+    // The parts before the whole, which would serve for them.
+    let [orbits, spectra, summary, full] =
+        [part, "spectra".into(), "summary".into(), "full".into()].map(|outputs| {
+            let id = run(&outputs);
+            assert_eq!(wait(&server, &id, completed)["counts"]["succeeded"], 1);
+            format!("{server}/v1/sweeps/{id}/points/1")
+        });
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    let problem = |url: &str| {
+        let mut answer = agent.get(url).call().unwrap();
+        assert!(answer.status().is_client_error(), "{url}");
+        answer.body_mut().read_json::<Value>().unwrap()
+    };
+
+    let rows = [&orbits, &spectra, &summary, &full].map(|point| get(point)["summary"].clone());
+    assert!(rows.iter().all(|row| *row == rows[3]), "the same row to the last bit");
+    for table in ["profile", "statics", "contacts", "energy"] {
+        let of = |point: &String| get(&format!("{point}/{table}"));
+        assert!(of(&orbits) == of(&full) && of(&spectra) == of(&full), "{table}");
+        assert_eq!(problem(&format!("{summary}/{table}"))["type"], "urn:drillsweep:problem:no-such-table");
+    }
+
+    let history = |query: &str| get(query)["columns"].clone();
+    let (kept, whole) =
+        (history(&format!("{orbits}/history")), history(&format!("{full}/history?node=49&from=0.2&to=0.4")));
+    assert_eq!(kept["time"].as_array().unwrap().len(), 50, "every fourth of 200 samples");
+    for (name, values) in kept.as_object().unwrap() {
+        let every_fourth: Vec<&Value> = whole[name].as_array().unwrap().iter().step_by(4).collect();
+        assert_eq!(values.as_array().unwrap().iter().collect::<Vec<_>>(), every_fourth, "{name}");
+    }
+    assert_eq!(kept.as_object().unwrap().len(), whole.as_object().unwrap().len());
+
+    for weighting in ["rectangular", "hann"] {
+        let query = format!("spectrum?node=49&from=0.25&to=0.5&range_hz=200&window={weighting}");
+        let (kept, cut) = (get(&format!("{spectra}/{query}")), get(&format!("{full}/{query}")));
+        assert_eq!(kept["columns"]["frequency"].as_array().unwrap().len(), 101, "every 4 Hz to 200 Hz");
+        for (name, largest_error) in [("frequency", 1e-9), ("amplitude", 3e-7), ("peak_to_peak", 3e-7)] {
+            let of = |table: &Value| -> Vec<f64> {
+                table["columns"][name]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .map(|value| value.as_f64().unwrap())
+                    .collect()
+            };
+            let (kept, cut) = (of(&kept), of(&cut));
+            // Either is rounded to single precision, the one before the transform, the other after it.
+            let scale = cut.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            for (kept, cut) in kept.iter().zip(&cut) {
+                assert!((kept - cut).abs() <= largest_error * scale, "{weighting} {name}: {kept} {cut}");
+            }
+        }
+        let (kept, cut) = (&kept["attributes"], &cut["attributes"]);
+        assert_eq!(kept["window"], weighting);
+        for name in ["node", "measured_depth", "samples"] {
+            assert!(!kept[name].is_null() && kept[name] == cut[name], "{name}: {kept} {cut}");
+        }
+    }
+    let no_window = problem(&format!("{spectra}/spectrum?node=49"));
+    assert_eq!(no_window["type"], "urn:drillsweep:problem:window-not-kept", "{no_window}");
+    assert!(no_window["detail"].as_str().unwrap().contains("0.1 to 0.3 s, 0.25 to 0.5 s"), "{no_window}");
+    assert_eq!(problem(&format!("{spectra}/orbit?node=49"))["type"], "urn:drillsweep:problem:no-such-table");
+    assert_eq!(
+        problem(&format!("{orbits}/orbit?node=10"))["type"],
+        "urn:drillsweep:problem:node-not-recorded"
+    );
+}
+
+#[test]
 fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
     let data = tempfile::tempdir().unwrap();
     let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);

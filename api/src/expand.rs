@@ -483,7 +483,12 @@ fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Scenario> {
                 set: request.set.clone(),
             };
             match scenario.resolve() {
-                Ok(scenario) => return Some(scenario),
+                Ok(mut scenario) => {
+                    if let Some(outputs) = &request.outputs {
+                        scenario.recording.outputs = outputs.clone();
+                    }
+                    return Some(scenario);
+                }
                 Err(Problems(of_set)) => {
                     for problem in of_set {
                         problems.add(request, |_| None, &problem);
@@ -596,6 +601,9 @@ impl Found {
 /// names rather than the field itself.
 fn written(request: &SweepRequest, path: &str) -> (String, bool) {
     let field = scenario_pointer(path);
+    if let Some(rest) = field.strip_prefix("/recording/outputs").filter(|_| request.outputs.is_some()) {
+        return (format!("/outputs{rest}"), false);
+    }
     // The longest path wins: it was applied last.
     let of_set = request
         .set
@@ -693,6 +701,20 @@ mod tests {
         assert_eq!(by_preset, by_axis);
         assert_ne!(by_preset, key_of(json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.02}})));
         assert_eq!(by_preset.len(), 64);
+    }
+
+    #[test]
+    fn what_is_kept_belongs_to_the_point_and_is_checked_where_it_was_written() {
+        let of = |outputs: Value| json!({"preset": "paper-200m", "outputs": outputs});
+        let key_of = |body| expand(&request(body)).unwrap().points[0].key;
+        let whole = key_of(json!({"preset": "paper-200m"}));
+        assert_eq!(key_of(of(json!("full"))), whole);
+        assert_ne!(key_of(of(json!("summary"))), whole);
+        let by_path = json!({"preset": "paper-200m", "set": {"recording.outputs": "summary"}});
+        assert_eq!(key_of(of(json!("summary"))), key_of(by_path));
+        let found = problems(of(json!({"orbits": {"nodes": [{"node": 49}, {"node": 48}], "decimation": 0}})));
+        let pointers: Vec<_> = found.iter().map(|(pointer, ..)| pointer.as_str()).collect();
+        assert_eq!(pointers, ["/outputs/orbits/decimation", "/outputs/orbits/nodes/1/node"]);
     }
 
     #[test]

@@ -44,6 +44,8 @@ pub enum ProblemKind {
     NotFound,
     /// The node's motion was not recorded.
     NodeNotRecorded,
+    /// The run kept spectra only, and none over this window.
+    WindowNotKept,
     /// The point has no result, or not yet.
     NoResult,
     /// The run did not produce this table.
@@ -81,6 +83,7 @@ impl ProblemKind {
         ProblemKind::MethodNotAllowed,
         ProblemKind::NotFound,
         ProblemKind::NodeNotRecorded,
+        ProblemKind::WindowNotKept,
         ProblemKind::NoResult,
         ProblemKind::NoSuchTable,
         ProblemKind::Expired,
@@ -131,6 +134,7 @@ impl ProblemKind {
             ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),
             ProblemKind::NotFound => ("not-found", "Not found", 404),
             ProblemKind::NodeNotRecorded => ("node-not-recorded", "The node was not recorded", 422),
+            ProblemKind::WindowNotKept => ("window-not-kept", "No spectrum over this window was kept", 422),
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
             ProblemKind::Expired => ("expired", "The table was kept for its time", 410),

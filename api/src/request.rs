@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::scenario::{Outputs, Scenario};
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -43,6 +43,11 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
     pub set: BTreeMap<String, Value>,
+    /// What is kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "full")]
+    pub outputs: Option<Outputs>,
     /// How the points are made from the axes.
     #[serde(default)]
     pub design: Design,
@@ -102,6 +107,11 @@ pub struct RunRequest {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(example = json!({"mud.flow_rate": 0.04}))]
     pub set: BTreeMap<String, Value>,
+    /// What is kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "full")]
+    pub outputs: Option<Outputs>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
@@ -111,8 +121,18 @@ pub struct RunRequest {
 impl From<RunRequest> for SweepRequest {
     /// The sweep of one point that a run is.
     fn from(run: RunRequest) -> Self {
-        let RunRequest { name, owner, tags, preset, scenario, set, priority } = run;
-        SweepRequest { name, owner, tags, preset, scenario, set, priority, ..SweepRequest::default() }
+        let RunRequest { name, owner, tags, preset, scenario, set, outputs, priority } = run;
+        SweepRequest {
+            name,
+            owner,
+            tags,
+            preset,
+            scenario,
+            set,
+            outputs,
+            priority,
+            ..SweepRequest::default()
+        }
     }
 }
 

@@ -6,14 +6,15 @@
 /// unit of the name without those numbers.
 pub fn unit(column: &str) -> Option<&'static str> {
     Some(match quantity(column) {
-        "time" | "error_time" | "histories_part_at" | "contact_time" | "duration" | "wall_time"
-        | "cpu_time" | "step" => "s",
+        "time" | "from" | "to" | "error_time" | "histories_part_at" | "contact_time" | "duration"
+        | "wall_time" | "cpu_time" | "step" => "s",
         "frequency" | "line_frequency_hz" | "line_frequency_error_hz" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
         "outer_diameter" | "inner_diameter" | "clearance" => "m",
         "u" | "v" | "w" | "radius" | "largest_radius" | "amplitude" | "peak_to_peak" => "m",
+        "amplitude_rectangular" | "amplitude_hann" => "m",
         "orbit_offset"
         | "orbit_mean_radius"
         | "orbit_largest_radius"

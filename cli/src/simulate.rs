@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::{PRESETS, Scenario, preset};
@@ -98,15 +98,20 @@ pub(crate) fn read_scenario(name: &str) -> anyhow::Result<Scenario> {
 /// `path=value`; the value is JSON, or else a text.
 pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
     let (path, value) = text.split_once('=').with_context(|| format!("write PATH=VALUE, got {text:?}"))?;
-    let value = match serde_json::from_str(value) {
-        Ok(value) => value,
-        // What begins like JSON was meant to be: as a text it would only be refused for another reason.
-        Err(error) if value.starts_with(['{', '[', '"']) => {
-            bail!("{path} is not JSON (as in {{\"from\": 2, \"to\": 5}}): {error}")
-        }
-        Err(_) => json!(value),
-    };
+    let value = parse_value(value).map_err(|error| anyhow!("{path} {error}"))?;
     Ok((path.trim().to_owned(), value))
+}
+
+/// JSON, or else the text itself.
+pub(crate) fn parse_value(text: &str) -> anyhow::Result<Value> {
+    match serde_json::from_str(text) {
+        Ok(value) => Ok(value),
+        // What begins like JSON was meant to be: as a text it would only be refused for another reason.
+        Err(error) if text.starts_with(['{', '[', '"']) => {
+            bail!("is not JSON (as in {{\"from\": 2, \"to\": 5}}): {error}")
+        }
+        Err(_) => Ok(json!(text)),
+    }
 }
 
 /// Runs `work` with a progress bar over `total` seconds of simulated time.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::client::{Client, ServerArguments};
 use crate::print;
-use crate::simulate::parse_set;
+use crate::simulate::{parse_set, parse_value};
 use crate::sweeps::{percent_encoded, print_sweep};
 use crate::watch::{check, follow};
 
@@ -26,6 +26,10 @@ pub(crate) struct SubmitArguments {
     /// Accuracy: draft, standard or reference.
     #[arg(long)]
     accuracy: Option<String>,
+    /// What is kept of each point: `summary` (its row of the table alone), `spectra`, `full`, or JSON such as
+    /// `{"orbits": {"window": {"from": 40, "to": 60}, "decimation": 4}}`.
+    #[arg(long, value_parser = parse_value)]
+    outputs: Option<Value>,
     /// A name for people.
     #[arg(long)]
     name: Option<String>,
@@ -147,6 +151,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     let set: Map<String, Value> = arguments.set.iter().cloned().chain(accuracy).collect();
     if !set.is_empty() {
         request.insert("set".into(), Value::Object(set));
+    }
+    if let Some(outputs) = &arguments.outputs {
+        request.insert("outputs".into(), outputs.clone());
     }
     if let Some(priority) = arguments.priority {
         request.insert("priority".into(), json!(priority));

@@ -1,9 +1,12 @@
 //! The tables that workers stored, as they are read back.
 
+use std::collections::BTreeSet;
+
 use axum::body::Bytes;
 use drillsweep_api::chart::Hole;
 use drillsweep_api::view::node::{self, Choice};
 use drillsweep_api::view::orbit::Motion;
+use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{Column, PointState, ProblemDetails, ProblemKind, Table};
 use drillsweep_store::{
     Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
@@ -37,7 +40,10 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
         return Err(Error::new(ProblemKind::Expired, detail));
     }
     let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
-    let detail = format!("the run has no table {name}; it has {}", names.join(", "));
+    let detail = match names.as_slice() {
+        [] => format!("the run has no table {name}: its `outputs` keep the summary only"),
+        names => format!("the run has no table {name}; it has {}", names.join(", ")),
+    };
     Err(Error::new(ProblemKind::NoSuchTable, detail))
 }
 
@@ -83,6 +89,27 @@ pub(crate) struct Recording {
     statics: Bytes,
 }
 
+/// Full spectra that were kept in place of histories, and where their nodes are.
+pub(crate) struct KeptSpectra {
+    spectra: Bytes,
+    statics: Bytes,
+}
+
+/// Where the full spectra of a run come from.
+pub(crate) enum SpectrumSource {
+    /// Histories: any window.
+    Recording(Recording),
+    /// The spectra themselves.
+    Kept(KeptSpectra),
+}
+
+/// One full spectrum.
+pub(crate) struct NodeSpectrum {
+    pub(crate) node: u32,
+    measured_depth: f64,
+    pub(crate) spectrum: FullSpectrum,
+}
+
 /// The lateral motion of one recorded node.
 pub(crate) struct NodeMotion {
     pub(crate) node: u32,
@@ -92,12 +119,86 @@ pub(crate) struct NodeMotion {
     v: Vec<f64>,
 }
 
+impl SpectrumSource {
+    /// What a point that has a result has: its histories, or where it kept none its spectra.
+    pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
+        let key = result_key(store, sweep, n).await?;
+        let artifacts = store.artifacts(&key).await?;
+        if !artifacts.iter().any(|artifact| artifact.name == "spectra") {
+            return Ok(SpectrumSource::Recording(Recording::load_of(store, &key).await?));
+        }
+        let spectra = load_of(store, &key, "spectra").await?;
+        let statics = load_of(store, &key, "statics").await?;
+        Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
+    }
+}
+
+impl KeptSpectra {
+    /// The spectrum of one node over one of the windows, for a weighting of the samples.
+    pub(crate) fn spectrum_of(
+        &self,
+        choice: Choice,
+        from: Option<f64>,
+        to: Option<f64>,
+        weighting: Weighting,
+    ) -> Result<NodeSpectrum> {
+        let amplitude = match weighting {
+            Weighting::Rectangular => "amplitude_rectangular",
+            Weighting::Hann => "amplitude_hann",
+        };
+        let table = decode(self.spectra.clone(), Some(&["node", "from", "to", "frequency", amplitude]))?;
+        let Some(Column::Integer(nodes)) = table.columns.get("node") else {
+            return Err(Error::internal("a table of spectra without nodes"));
+        };
+        let column = |name: &str| match table.columns.get(name) {
+            Some(Column::Number(values)) => Ok(values.as_slice()),
+            _ => Err(Error::internal(&format!("a table of spectra without numbers in the column {name}"))),
+        };
+        let (starts, ends, frequency, amplitude) =
+            (column("from")?, column("to")?, column("frequency")?, column(amplitude)?);
+        let recorded: BTreeSet<u32> =
+            nodes.iter().flatten().filter_map(|&node| u32::try_from(node).ok()).collect();
+        let (node, measured_depth) = choice.among(&depths(&self.statics, recorded)?)?;
+        let mut windows: Vec<KeptWindow> = Vec::new();
+        for (&from, &to) in starts.iter().zip(ends) {
+            let window = KeptWindow { from, to };
+            if !windows.contains(&window) {
+                windows.push(window);
+            }
+        }
+        let window = KeptWindow::choose(&windows, from, to)?;
+        let rows = |row: &usize| {
+            nodes[*row] == Some(node.into()) && starts[*row] == window.from && ends[*row] == window.to
+        };
+        let rows: Vec<usize> = (0..frequency.len()).filter(rows).collect();
+        let take = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<_>>();
+        let frequency_hz = take(frequency);
+        // Frequencies are the multiples of the lowest above 0.
+        let resolution_hz = frequency_hz.iter().copied().find(|frequency| *frequency > 0.0);
+        let resolution_hz =
+            resolution_hz.ok_or_else(|| Error::internal("a spectrum without positive frequencies"))?;
+        let spectrum =
+            FullSpectrum { resolution_hz, window: weighting, frequency_hz, amplitude: take(amplitude) };
+        Ok(NodeSpectrum { node, measured_depth, spectrum })
+    }
+}
+
+impl NodeSpectrum {
+    /// A view of this spectrum with the node that it is of.
+    pub(crate) fn label(&self, table: Table) -> Table {
+        table.attribute("node", self.node).attribute("measured_depth", self.measured_depth)
+    }
+}
+
 impl Recording {
     /// The recording of a point that has a result.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
-        let key = result_key(store, sweep, n).await?;
-        let history = load_of(store, &key, "history").await?;
-        let statics = load_of(store, &key, "statics").await?;
+        Self::load_of(store, &result_key(store, sweep, n).await?).await
+    }
+
+    async fn load_of(store: &Store, key: &WorkKey) -> Result<Self> {
+        let history = load_of(store, key, "history").await?;
+        let statics = load_of(store, key, "statics").await?;
         Ok(Recording { history, statics })
     }
 
@@ -162,18 +263,23 @@ impl Recording {
 
     /// The recorded nodes with their measured depths \[m\].
     fn nodes(&self, columns: &[String]) -> Result<Vec<(u32, f64)>> {
-        let statics = decode(self.statics.clone(), Some(&["node", "measured_depth"]))?;
-        let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
-            (statics.columns.get("node"), statics.columns.get("measured_depth"))
-        else {
-            return Err(Error::internal("a table of statics without nodes and their depths"));
-        };
-        let depth_of = |recorded: u32| {
-            let row = nodes.iter().position(|node| *node == Some(recorded.into()))?;
-            Some((recorded, depths[row]))
-        };
-        Ok(node::recorded(columns.iter().map(String::as_str)).into_iter().filter_map(depth_of).collect())
+        depths(&self.statics, node::recorded(columns.iter().map(String::as_str)))
     }
+}
+
+/// Nodes with their measured depths \[m\], from the table of the statics.
+fn depths(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<(u32, f64)>> {
+    let statics = decode(statics.clone(), Some(&["node", "measured_depth"]))?;
+    let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
+        (statics.columns.get("node"), statics.columns.get("measured_depth"))
+    else {
+        return Err(Error::internal("a table of statics without nodes and their depths"));
+    };
+    let depth_of = |recorded: u32| {
+        let row = nodes.iter().position(|node| *node == Some(recorded.into()))?;
+        Some((recorded, depths[row]))
+    };
+    Ok(recorded.into_iter().filter_map(depth_of).collect())
 }
 
 impl NodeMotion {

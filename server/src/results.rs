@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
 use crate::app::App;
-use crate::artifact::{self, Recording};
+use crate::artifact::{self, Recording, SpectrumSource};
 use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{Path, Query, value};
@@ -376,7 +376,8 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 ///
 /// Of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward.
 /// Columns `frequency`, `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the
-/// highest peaks with their whirl direction. Lines outside the range enter neither.
+/// highest peaks with their whirl direction. Lines outside the range enter neither. Of a run that kept spectra only the
+/// window is one of its scenario's.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/spectrum",
@@ -394,14 +395,22 @@ pub(crate) async fn spectrum(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth)?;
-    let recording = Recording::load(&app.store, &id, n).await?;
+    let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     blocking(move || {
-        let motion = recording.motion_of(choice)?;
-        let part = motion.columns().window(query.from, query.to);
-        let spectrum = spectrum::spectrum(&part, query.window, query.range_hz, query.peaks)?;
-        let (table, file_name) =
-            (motion.label(spectrum), file_name(&id, n, &format!("spectrum-{}", motion.node)));
+        let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
+        let (node, table) = match source {
+            SpectrumSource::Recording(recording) => {
+                let motion = recording.motion_of(choice)?;
+                let part = motion.columns().window(from, to);
+                (motion.node, motion.label(spectrum::spectrum(&part, window, range_hz, peaks)?))
+            }
+            SpectrumSource::Kept(kept) => {
+                let kept = kept.spectrum_of(choice, from, to, window)?;
+                (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)))
+            }
+        };
+        let file_name = file_name(&id, n, &format!("spectrum-{node}"));
         format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
     })
     .await

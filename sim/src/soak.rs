@@ -7,7 +7,7 @@ use crate::control::Control;
 use crate::model::Model;
 use crate::scenario::{
     Accuracy, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator, Material, Mesh, Mud,
-    NodeChoice, Operation, RayleighDamping, Recording, RegimeChoice, Scenario, Section, SectionKind,
+    NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario, Section, SectionKind,
     SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass, Well,
 };
 use crate::statics::{Equilibrium, StaticsError};
@@ -151,6 +151,7 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
             spectrum_windows: Vec::new(),
             orbit_window: None,
             stability: false,
+            outputs: Outputs::Full,
         },
         accuracy: Accuracy::Explicit(accuracy),
         effects: draw_effects(&mut draw),

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::ensemble::parting_time;
 use crate::model::{Model, ModelError};
 use crate::scenario::{
-    Accuracy, CostStudy, Effect, EffectDecision, Integrator, MethodSteps, NodeChoice, Recording, Scenario,
-    Switch, TimeStepping, TimeWindow,
+    Accuracy, CostStudy, Effect, EffectDecision, Integrator, MethodSteps, NodeChoice, Outputs, Recording,
+    Scenario, Switch, TimeStepping, TimeWindow,
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::summary::TransientSummary;
@@ -297,6 +297,7 @@ fn recording(scenario: &Scenario, study: &CostStudy, model: &Model) -> Recording
         spectrum_windows: vec![window],
         orbit_window: Some(window),
         stability: false,
+        outputs: Outputs::Full,
     }
 }
 

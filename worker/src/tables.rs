@@ -3,21 +3,32 @@
 use drillsweep_api::units::unit;
 use drillsweep_sim::ensemble::spread;
 use drillsweep_sim::model::Model;
+use drillsweep_sim::scenario::{OrbitOutputs, Outputs};
+use drillsweep_sim::signal::{Window, full_spectrum, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{NodeHistory, Records};
 use drillsweep_store::{ColumnData, Table};
 use serde_json::{Map, Value, json};
 
-/// All tables of a point, by name. Nodes and elements are numbered from 1 at the top.
+/// The tables of a point that its scenario wants kept, by name. Nodes and elements are numbered from 1 at the top.
 pub fn point_tables(
     model: &Model,
     equilibrium: &Equilibrium,
     records: Option<&Records>,
 ) -> Vec<(&'static str, Table)> {
+    let outputs = &model.scenario.recording.outputs;
+    if *outputs == Outputs::Summary {
+        return Vec::new();
+    }
     let mut tables = vec![("profile", profile(model, equilibrium)), ("statics", statics(model, equilibrium))];
     if let Some(records) = records {
-        tables.push(("history", history(records)));
+        match outputs {
+            Outputs::Full => tables.push(("history", history(model, records, &OrbitOutputs::default()))),
+            Outputs::Orbits(part) => tables.push(("history", history(model, records, part))),
+            Outputs::Spectra => tables.push(("spectra", spectra(model, records))),
+            Outputs::Summary => {}
+        }
         tables.push(("contacts", contacts(model, records)));
         tables.push(("energy", energy(records)));
     }
@@ -166,11 +177,22 @@ fn statics(model: &Model, equilibrium: &Equilibrium) -> Table {
     table
 }
 
-fn history(records: &Records) -> Table {
+fn history(model: &Model, records: &Records, part: &OrbitOutputs) -> Table {
+    let OrbitOutputs { nodes, window, decimation } = part;
     let samples = records.histories.first().map_or(0, |history| history.u.len());
+    let kept = match window {
+        Some(window) => sample_range(window.from, window.to, records.rate_hz, samples),
+        None => 0..samples,
+    };
+    let kept: Vec<usize> = kept.step_by(*decimation as usize).collect();
+    let is_kept = |history: &&NodeHistory| {
+        nodes.as_ref().is_none_or(|nodes| {
+            nodes.iter().any(|&choice| model.mesh.chosen_node(choice) == Some(history.node))
+        })
+    };
     let mut table = Table::default();
-    numbers(&mut table, "time", (0..samples).map(|k| k as f64 / records.rate_hz));
-    for history in &records.histories {
+    numbers(&mut table, "time", kept.iter().map(|&k| k as f64 / records.rate_hz));
+    for history in records.histories.iter().filter(is_kept) {
         let NodeHistory { node, u, v, w, theta_z, u_rate, v_rate, w_rate, theta_z_rate } = history;
         let series = [
             ("u", u),
@@ -186,8 +208,37 @@ fn history(records: &Records) -> Table {
             let name = format!("{quantity}_{}", node + 1);
             let unit = unit(&name);
             // Samples are kept in single precision; everything was computed in double.
-            table.push(name, unit, ColumnData::F32(values.iter().map(|&value| value as f32).collect()));
+            table.push(name, unit, ColumnData::F32(kept.iter().map(|&k| values[k] as f32).collect()));
         }
+    }
+    table
+}
+
+/// A row a frequency, for each recorded node and spectrum window in turn; an amplitude for each weighting of the samples.
+fn spectra(model: &Model, records: &Records) -> Table {
+    let (mut node, mut from, mut to) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut frequency, mut rectangular, mut hann) = (Vec::new(), Vec::new(), Vec::new());
+    for history in &records.histories {
+        for window in &model.scenario.recording.spectrum_windows {
+            let kept = sample_range(window.from, window.to, records.rate_hz, history.u.len());
+            let (u, v) = (&history.u[kept.clone()], &history.v[kept]);
+            let of = |weighting| full_spectrum(u, v, records.rate_hz, weighting);
+            let spectrum = of(Window::Rectangular);
+            node.extend(spectrum.frequency_hz.iter().map(|_| history.node as i64 + 1));
+            from.extend(spectrum.frequency_hz.iter().map(|_| window.from));
+            to.extend(spectrum.frequency_hz.iter().map(|_| window.to));
+            frequency.extend(spectrum.frequency_hz);
+            rectangular.extend(spectrum.amplitude.into_iter().map(|amplitude| amplitude as f32));
+            hann.extend(of(Window::Hann).amplitude.into_iter().map(|amplitude| amplitude as f32));
+        }
+    }
+    let mut table = Table::default();
+    integers(&mut table, "node", node.into_iter());
+    numbers(&mut table, "from", from.into_iter());
+    numbers(&mut table, "to", to.into_iter());
+    numbers(&mut table, "frequency", frequency.into_iter());
+    for (name, amplitude) in [("amplitude_rectangular", rectangular), ("amplitude_hann", hann)] {
+        table.push(name, unit(name), ColumnData::F32(amplitude));
     }
     table
 }

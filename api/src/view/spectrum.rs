@@ -4,10 +4,10 @@ use drillsweep_sim::signal::{PeakSearch, full_spectrum};
 use serde_json::json;
 
 use super::orbit::Motion;
-use crate::problem::ProblemDetails;
+use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 use crate::table::{Column, Table};
 
-pub use drillsweep_sim::signal::Window as Weighting;
+pub use drillsweep_sim::signal::{FullSpectrum, Window as Weighting};
 
 /// Two lines closer than so many bins are one: the rest is its leakage.
 const LINE_WIDTH_BINS: f64 = 2.0;
@@ -34,7 +34,61 @@ pub fn spectrum(
         return Err(too_few(motion).into());
     }
     let rate = intervals as f64 / (last - first);
-    let spectrum = full_spectrum(motion.u, motion.v, rate, weighting).restricted_to(&(-range..=range));
+    Ok(part(&full_spectrum(motion.u, motion.v, rate, weighting), range, peaks))
+}
+
+/// A half-open window of time \[from, to) whose spectrum was kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptWindow {
+    /// Start \[s\].
+    pub from: f64,
+    /// End \[s\].
+    pub to: f64,
+}
+
+impl KeptWindow {
+    /// The one of `kept` that is asked for; an end that leaves no doubt may be left out.
+    ///
+    /// # Errors
+    /// A problem that lists what was kept, when the one asked for is not among it.
+    pub fn choose(
+        kept: &[KeptWindow],
+        from: Option<f64>,
+        to: Option<f64>,
+    ) -> Result<KeptWindow, Box<ProblemDetails>> {
+        let is_asked_for = |window: &&KeptWindow| {
+            from.is_none_or(|from| from == window.from) && to.is_none_or(|to| to == window.to)
+        };
+        let mut found = kept.iter().filter(is_asked_for);
+        if let (Some(window), None) = (found.next(), found.next()) {
+            return Ok(*window);
+        }
+        let windows: Vec<_> =
+            kept.iter().map(|window| format!("{} to {} s", window.from, window.to)).collect();
+        let detail = format!(
+            "the run kept no histories, but spectra over the windows {}: `from` and `to` must be those of one of them",
+            windows.join(", ")
+        );
+        let (parameter, got) = match (from, to) {
+            (None, Some(to)) => ("to", Some(to.into())),
+            (from, _) => ("from", from.map(Into::into)),
+        };
+        let error = FieldProblem {
+            pointer: None,
+            parameter: Some(parameter.to_owned()),
+            got,
+            detail: detail.clone(),
+        };
+        let problem = ProblemDetails::new(ProblemKind::WindowNotKept, detail);
+        Err(Box::new(ProblemDetails { errors: vec![error], ..problem }))
+    }
+}
+
+/// The part of a spectrum within plus and minus `range` \[Hz\] with its highest lines, as [`spectrum`] gives it; of one that was
+/// kept in place of the motion.
+pub fn part(whole: &FullSpectrum, range: f64, peaks: usize) -> Table {
+    let samples = whole.frequency_hz.len();
+    let spectrum = whole.restricted_to(&(-range..=range));
     let min_separation_hz = LINE_WIDTH_BINS * spectrum.resolution_hz;
     let lines = spectrum.peaks(&PeakSearch { count: peaks, min_separation_hz, exclude_mean: false });
     let lines: Vec<_> = lines
@@ -49,14 +103,14 @@ pub fn spectrum(
         })
         .collect();
     let peak_to_peak = spectrum.peak_to_peak();
-    Ok(Table::default()
+    Table::default()
         .with("frequency", Column::Number(spectrum.frequency_hz))
         .with("amplitude", Column::Number(spectrum.amplitude))
         .with("peak_to_peak", Column::Number(peak_to_peak))
-        .attribute("samples", motion.time.len())
+        .attribute("samples", samples)
         .attribute("resolution", spectrum.resolution_hz)
-        .attribute("window", json!(weighting))
-        .attribute("peaks", lines))
+        .attribute("window", json!(spectrum.window))
+        .attribute("peaks", lines)
 }
 
 fn too_few(motion: &Motion<'_>) -> ProblemDetails {
@@ -92,6 +146,23 @@ mod tests {
             assert!((peak["frequency"].as_f64().unwrap() - frequency).abs() < 1e-9, "{peak}");
             assert!((peak["amplitude"].as_f64().unwrap() - amplitude).abs() < 1e-12, "{peak}");
             assert!((peak["peak_to_peak"].as_f64().unwrap() - 2.0 * amplitude).abs() < 1e-12, "{peak}");
+        }
+    }
+
+    #[test]
+    fn kept_windows_are_asked_for_by_their_ends() {
+        let window = |from, to| KeptWindow { from, to };
+        let kept = [window(5.0, 15.0), window(50.0, 60.0)];
+        assert_eq!(KeptWindow::choose(&kept, Some(50.0), Some(60.0)).unwrap(), kept[1]);
+        assert_eq!(KeptWindow::choose(&kept, None, Some(15.0)).unwrap(), kept[0]);
+        assert_eq!(KeptWindow::choose(&kept[..1], None, None).unwrap(), kept[0]);
+        for (from, to, parameter) in
+            [(None, None, "from"), (Some(5.0), Some(60.0), "from"), (None, Some(61.0), "to")]
+        {
+            let problem = KeptWindow::choose(&kept, from, to).unwrap_err();
+            assert_eq!(problem.status, 422);
+            assert_eq!(problem.errors[0].parameter.as_deref(), Some(parameter));
+            assert!(problem.detail.contains("5 to 15 s, 50 to 60 s"), "{problem}");
         }
     }
 

@@ -9,6 +9,7 @@ mod decide;
 mod effects;
 mod format;
 mod number;
+mod outputs;
 mod preset;
 mod problem;
 mod request;
@@ -19,6 +20,7 @@ mod validate;
 pub use accuracy::{Accuracy, AccuracyPreset, Integrator, TimeStepping};
 pub use decide::EffectDecision;
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
+pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
@@ -364,6 +366,9 @@ pub struct Recording {
     /// that fails is judged in any case.
     #[serde(default)]
     pub stability: bool,
+    /// Which tables are kept: `summary`, `spectra`, `orbits` or `full`.
+    #[serde(default)]
+    pub outputs: Outputs,
 }
 
 /// One node, by number (1 is the top) or by measured depth (the nearest node).

@@ -6,8 +6,8 @@
 use super::set::{Step, parse};
 use super::{
     Accuracy, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud, NodeChoice,
-    Operation, RayleighDamping, Recording, Scenario, Section, SurveyStation, TimeStepping, TimeWindow,
-    ToolJoint, UnbalanceMass, Well,
+    Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, Scenario, Section, SurveyStation,
+    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -100,11 +100,28 @@ numbers!(ContactLaw: stiffness, damping, stiffness_sharpness, damping_sharpness,
     friction_reference_speed, reference_length; without adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
 numbers!(Mesh: drillpipe, tool_joint, collar, stabilizer, bit);
-numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window; without stability);
+numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; without stability);
+numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
 numbers!(CostStudy: duration, methods, mesh_factors; without effects);
 numbers!(MethodSteps: steps; without integrator);
+
+impl Numbers for Outputs {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match (self, steps.split_first()?) {
+            (Outputs::Orbits(orbits), (Step::Field("orbits"), rest)) => orbits.find(rest),
+            _ => None,
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        match self {
+            Outputs::Orbits(orbits) => orbits.each(visit),
+            Outputs::Summary | Outputs::Spectra | Outputs::Full => {}
+        }
+    }
+}
 
 impl Numbers for NodeChoice {
     fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {

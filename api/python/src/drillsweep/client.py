@@ -66,6 +66,7 @@ class Client:
         samples: int | None = None,
         seed: int | None = None,
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
+        outputs: str | Mapping[str, Any] | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
@@ -88,6 +89,8 @@ class Client:
             seed: What such a design is drawn from; the same seed draws the same points, always.
             points: The points of the design `list`, each with a value for every parameter; rows of a data frame do
                 (`frame.to_dict("records")`).
+            outputs: What is kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
+                `{"orbits": {"nodes": [{"node": 49}], "window": {"from": 40, "to": 60}, "decimation": 4}}` or `"full"`.
             name: A name for people.
             owner: Whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
@@ -102,7 +105,7 @@ class Client:
             InvalidRequest: With everything that is wrong with it, by field.
             NoResult: Under `cache="only"`, where points have not been computed; the text names them.
         """
-        fields |= design_to_json(design, samples, seed, points)
+        fields |= design_to_json(design, samples, seed, points) | {"outputs": outputs}
         body = _request(preset, scenario, set, axes, name, owner, priority, tags, fields)
         return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key, cache))
 
@@ -112,6 +115,7 @@ class Client:
         *,
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
+        outputs: str | Mapping[str, Any] | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
@@ -121,7 +125,9 @@ class Client:
         **fields: Any,
     ) -> Sweep:
         """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
-        body = _request(preset, scenario, set, None, name, owner, priority, tags, fields)
+        body = _request(
+            preset, scenario, set, None, name, owner, priority, tags, fields | {"outputs": outputs}
+        )
         return Sweep(self, self._submit("/v1/runs", body, idempotency_key, cache))
 
     def plan(

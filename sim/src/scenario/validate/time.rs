@@ -1,7 +1,9 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
-use crate::scenario::{Accuracy, CostStudy, Integrator, NodeChoice, Scenario, TimeWindow};
+use crate::scenario::{
+    Accuracy, CostStudy, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TimeWindow,
+};
 use crate::string::StringMesh;
 
 /// Two times that differ by less than this part of them are the same.
@@ -57,6 +59,49 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
     );
     if let Some(mesh) = mesh {
         check_nodes(report, &recording.nodes, mesh);
+    }
+    check_outputs(report, scenario, mesh);
+}
+
+fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
+    const PATH: &str = "recording.outputs";
+    let recording = &scenario.recording;
+    match &recording.outputs {
+        Outputs::Summary | Outputs::Full => {}
+        Outputs::Spectra => {
+            for (path, is_empty) in [
+                ("recording.spectrum_windows", recording.spectrum_windows.is_empty()),
+                ("recording.nodes", recording.nodes.is_empty()),
+            ] {
+                report.require(!is_empty, PATH, "spectra", format!("needs at least one of {path}"));
+            }
+        }
+        Outputs::Orbits(OrbitOutputs { nodes, window, decimation }) => {
+            report.require(
+                *decimation >= 1,
+                format!("{PATH}.orbits.decimation"),
+                decimation,
+                "must be 1 (every sample) or more",
+            );
+            if let Some(window) = window {
+                check_window(report, scenario, window, &format!("{PATH}.orbits.window"));
+            }
+            let (Some(nodes), Some(mesh)) = (nodes, mesh) else { return };
+            let recorded: Vec<_> =
+                recording.nodes.iter().filter_map(|&choice| mesh.chosen_node(choice)).collect();
+            for (i, &choice) in nodes.iter().enumerate() {
+                let (name, got) = match choice {
+                    NodeChoice::Node(number) => ("node", f64::from(number)),
+                    NodeChoice::Depth(depth) => ("depth", depth),
+                };
+                report.require(
+                    mesh.chosen_node(choice).is_some_and(|node| recorded.contains(&node)),
+                    format!("{PATH}.orbits.nodes[{i}].{name}"),
+                    got,
+                    "must be one of recording.nodes",
+                );
+            }
+        }
     }
 }
 
@@ -419,6 +464,32 @@ mod tests {
         for to in [15.0, 10.0] {
             let found = problem("recording.spectrum_windows[0]", |s| s.recording.spectrum_windows[0].to = to);
             assert!(found.message.contains("end after it begins"), "{found}");
+        }
+    }
+
+    #[test]
+    fn outputs_are_of_what_is_recorded() {
+        let keep = |outputs: OrbitOutputs| {
+            move |s: &mut Scenario| s.recording.outputs = Outputs::Orbits(outputs.clone())
+        };
+        let whole = OrbitOutputs::default;
+        problem("recording.outputs.orbits.decimation", keep(OrbitOutputs { decimation: 0, ..whole() }));
+        let window = Some(TimeWindow { from: 50.0, to: 61.0 });
+        problem("recording.outputs.orbits.window.to", keep(OrbitOutputs { window, ..whole() }));
+        let nodes = Some(vec![NodeChoice::Node(49), NodeChoice::Node(50)]);
+        let found =
+            problem("recording.outputs.orbits.nodes[1].node", keep(OrbitOutputs { nodes, ..whole() }));
+        assert_eq!(found.got, "50");
+        // The node nearest to this depth is node 49.
+        let nodes = Some(vec![NodeChoice::Depth(57.8)]);
+        assert_eq!(warnings(keep(OrbitOutputs { nodes, ..whole() })), []);
+        for clear in
+            [(|s| s.recording.spectrum_windows.clear()) as fn(&mut Scenario), |s| s.recording.nodes.clear()]
+        {
+            problem("recording.outputs", move |s| {
+                s.recording.outputs = Outputs::Spectra;
+                clear(s);
+            });
         }
     }
 

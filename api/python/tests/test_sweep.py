@@ -22,6 +22,7 @@ from drillsweep import (
     NoAnswer,
     NoResult,
     NotFound,
+    Problem,
     Range,
     Sweep,
 )
@@ -44,6 +45,14 @@ def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> 
     parquet = polars.read_parquet(sweep.save_table(tmp_path / "table.parquet"))
     for other in (csv["orbit_radius_rms_49"].tolist(), parquet["orbit_radius_rms_49"].to_list()):
         assert other == frame["orbit_radius_rms_49"].tolist() == table.to_polars()["orbit_radius_rms_49"].to_list()
+
+
+def test_outputs_say_what_is_kept(client: Client) -> None:
+    density = {**SHORT, "mud.density": 1350}
+    run = client.run("paper-200m", set=density, outputs="summary").wait(timeout=120.0)
+    assert run.point(1).summary["contact_count"] > 0
+    with pytest.raises(Problem, match="keep the summary only"):
+        run.point(1).profile()
 
 
 def test_progress_is_told_and_drawn(client: Client) -> None:

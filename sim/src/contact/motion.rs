@@ -59,7 +59,8 @@ pub fn dynamic_contact<L: Lane>(
     let radius = L::select(outside, radius_squared, L::splat(1.0)).sqrt();
     let penetration = radius - node.clearance;
     let touches = outside & penetration.greater_than(zero);
-    let (normal_u, normal_v) = (u / radius, v / radius);
+    let per_radius = L::splat(1.0) / radius;
+    let (normal_u, normal_v) = (u * per_radius, v * per_radius);
     let penetration_rate = normal_u.mul_add(u_rate, normal_v * v_rate);
     let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));
     let sliding_speed = (rotation_speed + theta_z_rate).mul_add(node.contact_radius, whirl_speed);

@@ -34,30 +34,44 @@ impl<L, const D: usize> IndexMut<(usize, usize)> for Block<L, D> {
 }
 
 impl<const D: usize> Block<f64, D> {
-    /// `self = self + sum_k weight_k left_k right_k^T`.
+    /// `self = self + sum_k weight_k v_k[left] v_k[right]^T` over weights and vectors.
+    // No closures over arrays here and below: these are not inlined, and a call a node is a tenth of the work.
     #[inline(always)]
-    pub fn add_products<const K: usize>(&mut self, products: [(f64, &[f64; D], &[f64; D]); K]) {
-        let mut columns = self.columns.map(|column| Column::new(&column));
-        for (weight, left, right) in products {
-            let left = Column::new(left).times(weight);
-            for (column, right) in columns.iter_mut().zip(right) {
-                *column = left.mul_add(*right, *column);
+    pub fn add_products<const K: usize>(
+        &mut self,
+        vectors: &[(f64, &[[f64; D]]); K],
+        left: usize,
+        right: usize,
+    ) {
+        let mut columns = [Column::zero(); D];
+        for (column, rows) in columns.iter_mut().zip(&self.columns) {
+            *column = Column::new(rows);
+        }
+        for (weight, v) in vectors {
+            let pushed = Column::new(&v[left]).times(*weight);
+            for (column, factor) in columns.iter_mut().zip(&v[right]) {
+                *column = pushed.mul_add(*factor, *column);
             }
         }
-        self.columns = columns.map(Column::to_rows);
+        for (column, rows) in columns.iter().zip(&mut self.columns) {
+            *rows = column.to_rows();
+        }
     }
 
-    /// `sums_k + self x_k`, each column read once for all of them.
+    /// Adds `self x_k[row]` to each sum, each column read once for all of them.
     #[inline(always)]
-    pub(super) fn times_each<const K: usize>(&self, x: [&[f64; D]; K], sums: [Column; K]) -> [Column; K] {
-        let mut sums = sums;
+    pub(super) fn add_times_each<const K: usize>(
+        &self,
+        x: &[&[[f64; D]]; K],
+        row: usize,
+        sums: &mut [Column; K],
+    ) {
         for (j, column) in self.columns.iter().enumerate() {
             let column = Column::new(column);
             for (sum, x) in sums.iter_mut().zip(x) {
-                *sum = column.mul_add(x[j], *sum);
+                *sum = column.mul_add(x[row][j], *sum);
             }
         }
-        sums
     }
 
     /// Sum over all entries of the products with those of another block.

@@ -9,6 +9,7 @@ mod column;
 mod factor;
 mod four;
 mod lane;
+mod pair;
 mod skew;
 mod tridiagonal;
 
@@ -19,6 +20,7 @@ pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
+pub use pair::MatrixPair;
 pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::BlockTridiagonal;
 

@@ -71,21 +71,23 @@ fn products_equal_dense_products() {
         a.multiply_add(&x, &mut out);
         assert!(relative_difference(&flat(&out), &(&dense_ax * 2.0)) < 1e-14, "{rows} rows");
 
-        BlockTridiagonal::subtract_two(&a, &x, &b, &y, &mut out);
-        assert!(relative_difference(&flat(&out), &(&dense_ax - &dense_by)) < 1e-14, "{rows} rows");
+        let whole = numbers.vector(rows);
+        MatrixPair::new(&a, &b).subtract_products(&whole, &x, &y, &mut out);
+        let expected = flat(&whole) - &dense_ax - &dense_by;
+        assert!(relative_difference(&flat(&out), &expected) < 1e-14, "{rows} rows");
     }
 }
 
 #[test]
 fn sums_of_products_of_two_vectors_equal_dense_ones() {
     let mut numbers = Numbers(9);
-    let (vectors, other) = (numbers.vector(6), numbers.block(0.0));
+    let (vectors, other) = ([(); 3].map(|()| numbers.vector(2)), numbers.block(0.0));
     let mut sum = numbers.block(1.0);
-    let column = |i: usize| DVector::from_row_slice(&vectors[i]);
+    let column = |k: usize, row: usize| DVector::from_row_slice(&vectors[k][row]);
     let dense = |block: &Block<f64>| DMatrix::from_fn(DOFS, DOFS, |i, j| block[(i, j)]);
     let expected =
-        (0..3).fold(dense(&sum), |sum, k| sum + column(k) * column(k + 3).transpose() * (k as f64 - 0.5));
-    sum.add_products(std::array::from_fn::<_, 3, _>(|k| (k as f64 - 0.5, &vectors[k], &vectors[k + 3])));
+        (0..3).fold(dense(&sum), |sum, k| sum + column(k, 0) * column(k, 1).transpose() * (k as f64 - 0.5));
+    sum.add_products(&[0, 1, 2].map(|k| (k as f64 - 0.5, &*vectors[k])), 0, 1);
     assert!((dense(&sum) - &expected).amax() < 1e-15 * 4.0);
     assert!((sum.dot(&other) - expected.dot(&dense(&other))).abs() < 1e-14);
 }
@@ -229,7 +231,7 @@ fn a_lane_has_the_bits_of_a_run_alone() {
     let (x, y) = (vector(&|lane| alone[lane].2.clone()), vector(&|lane| alone[lane].3.clone()));
 
     let mut products = y.clone();
-    BlockTridiagonal::subtract_two(&a, &x, &b, &y, &mut products);
+    MatrixPair::new(&a, &b).subtract_products(&y, &x, &y, &mut products);
     let mut solutions = y.clone();
     let splat = Four::splat;
     let combined = BlockTridiagonal::combine(splat(0.3), &a, splat(-0.7), &b, splat(0.11), &a);
@@ -237,7 +239,7 @@ fn a_lane_has_the_bits_of_a_run_alone() {
 
     for (lane, (a, b, x, y)) in alone.iter().enumerate() {
         let mut product = y.clone();
-        BlockTridiagonal::subtract_two(a, x, b, y, &mut product);
+        MatrixPair::new(a, b).subtract_products(y, x, y, &mut product);
         assert_eq!(lane_of(&products, lane), product);
         let mut solution = y.clone();
         let combined = BlockTridiagonal::combine(0.3, a, -0.7, b, 0.11, a);

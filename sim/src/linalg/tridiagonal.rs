@@ -72,17 +72,6 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
         self.for_rows(x, y, |y, product| std::array::from_fn(|dof| y[dof] + product[dof]));
     }
 
-    /// `out = out - (A x + B y)` in one pass.
-    pub fn subtract_two(a: &Self, x: &[[L; D]], b: &Self, y: &[[L; D]], out: &mut [[L; D]]) {
-        let rows = out.len();
-        assert!(a.rows() == rows && b.rows() == rows && x.len() == rows && y.len() == rows);
-        for (row, out) in out.iter_mut().enumerate() {
-            // Two sums that do not wait for each other.
-            let (of_a, of_b) = (a.row_product(row, x), b.row_product(row, y));
-            *out = std::array::from_fn(|dof| out[dof] - (of_a[dof] + of_b[dof]));
-        }
-    }
-
     #[inline(always)]
     fn for_rows(&self, x: &[[L; D]], y: &mut [[L; D]], finish: impl Fn([L; D], [L; D]) -> [L; D]) {
         let rows = y.len();

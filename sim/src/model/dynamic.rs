@@ -189,9 +189,9 @@ impl Model {
 }
 
 impl<const D: usize> DynamicSystem<D> {
-    /// Where the twist stands among the degrees of freedom; none where it is held.
-    pub fn twist(&self) -> Option<usize> {
-        self.places.iter().position(|&place| place == 5)
+    /// Whether the twist is among the degrees of freedom; it is the last one then.
+    pub fn has_twist(&self) -> bool {
+        self.places.last() == Some(&5)
     }
 }
 

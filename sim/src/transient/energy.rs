@@ -102,8 +102,8 @@ pub(super) struct Ledger<const D: usize> {
     /// Clearance \[m\] and share of the contact law of every node.
     walls: Vec<(f64, f64)>,
     with_contact: bool,
-    /// Where the twist stands among the degrees of freedom; none where it is held.
-    twist: Option<usize>,
+    /// Whether the last degree of freedom is the twist.
+    has_twist: bool,
     rotation_speed: f64,
     work: Work,
     initial_stored: f64,
@@ -126,7 +126,7 @@ impl<const D: usize> Ledger<D> {
             contact: ContactParameters::new(&model.scenario.contact, &model.effects),
             walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.contact_share)).collect(),
             with_contact: model.effects.contact,
-            twist: system.twist(),
+            has_twist: system.has_twist(),
             rotation_speed: system.rotation_speed,
             work: Work::default(),
             initial_stored: 0.0,
@@ -187,8 +187,8 @@ impl<const D: usize> Ledger<D> {
                 (side_by_side(displacement, group.first, 0), side_by_side(displacement, group.first, 1));
             let (u_rate, v_rate) = (rate(0), rate(1));
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
-            let normal = -(group.normal_by_radius * u_rate.mul_add(u, v_rate * v));
-            let twist_power = self.twist.map_or(zero, |twist| rate(twist) * group.torque);
+            let normal = -(group.normal_force / group.radius * u_rate.mul_add(u, v_rate * v));
+            let twist_power = if self.has_twist { rate(D - 1) * group.torque } else { zero };
             let whole = u_rate.mul_add(group.force[0], v_rate.mul_add(group.force[1], twist_power));
             normal_power = normal_power + normal;
             friction_power = friction_power + (whole - normal);

@@ -2,7 +2,7 @@
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
 use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut};
+use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut, multiply_add};
 use super::run::{Books, State};
 use crate::linalg::SingularBlock;
 use crate::model::{DynamicSystem, NodalVector};
@@ -55,7 +55,6 @@ pub(super) struct Esdirk<const D: usize> {
     pub(super) solver: StageSolver<D>,
     /// Of the stages after the first, which is the state at the step's start.
     stages: [Stage<D>; STAGES - 1],
-    velocity_base: NodalVector<D>,
     acceleration_offset: NodalVector<D>,
     velocity_offset: NodalVector<D>,
 }
@@ -84,7 +83,6 @@ impl<const D: usize> Esdirk<D> {
                 velocity: zero.clone(),
                 acceleration: zero.clone(),
             }),
-            velocity_base: zero.clone(),
             acceleration_offset: zero.clone(),
             velocity_offset: zero,
         })
@@ -93,19 +91,18 @@ impl<const D: usize> Esdirk<D> {
     /// Advances `state` by one step from `time`. `state.stage_power` holds the powers of the step's first stage.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem<D>,
         forces: &Forces<D>,
         time: f64,
         state: &mut State<D>,
         Books { ledger, errors }: Books<'_, D>,
     ) {
         let h = self.step;
-        let c = 1.0 / (DIAGONAL * h);
+        let StageCoefficients { acceleration: per_displacement, .. } = stage_coefficients(h);
         ledger.book_power(WEIGHTS[0] * h, &state.stage_power);
         for stage in 1..STAGES {
             self.predict(stage, state);
             let stage_time = time + NODES[stage] * h;
-            self.solver.solve(system, forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
+            self.solver.solve(forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
             if WEIGHTS[stage] != 0.0 {
                 state.stage_power = ledger.power(
                     &self.solver.velocity,
@@ -119,7 +116,13 @@ impl<const D: usize> Esdirk<D> {
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
             std::mem::swap(velocity, &mut self.solver.velocity);
-            difference_times(flat(velocity), flat(&self.velocity_base), c, flat_mut(acceleration));
+            multiply_add(
+                flat(displacement),
+                per_displacement,
+                flat(&self.acceleration_offset),
+                flat_mut(acceleration),
+            );
+            self.solver.clear_held(acceleration);
         }
         let [_, s2, s3, s4, s5] = &self.stages;
         let [w0, _, w2, w3, w4, w5] = WEIGHTS.map(|weight| h * weight);
@@ -160,69 +163,62 @@ impl<const D: usize> Esdirk<D> {
         let (x0, v0, a0) = (flat(&state.displacement), flat(&state.velocity), flat(&state.acceleration));
         let velocity = |j: usize| if j == 0 { v0 } else { flat(&self.stages[j - 1].velocity) };
         let acceleration = |j: usize| if j == 0 { a0 } else { flat(&self.stages[j - 1].acceleration) };
-        let weights = earlier.map(|(_, weight)| weight);
-        let v_base = flat_mut(&mut self.velocity_base);
-        combine(v0, weights, earlier.map(|(j, _)| acceleration(j)), v_base);
-        // The displacements' base is in the solver's place until the predictor is.
-        let x = flat_mut(&mut self.solver.displacement);
-        combine(x0, weights, earlier.map(|(j, _)| velocity(j)), x);
+        let rates = Rates {
+            weights: earlier.map(|(_, weight)| weight),
+            velocities: earlier.map(|(j, _)| velocity(j)),
+            accelerations: earlier.map(|(j, _)| acceleration(j)),
+            last: acceleration(stage - 1),
+        };
         offsets(
             self.step,
-            v_base,
-            acceleration(stage - 1),
-            x,
+            (x0, v0),
+            &rates,
             flat_mut(&mut self.velocity_offset),
             flat_mut(&mut self.acceleration_offset),
+            flat_mut(&mut self.solver.displacement),
             flat_mut(&mut self.solver.velocity),
         );
     }
 }
 
-/// `out = start + sum_j weight_j rate_j`. As the functions below, one of its own: only where its slices are arguments does
-/// the compiler know that they do not overlap, and takes four values at a time.
-#[inline(never)]
-fn combine<const K: usize>(start: &[f64], weights: [f64; K], rates: [&[f64]; K], out: &mut [f64]) {
-    let n = out.len();
-    let (start, rates) = (&start[..n], rates.map(|rate| &rate[..n]));
-    for i in 0..n {
-        let mut sum = start[i];
-        for j in 0..K {
-            sum = rates[j][i].mul_add(weights[j], sum);
-        }
-        out[i] = sum;
-    }
+/// Rates of the earlier stages that count, and the acceleration of the stage before.
+struct Rates<'a, const K: usize> {
+    weights: [f64; K],
+    velocities: [&'a [f64]; K],
+    accelerations: [&'a [f64]; K],
+    last: &'a [f64],
 }
 
-/// Offsets v^ and a^ from the bases of a stage (that of the displacements in `x`), and the predictor in `x` and `v`: the acceleration
-/// of the stage before, `last`.
+/// Offsets v^ and a^ of a stage from the step's start and the rates of earlier stages, and its predictor in `x` and `v`: the
+/// acceleration stays as it was. A function of its own: only where its slices are arguments does the compiler know that they do
+/// not overlap, and takes four values at a time.
 #[inline(never)]
-fn offsets(
+fn offsets<const K: usize>(
     step: f64,
-    v_base: &[f64],
-    last: &[f64],
-    x: &mut [f64],
+    (x0, v0): (&[f64], &[f64]),
+    rates: &Rates<'_, K>,
     velocity_offset: &mut [f64],
     acceleration_offset: &mut [f64],
+    x: &mut [f64],
     v: &mut [f64],
 ) {
     let n = x.len();
-    let (v_base, last, v) = (&v_base[..n], &last[..n], &mut v[..n]);
+    let Rates { weights, velocities, accelerations, last } = rates;
+    let (x0, v0, v, last) = (&x0[..n], &v0[..n], &mut v[..n], &last[..n]);
+    let (velocities, accelerations) =
+        (velocities.map(|rate| &rate[..n]), accelerations.map(|rate| &rate[..n]));
     let (velocity_offset, acceleration_offset) = (&mut velocity_offset[..n], &mut acceleration_offset[..n]);
     let (c, diagonal) = (1.0 / (DIAGONAL * step), DIAGONAL * step);
     for i in 0..n {
-        let x_base = x[i];
+        let (mut x_base, mut v_base) = (x0[i], v0[i]);
+        for j in 0..K {
+            x_base = velocities[j][i].mul_add(weights[j], x_base);
+            v_base = accelerations[j][i].mul_add(weights[j], v_base);
+        }
         velocity_offset[i] = -c * x_base;
-        acceleration_offset[i] = c * (velocity_offset[i] - v_base[i]);
-        v[i] = diagonal.mul_add(last[i], v_base[i]);
+        acceleration_offset[i] = c * (velocity_offset[i] - v_base);
+        v[i] = diagonal.mul_add(last[i], v_base);
         x[i] = diagonal.mul_add(v[i], x_base);
-    }
-}
-
-/// `out = (x - y) factor`.
-#[inline(never)]
-fn difference_times(x: &[f64], y: &[f64], factor: f64, out: &mut [f64]) {
-    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
-        *out = (x - y) * factor;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
 use crate::linalg::{Four, Lane, Mask};
-use crate::model::{DynamicSystem, Model, NodalVector};
+use crate::model::{DynamicSystem, Model, NodalVector, UnbalanceForce};
 use crate::string::MeshNode;
 
 /// What the wall does to every node, as of one evaluation: four nodes side by side, from the second one on.
@@ -22,9 +22,10 @@ pub(super) struct GroupContact {
     pub(super) force: [Four; 2],
     /// Friction torque about the string \[N m\].
     pub(super) torque: Four,
-    /// Signed size of the normal force over the distance from the axis \[N/m\]; positive pushes inwards.
-    pub(super) normal_by_radius: Four,
-    normal_force: Four,
+    /// Signed size of the normal force \[N\]; positive pushes inwards.
+    pub(super) normal_force: Four,
+    /// Distance from the axis where a node touches, 1 elsewhere \[m\].
+    pub(super) radius: Four,
 }
 
 /// What the wall does to one node.
@@ -39,16 +40,7 @@ pub(super) struct NodeContact {
 impl ContactForces {
     /// No contact at any of so many nodes.
     pub(super) fn none(nodes: usize) -> Self {
-        let zero = Four::splat(0.0);
-        let group = |first| GroupContact {
-            first,
-            penetration: None,
-            force: [zero; 2],
-            torque: zero,
-            normal_by_radius: zero,
-            normal_force: zero,
-        };
-        Self { groups: (1..nodes).step_by(LANES).map(group).collect() }
+        Self { groups: (1..nodes).step_by(LANES).map(GroupContact::none).collect() }
     }
 
     /// The groups of which any node touches.
@@ -56,17 +48,32 @@ impl ContactForces {
         self.groups.iter().filter(|group| group.penetration.is_some())
     }
 
-    /// The force on every node, from the first one on.
-    pub(super) fn nodes(&self) -> impl Iterator<Item = NodeContact> {
-        let nodes = self.groups.iter().flat_map(|group| {
+    /// Visits every node in turn with what the wall does to it.
+    #[inline(always)]
+    pub(super) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
+        visit(0, NodeContact::default());
+        for group in &self.groups {
             let penetration = group.penetration.map_or([0.0; LANES], Four::to_array);
             let normal_force = group.normal_force.to_array();
-            std::array::from_fn::<_, LANES, _>(|lane| NodeContact {
-                normal_force: normal_force[lane],
-                touching: penetration[lane] > 0.0,
-            })
-        });
-        std::iter::once(NodeContact::default()).chain(nodes)
+            for lane in 0..LANES.min(nodes - group.first) {
+                let touching = penetration[lane] > 0.0;
+                visit(group.first + lane, NodeContact { normal_force: normal_force[lane], touching });
+            }
+        }
+    }
+}
+
+impl GroupContact {
+    fn none(first: usize) -> Self {
+        let zero = Four::splat(0.0);
+        GroupContact {
+            first,
+            penetration: None,
+            force: [zero; 2],
+            torque: zero,
+            normal_force: zero,
+            radius: Four::splat(1.0),
+        }
     }
 }
 
@@ -74,14 +81,14 @@ impl ContactForces {
 #[derive(Debug, Clone)]
 pub(super) struct Forces<const D: usize> {
     pub(super) load: NodalVector<D>,
-    unbalance: Vec<crate::model::UnbalanceForce>,
+    unbalance: Vec<TurningForce>,
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
     /// Four nodes side by side, from the second one on; places beyond the bit can never touch.
     sites: Vec<ContactNode<Four>>,
     contact: bool,
-    /// Where the twist stands among the degrees of freedom; none where it is held.
-    twist: Option<usize>,
+    /// Whether the last degree of freedom is the twist.
+    has_twist: bool,
 }
 
 impl<const D: usize> Forces<D> {
@@ -101,21 +108,20 @@ impl<const D: usize> Forces<D> {
         });
         Self {
             load: system.load.clone(),
-            unbalance: system.unbalance.clone(),
+            unbalance: system.unbalance.iter().map(TurningForce::new).collect(),
             rotation_speed: system.rotation_speed,
             parameters,
             sites: sites.collect(),
             contact: effects.contact,
-            twist: system.twist(),
+            has_twist: system.has_twist(),
         }
     }
 
-    /// Constant loads and unbalance at `time` \[s\].
-    pub(super) fn external_into(&self, time: f64, out: &mut NodalVector<D>) {
-        out.copy_from_slice(&self.load);
+    /// Adds the unbalance at `time` \[s\] to nodal forces.
+    pub(super) fn add_unbalance(&self, time: f64, nodal: &mut [[f64; D]]) {
         for (node, force) in self.unbalance_at(time) {
-            out[node][0] += force[0];
-            out[node][1] += force[1];
+            nodal[node][0] += force[0];
+            nodal[node][1] += force[1];
         }
     }
 
@@ -123,14 +129,20 @@ impl<const D: usize> Forces<D> {
     /// times lose no digits.
     pub(super) fn unbalance_at(&self, time: f64) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
         let angle = (self.rotation_speed * time).rem_euclid(std::f64::consts::TAU);
-        self.unbalance.iter().map(move |force| {
-            let (sine, cosine) = (angle + force.phase).sin_cos();
-            (force.node, [force.amplitude * cosine, force.amplitude * sine])
+        let (sine, cosine) = angle.sin_cos();
+        self.unbalance.iter().map(move |TurningForce { node, at_start: [u, v] }| {
+            (*node, [u * cosine - v * sine, u * sine + v * cosine])
         })
     }
 
-    /// Contact forces for given displacements and velocities; the clamped top node never touches.
-    pub(super) fn contact_into(&self, x: &[[f64; D]], v: &[[f64; D]], out: &mut ContactForces) {
+    /// Contact forces for given displacements and velocities; the clamped top node never touches. `rates` gives the rate of a degree
+    /// of freedom of four nodes from the first one on.
+    pub(super) fn contact_into(
+        &self,
+        x: &[[f64; D]],
+        rates: impl Fn(usize, usize) -> Four,
+        out: &mut ContactForces,
+    ) {
         if !self.contact {
             return;
         }
@@ -140,17 +152,17 @@ impl<const D: usize> Forces<D> {
             let radius_squared = u.mul_add(u, v_along * v_along);
             // Most groups are far from the wall: their rates are not even looked at.
             if !radius_squared.greater_than(site.clearance * site.clearance).any() {
-                if out.penetration.take().is_some() {
-                    out.normal_force = Four::splat(0.0);
+                if out.penetration.is_some() {
+                    *out = GroupContact::none(out.first);
                 }
                 continue;
             }
             let motion = LateralMotion {
                 u,
                 v: v_along,
-                u_rate: side_by_side(v, out.first, 0),
-                v_rate: side_by_side(v, out.first, 1),
-                theta_z_rate: self.twist.map_or(Four::splat(0.0), |twist| side_by_side(v, out.first, twist)),
+                u_rate: rates(out.first, 0),
+                v_rate: rates(out.first, 1),
+                theta_z_rate: if self.has_twist { rates(out.first, D - 1) } else { Four::splat(0.0) },
             };
             let contact = dynamic_contact(&self.parameters, site, &motion, rotation_speed);
             let touches = contact.penetration.greater_than(Four::splat(0.0));
@@ -160,25 +172,39 @@ impl<const D: usize> Forces<D> {
                 penetration: touches.any().then_some(contact.penetration),
                 force: [contact.force_u, contact.force_v],
                 torque: contact.torque_z,
-                normal_by_radius: contact.normal / radius,
                 normal_force: contact.normal,
+                radius,
             };
         }
     }
 
-    /// Adds contact forces to nodal forces.
-    pub(super) fn add_contact(&self, nodal: &mut [[f64; D]], contact: &ContactForces) {
-        for group in contact.touching() {
-            let (u, v) = (group.force[0].to_array(), group.force[1].to_array());
-            let torque = group.torque.to_array();
-            for (lane, nodal) in nodal[group.first..].iter_mut().take(LANES).enumerate() {
-                nodal[0] += u[lane];
-                nodal[1] += v[lane];
-                if let Some(twist) = self.twist {
-                    nodal[twist] += torque[lane];
-                }
+    /// Forces on one node with those of its contact.
+    #[inline(always)]
+    pub(super) fn with_contact(&self, node: usize, force: [f64; D], contact: &ContactForces) -> [f64; D] {
+        let mut force = force;
+        if let Some(beneath) = node.checked_sub(1) {
+            let (group, lane) = (&contact.groups[beneath / LANES], beneath % LANES);
+            force[0] += group.force[0].lane(lane);
+            force[1] += group.force[1].lane(lane);
+            if self.has_twist {
+                force[D - 1] += group.torque.lane(lane);
             }
         }
+        force
+    }
+}
+
+/// An unbalance force: its parts along u and v at the start, which turn with the string.
+#[derive(Debug, Clone, Copy)]
+struct TurningForce {
+    node: usize,
+    at_start: [f64; 2],
+}
+
+impl TurningForce {
+    fn new(force: &UnbalanceForce) -> Self {
+        let (sine, cosine) = force.phase.sin_cos();
+        Self { node: force.node, at_start: [force.amplitude * cosine, force.amplitude * sine] }
     }
 }
 

@@ -128,9 +128,9 @@ fn add_products<const K: usize, const D: usize>(
     let rows = moments.len();
     let stages = stages.map(|(weight, v)| (weight, &v[..rows]));
     for (node, [own, next]) in moments.iter_mut().enumerate() {
-        own.add_products(stages.map(|(weight, v)| (weight, &v[node], &v[node])));
+        own.add_products(&stages, node, node);
         if node + 1 < rows {
-            next.add_products(stages.map(|(weight, v)| (weight, &v[node], &v[node + 1])));
+            next.add_products(&stages, node, node + 1);
         }
     }
 }

@@ -63,7 +63,6 @@ impl<const D: usize> GeneralizedAlpha<D> {
     /// Advances `state` by one step from `time`.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem<D>,
         forces: &Forces<D>,
         time: f64,
         state: &mut State<D>,
@@ -81,7 +80,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
             flat_mut(&mut solver.velocity),
         );
         let level_time = time + (1.0 - alpha_f) * h;
-        solver.solve(system, forces, level_time, &self.acceleration_offset, &self.velocity_offset);
+        solver.solve(forces, level_time, &self.acceleration_offset, &self.velocity_offset);
         step_end(
             &EndCoefficients::new(h, self.spectral_radius),
             state,

@@ -5,8 +5,8 @@
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix is factored once a run;
 //! contact stays on the right-hand side and is evaluated afresh in each sweep.
 
-use super::forces::{ContactForces, Forces};
-use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, SingularBlock};
+use super::forces::{ContactForces, Forces, side_by_side};
+use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
 /// Change of a lateral displacement between two sweeps at which more sweeps are pointless \[m\]: 0.01 N of
@@ -17,6 +17,7 @@ const SWEEP_TOLERANCE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct StageSolver<const D: usize> {
     factor: Factor<f64, D>,
+    mass_and_damping: MatrixPair<f64, D>,
     velocity_coefficient: f64,
     held: Vec<(usize, usize)>,
     held_values: Vec<f64>,
@@ -97,6 +98,7 @@ impl<const D: usize> StageSolver<D> {
         let zero = vec![[0.0; D]; n];
         Ok(Self {
             factor: Factor::new(&matrix)?,
+            mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
             velocity_coefficient,
             held_values: held
                 .iter()
@@ -117,48 +119,65 @@ impl<const D: usize> StageSolver<D> {
     /// a^ and `velocity_offset` is v^.
     pub(super) fn solve(
         &mut self,
-        system: &DynamicSystem<D>,
         forces: &Forces<D>,
         time: f64,
         acceleration_offset: &[[f64; D]],
         velocity_offset: &[[f64; D]],
     ) {
-        forces.external_into(time, &mut self.external);
-        BlockTridiagonal::subtract_two(
-            &system.mass,
+        self.mass_and_damping.subtract_products(
+            &forces.load,
             acceleration_offset,
-            &system.damping,
             velocity_offset,
             &mut self.external,
         );
+        forces.add_unbalance(time, &mut self.external);
+        // The wall does not push the top node, which alone is held here.
+        for (&(node, dof), &value) in self.held.iter().zip(&self.held_values) {
+            self.external[node][dof] = value;
+        }
         let mut change = 0.0;
         for sweep in 1..=self.sweeps {
-            forces.contact_into(&self.displacement, &self.velocity, &mut self.contact);
-            self.right.copy_from_slice(&self.external);
-            forces.add_contact(&mut self.right, &self.contact);
-            for (&(node, dof), &value) in self.held.iter().zip(&self.held_values) {
-                self.right[node][dof] = value;
+            let (x, c) = (&self.displacement, Four::splat(self.velocity_coefficient));
+            if sweep == 1 {
+                let rates = |first, dof| side_by_side(&self.velocity, first, dof);
+                forces.contact_into(x, rates, &mut self.contact);
+            } else {
+                // Few nodes touch: only their velocities are formed between the sweeps.
+                let rates = |first, dof| {
+                    side_by_side(x, first, dof).mul_add(c, side_by_side(velocity_offset, first, dof))
+                };
+                forces.contact_into(x, rates, &mut self.contact);
             }
-            self.factor.solve_in_place(&mut self.right);
-            change = largest_change(&self.right, &self.displacement);
+            let right = |node: usize| forces.with_contact(node, self.external[node], &self.contact);
+            self.factor.solve_for(right, &mut self.right);
+            if sweep > 1 {
+                change = largest_change(&self.right, &self.displacement);
+            }
             std::mem::swap(&mut self.displacement, &mut self.right);
-            multiply_add(
-                flat(&self.displacement),
-                self.velocity_coefficient,
-                flat(velocity_offset),
-                flat_mut(&mut self.velocity),
-            );
-            for &(node, dof) in &self.held {
-                self.velocity[node][dof] = 0.0;
-            }
             self.monitor.sweeps += 1;
             // Two sweeps are a fixed count; more are a cap on the way to standing still.
             if sweep >= 2 && self.sweeps > 2 && change <= SWEEP_TOLERANCE {
                 break;
             }
         }
+        multiply_add(
+            flat(&self.displacement),
+            self.velocity_coefficient,
+            flat(velocity_offset),
+            flat_mut(&mut self.velocity),
+        );
+        for &(node, dof) in &self.held {
+            self.velocity[node][dof] = 0.0;
+        }
         self.monitor.largest_change = self.monitor.largest_change.max(change);
         self.monitor.loose_solves += u64::from(change > 1e-5);
+    }
+
+    /// Sets what is held to zero.
+    pub(super) fn clear_held(&self, rates: &mut [[f64; D]]) {
+        for &(node, dof) in &self.held {
+            rates[node][dof] = 0.0;
+        }
     }
 }
 

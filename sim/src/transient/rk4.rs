@@ -4,10 +4,10 @@
 
 use super::energy::Ledger;
 use super::error::ErrorSum;
-use super::forces::{ContactForces, Forces};
+use super::forces::{ContactForces, Forces, side_by_side};
 use super::implicit::{flat, flat_mut, held_list};
 use super::run::{Books, State, steps_per_interval};
-use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
+use crate::linalg::{Factor, MatrixPair, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
 /// Shortest step relative to the first: below it the run counts as diverged.
@@ -17,6 +17,7 @@ const SMALLEST_STEP_RATIO: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(super) struct Rk4<const D: usize> {
     mass: Factor<f64, D>,
+    damping_and_stiffness: MatrixPair<f64, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
     /// Local error of a lateral displacement that a pair of steps may make, in hole radii; none means fixed steps.
@@ -24,6 +25,8 @@ pub(super) struct Rk4<const D: usize> {
     hole_radius: f64,
     rates: [(NodalVector<D>, NodalVector<D>); 4],
     stage: (NodalVector<D>, NodalVector<D>),
+    /// What moves the string but the contacts.
+    external: NodalVector<D>,
     right: NodalVector<D>,
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
@@ -45,12 +48,14 @@ impl<const D: usize> Rk4<D> {
         let zero = vec![[0.0; D]; n];
         Ok(Self {
             mass: mass_factor(system)?,
+            damping_and_stiffness: MatrixPair::new(&system.damping, &system.stiffness),
             held: held_list(system),
             largest_step,
             tolerance,
             hole_radius,
             rates: std::array::from_fn(|_| (zero.clone(), zero.clone())),
             stage: (zero.clone(), zero.clone()),
+            external: zero.clone(),
             right: zero,
             contact: ContactForces::none(n),
             rejected: 0,
@@ -61,7 +66,6 @@ impl<const D: usize> Rk4<D> {
     /// Advances `state` from `time` over `interval` seconds.
     pub(super) fn advance(
         &mut self,
-        system: &DynamicSystem<D>,
         forces: &Forces<D>,
         time: f64,
         interval: f64,
@@ -72,7 +76,7 @@ impl<const D: usize> Rk4<D> {
             let count = steps_per_interval(interval, self.largest_step);
             let h = interval / count as f64;
             for i in 0..count {
-                self.step(system, forces, time + i as f64 * h, h, state, Some(ledger));
+                self.step(forces, time + i as f64 * h, h, state, Some(ledger));
                 self.add_error(h, state, errors);
             }
             return Ok(());
@@ -84,11 +88,11 @@ impl<const D: usize> Rk4<D> {
             let h = remaining / (2.0 * (remaining / (2.0 * wanted)).ceil().max(1.0));
             let start = time + elapsed;
             let mut coarse = state.clone();
-            self.step(system, forces, start, 2.0 * h, &mut coarse, None);
+            self.step(forces, start, 2.0 * h, &mut coarse, None);
             let mut fine = state.clone();
             let mark = ledger.mark();
             for half in 0..2 {
-                self.step(system, forces, start + f64::from(half) * h, h, &mut fine, Some(ledger));
+                self.step(forces, start + f64::from(half) * h, h, &mut fine, Some(ledger));
             }
             // Two steps of h err by 1/15 of their distance from one step of 2h.
             let error = fine
@@ -128,7 +132,6 @@ impl<const D: usize> Rk4<D> {
     /// One step of `h`, its work in the ledger if it is to be kept.
     fn step(
         &mut self,
-        system: &DynamicSystem<D>,
         forces: &Forces<D>,
         time: f64,
         h: f64,
@@ -149,14 +152,16 @@ impl<const D: usize> Rk4<D> {
                 axpy_into(v, &state.velocity, c, rate_v);
             }
             let stage_time = time + c;
-            forces.external_into(stage_time, &mut self.right);
-            forces.contact_into(x, v, &mut self.contact);
-            forces.add_contact(&mut self.right, &self.contact);
-            BlockTridiagonal::subtract_two(&system.damping, v, &system.stiffness, x, &mut self.right);
+            forces.contact_into(x, |first, dof| side_by_side(v, first, dof), &mut self.contact);
+            self.damping_and_stiffness.subtract_products(&forces.load, v, x, &mut self.external);
+            forces.add_unbalance(stage_time, &mut self.external);
             for &(node, dof) in &self.held {
-                self.right[node][dof] = 0.0;
+                self.external[node][dof] = 0.0;
             }
-            self.mass.solve_in_place(&mut self.right);
+            self.mass.solve_for(
+                |node| forces.with_contact(node, self.external[node], &self.contact),
+                &mut self.right,
+            );
             if let Some(ledger) = &mut ledger {
                 ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
             }

@@ -7,7 +7,7 @@ use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
 use super::esdirk::Esdirk;
 use super::failure::{DivergenceReason, TransientError};
-use super::forces::{ContactForces, Forces};
+use super::forces::{ContactForces, Forces, side_by_side};
 use super::generalized_alpha::{self, GeneralizedAlpha};
 use super::implicit::SweepMonitor;
 use super::records::{ContactStatistics, NodeHistory};
@@ -218,16 +218,19 @@ impl<'m, const D: usize> Run<'m, D> {
     fn start(&mut self) -> Result<(), TransientError> {
         let state = &mut self.progress.state;
         let n = state.displacement.len();
-        let mut right = vec![[0.0; D]; n];
+        let mut right = self.forces.load.clone();
         let mut linear = vec![[0.0; D]; n];
         let mut contact = ContactForces::none(n);
-        self.forces.external_into(0.0, &mut right);
-        self.forces.contact_into(&state.displacement, &state.velocity, &mut contact);
-        self.forces.add_contact(&mut right, &contact);
+        self.forces.add_unbalance(0.0, &mut right);
+        let rates = |first, dof| side_by_side(&state.velocity, first, dof);
+        self.forces.contact_into(&state.displacement, rates, &mut contact);
         self.system.stiffness.multiply_into(&state.displacement, &mut linear);
-        for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
+        for (node, ((right, linear), held)) in
+            right.iter_mut().zip(&linear).zip(&self.system.held).enumerate()
+        {
+            let pushed = self.forces.with_contact(node, *right, &contact);
             for dof in 0..D {
-                right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
+                right[dof] = if held[dof] { 0.0 } else { pushed[dof] - linear[dof] };
             }
         }
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
@@ -276,12 +279,12 @@ impl<'m, const D: usize> Run<'m, D> {
     fn advance(&mut self) -> Result<(), TransientError> {
         let start = self.time();
         let step = self.interval / self.steps_per_sample as f64;
-        let Self { system, forces, stepper, ledger, progress, .. } = self;
+        let Self { forces, stepper, ledger, progress, .. } = self;
         let (state, errors) = (&mut progress.state, &mut progress.errors);
         match stepper {
             Stepper::GeneralizedAlpha(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, Books { ledger, errors });
+                    method.advance(forces, start + i as f64 * step, state, Books { ledger, errors });
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
@@ -289,15 +292,14 @@ impl<'m, const D: usize> Run<'m, D> {
             }
             Stepper::Esdirk(method) => {
                 for i in 0..self.steps_per_sample {
-                    method.advance(system, forces, start + i as f64 * step, state, Books { ledger, errors });
+                    method.advance(forces, start + i as f64 * step, state, Books { ledger, errors });
                     observe(&mut progress.contacts, state, &method.solver.contact, step);
                 }
                 progress.monitor.merge(&mut method.solver.monitor);
                 progress.steps += self.steps_per_sample;
             }
             Stepper::Rk4(method) => {
-                let outcome =
-                    method.advance(system, forces, start, self.interval, state, Books { ledger, errors });
+                let outcome = method.advance(forces, start, self.interval, state, Books { ledger, errors });
                 observe(&mut progress.contacts, state, &method.contact, self.interval);
                 progress.steps += std::mem::take(&mut method.steps);
                 progress.rejected += std::mem::take(&mut method.rejected);
@@ -371,7 +373,7 @@ fn observe<const D: usize>(
     contact: &ContactForces,
     duration: f64,
 ) {
-    for ((statistics, x), contact) in statistics.iter_mut().zip(&state.displacement).zip(contact.nodes()) {
-        statistics.observe(x, &contact, duration);
-    }
+    contact.each_node(statistics.len(), |node, contact| {
+        statistics[node].observe(&state.displacement[node], &contact, duration);
+    });
 }

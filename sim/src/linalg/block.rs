@@ -16,6 +16,22 @@ pub struct Block<L, const D: usize = DOFS> {
     pub columns: [[L; D]; D],
 }
 
+/// A sum of products of blocks and vectors in two parts; half as many additions wait for each other as in one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sum<L, const D: usize>([[L; D]; 2]);
+
+impl<L: Lane, const D: usize> Sum<L, D> {
+    #[inline(always)]
+    pub(super) fn zero() -> Self {
+        Sum([[L::splat(0.0); D]; 2])
+    }
+
+    #[inline(always)]
+    pub(super) fn total(self) -> [L; D] {
+        std::array::from_fn(|row| self.0[0][row] + self.0[1][row])
+    }
+}
+
 impl<L, const D: usize> Index<(usize, usize)> for Block<L, D> {
     type Output = L;
 
@@ -34,12 +50,12 @@ impl<L, const D: usize> IndexMut<(usize, usize)> for Block<L, D> {
 }
 
 impl<const D: usize> Block<f64, D> {
-    /// `self = self + sum_k weight_k v_k[left] v_k[right]^T` over weights and vectors.
-    // No closures over arrays here and below: these are not inlined, and a call a node is a tenth of the work.
+    /// `self = self + sum_k weight_k v_k[left] x_k[right]^T` over weights, v and x.
+    // Without closures over arrays: they are not inlined, and a call a node is a tenth of the work.
     #[inline(always)]
     pub fn add_products<const K: usize>(
         &mut self,
-        vectors: &[(f64, &[[f64; D]]); K],
+        vectors: &[(f64, &[[f64; D]], &[[f64; D]]); K],
         left: usize,
         right: usize,
     ) {
@@ -47,30 +63,14 @@ impl<const D: usize> Block<f64, D> {
         for (column, rows) in columns.iter_mut().zip(&self.columns) {
             *column = Column::new(rows);
         }
-        for (weight, v) in vectors {
-            let pushed = Column::new(&v[left]).times(*weight);
-            for (column, factor) in columns.iter_mut().zip(&v[right]) {
-                *column = pushed.mul_add(*factor, *column);
+        for (weight, v, x) in vectors {
+            let weighted = Column::new(&v[left]).times(*weight);
+            for (column, factor) in columns.iter_mut().zip(&x[right]) {
+                *column = weighted.mul_add(*factor, *column);
             }
         }
         for (column, rows) in columns.iter().zip(&mut self.columns) {
             *rows = column.to_rows();
-        }
-    }
-
-    /// Adds `self x_k[row]` to each sum, each column read once for all of them.
-    #[inline(always)]
-    pub(super) fn add_times_each<const K: usize>(
-        &self,
-        x: &[&[[f64; D]]; K],
-        row: usize,
-        sums: &mut [Column; K],
-    ) {
-        for (j, column) in self.columns.iter().enumerate() {
-            let column = Column::new(column);
-            for (sum, x) in sums.iter_mut().zip(x) {
-                *sum = column.mul_add(x[row][j], *sum);
-            }
         }
     }
 
@@ -118,7 +118,13 @@ impl<L: Lane, const D: usize> Block<L, D> {
     /// `sum + self x`.
     #[inline(always)]
     pub(super) fn multiply_add(&self, x: &[L; D], sum: [L; D]) -> [L; D] {
-        L::columns_mul_add(&self.columns, x, sum)
+        self.add_product(x, Sum([sum, [L::splat(0.0); D]])).total()
+    }
+
+    /// `sum + self x`, not added up yet.
+    #[inline(always)]
+    pub(super) fn add_product(&self, x: &[L; D], Sum(parts): Sum<L, D>) -> Sum<L, D> {
+        Sum(L::columns_mul_add(&self.columns, x, parts))
     }
 
     /// `sum = sum + self other`.

@@ -41,11 +41,6 @@ impl Column {
     }
 
     #[inline(always)]
-    pub(super) fn minus(self, other: Self) -> Self {
-        Column { head: self.head - other.head, tail: self.tail - other.tail }
-    }
-
-    #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         Column { head: self.head + other.head, tail: self.tail + other.tail }
     }

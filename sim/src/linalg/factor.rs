@@ -1,6 +1,6 @@
 //! Block elimination from both ends to the middle.
 
-use super::block::{Block, DOFS};
+use super::block::{Block, DOFS, Sum};
 use super::lane::{Lane, Mask};
 use super::tridiagonal::BlockTridiagonal;
 
@@ -110,36 +110,23 @@ impl<L: Lane, const D: usize> Factor<L, D> {
 
     /// Replaces a right-hand side by the solution.
     pub fn solve_in_place(&self, x: &mut [[L; D]]) {
-        self.solve_by_rows(x, |_, right| right);
-    }
-
-    /// Solves `A x = b`; `right` gives the rows of b, each once, when its turn comes. Elimination waits for its own results, so
-    /// that what it takes to form b costs next to nothing here.
-    pub fn solve_for(&self, right: impl Fn(usize) -> [L; D], x: &mut [[L; D]]) {
-        self.solve_by_rows(x, |row, _| right(row));
-    }
-
-    /// `right` is given the number of each row and what stands there in `x`.
-    #[inline(always)]
-    fn solve_by_rows(&self, x: &mut [[L; D]], right: impl Fn(usize, [L; D]) -> [L; D]) {
         assert_eq!(x.len(), self.rows());
-        let (middle_row, last_row) = (self.top.inward.len(), x.len() - 1);
         let (above, rest) = x.split_at_mut(self.top.inward.len());
         let [middle, below @ ..] = rest else { unreachable!("the middle row exists") };
 
         let mut from_top = [L::splat(0.0); D];
         let mut from_bottom = [L::splat(0.0); D];
         let mut bottom_rows = self.bottom.eliminations.iter().zip(below.iter_mut().rev());
-        for (i, (elimination, x)) in self.top.eliminations.iter().zip(above.iter_mut()).enumerate() {
-            from_top = elimination.apply(&right(i, *x), &from_top);
+        for (elimination, x) in self.top.eliminations.iter().zip(above.iter_mut()) {
+            from_top = elimination.apply(x, &from_top);
             *x = from_top;
             if let Some((elimination, x)) = bottom_rows.next() {
-                from_bottom = elimination.apply(&right(last_row - i, *x), &from_bottom);
+                from_bottom = elimination.apply(x, &from_bottom);
                 *x = from_bottom;
             }
         }
 
-        let centre = self.middle.apply(&right(middle_row, *middle), &from_top);
+        let centre = self.middle.apply(middle, &from_top);
         let centre = self.middle_from_below.multiply_add(&from_bottom, centre);
         *middle = centre;
 
@@ -176,8 +163,8 @@ impl<L: Lane, const D: usize> Elimination<L, D> {
     /// `S^-1 b - S^-1 (coupling) previous`.
     #[inline(always)]
     fn apply(&self, b: &[L; D], previous: &[L; D]) -> [L; D] {
-        let sum = self.inverse.multiply_add(b, [L::splat(0.0); D]);
-        self.outward.multiply_add(previous, sum)
+        let sum = self.inverse.add_product(b, Sum::zero());
+        self.outward.add_product(previous, sum).total()
     }
 }
 

@@ -73,18 +73,21 @@ pub trait Lane:
         Self::select(other.less_than(self), self, other)
     }
 
-    /// `sum + sum_j columns_j x_j` with two columns or more: the even ones on top of `sum`, the odd ones beside them (a
-    /// chain of three additions is waited for, not one of six), then both added.
+    /// Adds `columns_j x_j` to two sums, the even columns to the first, the odd ones to the second: chains of additions that do not
+    /// wait for each other.
     #[inline(always)]
-    fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
-        std::array::from_fn(|row| {
-            let (mut even, mut odd) = (columns[0][row].mul_add(x[0], sum[row]), columns[1][row] * x[1]);
-            for j in 2..D {
-                let chain = if j % 2 == 0 { &mut even } else { &mut odd };
-                *chain = columns[j][row].mul_add(x[j], *chain);
+    fn columns_mul_add<const D: usize>(
+        columns: &[[Self; D]; D],
+        x: &[Self; D],
+        sums: [[Self; D]; 2],
+    ) -> [[Self; D]; 2] {
+        let mut sums = sums;
+        for (j, column) in columns.iter().enumerate() {
+            for (sum, entry) in sums[j % 2].iter_mut().zip(column) {
+                *sum = entry.mul_add(x[j], *sum);
             }
-            even + odd
-        })
+        }
+        sums
     }
 
     /// Arctangent \[rad\] without branches: the rational approximation of Moshier's Cephes library
@@ -204,14 +207,16 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn columns_mul_add<const D: usize>(columns: &[[Self; D]; D], x: &[Self; D], sum: [Self; D]) -> [Self; D] {
-        let column = |j: usize| Column::new(&columns[j]);
-        let (mut even, mut odd) = (column(0).mul_add(x[0], Column::new(&sum)), column(1).times(x[1]));
-        for (j, x) in x.iter().enumerate().skip(2) {
-            let chain = if j % 2 == 0 { &mut even } else { &mut odd };
-            *chain = column(j).mul_add(*x, *chain);
+    fn columns_mul_add<const D: usize>(
+        columns: &[[Self; D]; D],
+        x: &[Self; D],
+        [even, odd]: [[Self; D]; 2],
+    ) -> [[Self; D]; 2] {
+        let mut sums = [Column::new(&even), Column::new(&odd)];
+        for (j, x) in x.iter().enumerate() {
+            sums[j % 2] = Column::new(&columns[j]).mul_add(*x, sums[j % 2]);
         }
-        even.plus(odd).to_rows()
+        [sums[0].to_rows(), sums[1].to_rows()]
     }
 }
 

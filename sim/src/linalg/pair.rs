@@ -1,6 +1,6 @@
 //! Two block-tridiagonal matrices that are always read together.
 
-use super::block::{Block, DOFS};
+use super::block::{Block, DOFS, Sum};
 use super::lane::Lane;
 use super::tridiagonal::BlockTridiagonal;
 
@@ -51,13 +51,13 @@ impl<L: Lane, const D: usize> MatrixPair<L, D> {
 impl<L: Lane, const D: usize> Row<L, D> {
     #[inline(always)]
     fn product(&self, row: usize, x: &[[L; D]]) -> [L; D] {
-        let mut sum = self.diagonal.multiply_add(&x[row], [L::splat(0.0); D]);
+        let mut sum = self.diagonal.add_product(&x[row], Sum::zero());
         if row > 0 {
-            sum = self.lower.multiply_add(&x[row - 1], sum);
+            sum = self.lower.add_product(&x[row - 1], sum);
         }
         if row + 1 < x.len() {
-            sum = self.upper.multiply_add(&x[row + 1], sum);
+            sum = self.upper.add_product(&x[row + 1], sum);
         }
-        sum
+        sum.total()
     }
 }

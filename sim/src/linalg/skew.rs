@@ -1,7 +1,6 @@
 //! The skew part of a block-tridiagonal matrix.
 
 use super::block::{Block, DOFS};
-use super::column::Column;
 use super::tridiagonal::BlockTridiagonal;
 
 /// `(m - m^T) / 2`, at the rows where there is any.
@@ -34,24 +33,20 @@ impl<const D: usize> SkewPart<D> {
     /// # Panics
     /// When a vector has fewer rows than the matrix.
     pub fn product<const K: usize>(&self, pairs: [WeightedPair<'_, D>; K]) -> f64 {
-        let (v, x) = (pairs.map(|(_, v, _)| &v[..self.rows]), pairs.map(|(_, _, x)| &x[..self.rows]));
-        let mut sums = [Column::zero(); K];
+        let pairs = pairs.map(|(weight, v, x)| (weight, &v[..self.rows], &x[..self.rows]));
+        let mirrored = pairs.map(|(weight, v, x)| (-weight, x, v));
+        let mut sum = 0.0;
         for (row, block) in &self.own {
-            let mut pushed = [Column::zero(); K];
-            block.add_times_each(&x, *row, &mut pushed);
-            for k in 0..K {
-                sums[k] = pushed[k].product(Column::new(&v[k][*row])).plus(sums[k]);
-            }
+            let mut products = Block::zero();
+            products.add_products(&pairs, *row, *row);
+            sum += block.dot(&products);
         }
         for (row, block) in &self.next {
-            let (mut pushed, mut pulled) = ([Column::zero(); K], [Column::zero(); K]);
-            block.add_times_each(&x, row + 1, &mut pushed);
-            block.add_times_each(&v, row + 1, &mut pulled);
-            for k in 0..K {
-                let power = pushed[k].product(Column::new(&v[k][*row]));
-                sums[k] = power.minus(pulled[k].product(Column::new(&x[k][*row]))).plus(sums[k]);
-            }
+            let mut products = Block::zero();
+            products.add_products(&pairs, *row, row + 1);
+            products.add_products(&mirrored, *row, row + 1);
+            sum += block.dot(&products);
         }
-        sums.iter().zip(pairs).map(|(sum, (weight, ..))| weight * sum.sum()).sum()
+        sum
     }
 }

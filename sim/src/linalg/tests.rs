@@ -81,13 +81,15 @@ fn products_equal_dense_products() {
 #[test]
 fn sums_of_products_of_two_vectors_equal_dense_ones() {
     let mut numbers = Numbers(9);
-    let (vectors, other) = ([(); 3].map(|()| numbers.vector(2)), numbers.block(0.0));
+    let (vectors, others) = ([(); 3].map(|()| numbers.vector(2)), [(); 3].map(|()| numbers.vector(2)));
+    let other = numbers.block(0.0);
     let mut sum = numbers.block(1.0);
-    let column = |k: usize, row: usize| DVector::from_row_slice(&vectors[k][row]);
+    let column = |row: &[f64; DOFS]| DVector::from_row_slice(row);
     let dense = |block: &Block<f64>| DMatrix::from_fn(DOFS, DOFS, |i, j| block[(i, j)]);
-    let expected =
-        (0..3).fold(dense(&sum), |sum, k| sum + column(k, 0) * column(k, 1).transpose() * (k as f64 - 0.5));
-    sum.add_products(&[0, 1, 2].map(|k| (k as f64 - 0.5, &*vectors[k])), 0, 1);
+    let expected = (0..3).fold(dense(&sum), |sum, k| {
+        sum + column(&vectors[k][0]) * column(&others[k][1]).transpose() * (k as f64 - 0.5)
+    });
+    sum.add_products(&[0, 1, 2].map(|k| (k as f64 - 0.5, &*vectors[k], &*others[k])), 0, 1);
     assert!((dense(&sum) - &expected).amax() < 1e-15 * 4.0);
     assert!((sum.dot(&other) - expected.dot(&dense(&other))).abs() < 1e-14);
 }

@@ -1,6 +1,6 @@
 //! Matrices that couple each node to its two neighbours.
 
-use super::block::{Block, DOFS};
+use super::block::{Block, DOFS, Sum};
 use super::lane::Lane;
 
 /// A square matrix of n x n blocks, zero but on three diagonals.
@@ -83,13 +83,13 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
 
     #[inline(always)]
     fn row_product(&self, row: usize, x: &[[L; D]]) -> [L; D] {
-        let mut sum = self.diagonal[row].multiply_add(&x[row], [L::splat(0.0); D]);
+        let mut sum = self.diagonal[row].add_product(&x[row], Sum::zero());
         if row > 0 {
-            sum = self.lower[row].multiply_add(&x[row - 1], sum);
+            sum = self.lower[row].add_product(&x[row - 1], sum);
         }
         if row + 1 < x.len() {
-            sum = self.upper[row].multiply_add(&x[row + 1], sum);
+            sum = self.upper[row].add_product(&x[row + 1], sum);
         }
-        sum
+        sum.total()
     }
 }

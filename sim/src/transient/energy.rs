@@ -141,18 +141,18 @@ impl<const D: usize> Ledger<D> {
     }
 
     /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
-    /// forces that it was solved with.
+    /// forces that it was solved with. It keeps the vectors and leaves others of their size.
     pub(super) fn book(
         &mut self,
         weight: f64,
-        velocity: &[[f64; D]],
-        displacement: &[[f64; D]],
+        velocity: &mut NodalVector<D>,
+        displacement: &mut NodalVector<D>,
         contact: &ContactForces,
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) {
-        self.forms.gather((weight, velocity, displacement));
         let power = self.power(velocity, displacement, contact, unbalance);
         self.work.add(weight, &power);
+        self.forms.gather(weight, velocity, displacement);
     }
 
     /// Books what a stage's power of contact and unbalance comes to in `weight` seconds.

@@ -135,14 +135,17 @@ impl<const D: usize> Forces<D> {
         })
     }
 
-    /// Contact forces for given displacements and velocities; the clamped top node never touches. `rates` gives the rate of a degree
-    /// of freedom of four nodes from the first one on.
+    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped top node
+    /// never touches. `rates` gives the rate of a degree of freedom of four nodes from the first one on.
     pub(super) fn contact_into(
         &self,
         x: &[[f64; D]],
         rates: impl Fn(usize, usize) -> Four,
         out: &mut ContactForces,
+        others: &[[f64; D]],
+        all: &mut [[f64; D]],
     ) {
+        all.copy_from_slice(others);
         if !self.contact {
             return;
         }
@@ -175,22 +178,16 @@ impl<const D: usize> Forces<D> {
                 normal_force: contact.normal,
                 radius,
             };
-        }
-    }
-
-    /// Forces on one node with those of its contact.
-    #[inline(always)]
-    pub(super) fn with_contact(&self, node: usize, force: [f64; D], contact: &ContactForces) -> [f64; D] {
-        let mut force = force;
-        if let Some(beneath) = node.checked_sub(1) {
-            let (group, lane) = (&contact.groups[beneath / LANES], beneath % LANES);
-            force[0] += group.force[0].lane(lane);
-            force[1] += group.force[1].lane(lane);
-            if self.has_twist {
-                force[D - 1] += group.torque.lane(lane);
+            let (u, v, torque) =
+                (contact.force_u.to_array(), contact.force_v.to_array(), contact.torque_z.to_array());
+            for (lane, all) in all[out.first..].iter_mut().take(LANES).enumerate() {
+                all[0] += u[lane];
+                all[1] += v[lane];
+                if self.has_twist {
+                    all[D - 1] += torque[lane];
+                }
             }
         }
-        force
     }
 }
 

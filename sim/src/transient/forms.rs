@@ -71,15 +71,20 @@ impl<const N: usize, const D: usize> Forms<N, D> {
         self.skew_sum += self.skew.product(stages);
     }
 
-    /// Adds one stage, together with others of its kind.
-    pub(super) fn gather(&mut self, (weight, velocity, displacement): BookedStage<'_, D>) {
+    /// Adds one stage, together with others of its kind: takes its vectors and leaves others of the same size in their places.
+    pub(super) fn gather(
+        &mut self,
+        weight: f64,
+        velocity: &mut NodalVector<D>,
+        displacement: &mut NodalVector<D>,
+    ) {
         if self.count == GATHERED {
             self.add_gathered();
         }
         let stage = &mut self.gathered[self.count];
         stage.weight = weight;
-        stage.velocity.copy_from_slice(velocity);
-        stage.displacement.copy_from_slice(displacement);
+        std::mem::swap(&mut stage.velocity, velocity);
+        std::mem::swap(&mut stage.displacement, displacement);
         self.count += 1;
     }
 
@@ -126,7 +131,7 @@ fn add_products<const K: usize, const D: usize>(
     stages: [(f64, &[[f64; D]]); K],
 ) {
     let rows = moments.len();
-    let stages = stages.map(|(weight, v)| (weight, &v[..rows]));
+    let stages = stages.map(|(weight, v)| (weight, &v[..rows], &v[..rows]));
     for (node, [own, next]) in moments.iter_mut().enumerate() {
         own.add_products(&stages, node, node);
         if node + 1 < rows {
@@ -216,12 +221,12 @@ mod tests {
             let (m, other) = (matrix(rows, full), matrix(rows, 100));
             let mut forms = Forms::new([&m, &other], &m);
             for _ in 0..2 * GATHERED {
-                forms.gather((7.0, &x, &v));
+                forms.gather(7.0, &mut x.clone(), &mut v.clone());
             }
             forms.forget();
             forms.add([(0.5, &*v, &*x), (0.25, &*v, &*x)]);
             for _ in 0..GATHERED + 1 {
-                forms.gather((0.4 / (GATHERED + 1) as f64, &v2, &x2));
+                forms.gather(0.4 / (GATHERED + 1) as f64, &mut v2.clone(), &mut x2.clone());
             }
             // v^T M v sees the symmetric part alone; (v^T M x - x^T M v) / 2 the skew one.
             let square = |m| 0.75 * product(&v, m, &v) + 0.4 * product(&v2, m, &v2);
@@ -241,10 +246,10 @@ mod tests {
             // A rejected step may have left anything.
             let not_finite = vec![[f64::NAN; DOFS]; rows];
             for _ in 0..GATHERED {
-                forms.gather((7.0, &not_finite, &not_finite));
+                forms.gather(7.0, &mut not_finite.clone(), &mut not_finite.clone());
             }
             forms.forget();
-            forms.gather((1.0, &v, &x));
+            forms.gather(1.0, &mut v.clone(), &mut x.clone());
             let wanted = product(&v, &m, &v);
             assert!((forms.take().symmetric[0] - wanted).abs() < tolerance);
         }

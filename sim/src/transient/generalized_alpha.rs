@@ -98,8 +98,8 @@ impl<const D: usize> GeneralizedAlpha<D> {
         errors.add(before.len(), |n, d| h * h * (beta - 1.0 / 6.0) * (after[n][d] - before[n][d]));
         ledger.book(
             h,
-            &self.mean_velocity,
-            &solver.displacement,
+            &mut self.mean_velocity,
+            &mut solver.displacement,
             &solver.contact,
             forces.unbalance_at(level_time),
         );

@@ -140,16 +140,15 @@ impl<const D: usize> StageSolver<D> {
             let (x, c) = (&self.displacement, Four::splat(self.velocity_coefficient));
             if sweep == 1 {
                 let rates = |first, dof| side_by_side(&self.velocity, first, dof);
-                forces.contact_into(x, rates, &mut self.contact);
+                forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             } else {
                 // Few nodes touch: only their velocities are formed between the sweeps.
                 let rates = |first, dof| {
                     side_by_side(x, first, dof).mul_add(c, side_by_side(velocity_offset, first, dof))
                 };
-                forces.contact_into(x, rates, &mut self.contact);
+                forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             }
-            let right = |node: usize| forces.with_contact(node, self.external[node], &self.contact);
-            self.factor.solve_for(right, &mut self.right);
+            self.factor.solve_in_place(&mut self.right);
             if sweep > 1 {
                 change = largest_change(&self.right, &self.displacement);
             }

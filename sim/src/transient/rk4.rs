@@ -152,21 +152,19 @@ impl<const D: usize> Rk4<D> {
                 axpy_into(v, &state.velocity, c, rate_v);
             }
             let stage_time = time + c;
-            forces.contact_into(x, |first, dof| side_by_side(v, first, dof), &mut self.contact);
             self.damping_and_stiffness.subtract_products(&forces.load, v, x, &mut self.external);
             forces.add_unbalance(stage_time, &mut self.external);
             for &(node, dof) in &self.held {
                 self.external[node][dof] = 0.0;
             }
-            self.mass.solve_for(
-                |node| forces.with_contact(node, self.external[node], &self.contact),
-                &mut self.right,
-            );
+            let rates = |first, dof| side_by_side(v, first, dof);
+            forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
+            self.mass.solve_in_place(&mut self.right);
+            self.rates[stage].0.copy_from_slice(v);
+            std::mem::swap(&mut self.rates[stage].1, &mut self.right);
             if let Some(ledger) = &mut ledger {
                 ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
             }
-            self.rates[stage].0.copy_from_slice(v);
-            self.rates[stage].1.copy_from_slice(&self.right);
         }
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {
             let (rate_x, rate_v) = &self.rates[stage];

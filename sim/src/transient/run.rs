@@ -223,14 +223,12 @@ impl<'m, const D: usize> Run<'m, D> {
         let mut contact = ContactForces::none(n);
         self.forces.add_unbalance(0.0, &mut right);
         let rates = |first, dof| side_by_side(&state.velocity, first, dof);
-        self.forces.contact_into(&state.displacement, rates, &mut contact);
+        let others = right.clone();
+        self.forces.contact_into(&state.displacement, rates, &mut contact, &others, &mut right);
         self.system.stiffness.multiply_into(&state.displacement, &mut linear);
-        for (node, ((right, linear), held)) in
-            right.iter_mut().zip(&linear).zip(&self.system.held).enumerate()
-        {
-            let pushed = self.forces.with_contact(node, *right, &contact);
+        for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
             for dof in 0..D {
-                right[dof] = if held[dof] { 0.0 } else { pushed[dof] - linear[dof] };
+                right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
             }
         }
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);

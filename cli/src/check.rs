@@ -19,8 +19,7 @@ pub(crate) struct CheckArguments {
 
 /// Reads the database and every blob, and fails if something is wrong with them.
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
-    let config = arguments.data.store(Role::Worker);
-    ensure!(config.database_path.exists(), "there is no {}", config.database_path.display());
+    let config = arguments.data.existing_store(Role::Worker)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let report = runtime.block_on(async {
         let store = Store::open(&config).await?;

@@ -32,8 +32,7 @@ pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let silence = Duration::try_from_secs_f64(arguments.silence_seconds)?;
-    let config = arguments.data.store(Role::Worker);
-    ensure!(config.database_path.exists(), "there is no {}", config.database_path.display());
+    let config = arguments.data.existing_store(Role::Worker)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let workers = runtime.block_on(async {
         let store = Store::open(&config).await?;

@@ -105,12 +105,14 @@ pub(crate) struct WorkerArguments {
 
 impl DataArguments {
     pub(crate) fn store(&self, role: Role) -> StoreConfig {
-        StoreConfig {
-            database_path: self.data.join("drillsweep.sqlite"),
-            blob_directory: self.data.join("blobs"),
-            role,
-            clock_offset_ms: 0,
-        }
+        StoreConfig::in_directory(&self.data, role)
+    }
+
+    /// The same for commands that only look: they make no store where there is none.
+    pub(crate) fn existing_store(&self, role: Role) -> anyhow::Result<StoreConfig> {
+        let config = self.store(role);
+        anyhow::ensure!(config.exists(), "there is no store in {}", self.data.display());
+        Ok(config)
     }
 }
 

@@ -35,14 +35,8 @@ impl Service {
             .enable_all()
             .build()
             .expect("a runtime");
-        let store = runtime
-            .block_on(Store::open(&StoreConfig {
-                database_path: directory.path().join("drillsweep.sqlite"),
-                blob_directory: directory.path().join("blobs"),
-                role: Role::Server,
-                clock_offset_ms: 0,
-            }))
-            .expect("a store");
+        let config = StoreConfig::in_directory(directory.path(), Role::Server);
+        let store = runtime.block_on(Store::open(&config)).expect("a store");
         let (stop, stopping) = watch::channel(false);
         let mut config = Config::default();
         config.owner_limits.open_points = u64::MAX;

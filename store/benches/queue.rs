@@ -22,12 +22,7 @@ struct Queue {
 fn queue(role: Role) -> Queue {
     let directory = tempfile::tempdir().expect("a temporary directory");
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    let config = StoreConfig {
-        database_path: directory.path().join("drillsweep.sqlite"),
-        blob_directory: directory.path().join("blobs"),
-        role,
-        clock_offset_ms: 0,
-    };
+    let config = StoreConfig::in_directory(directory.path(), role);
     let store = runtime.block_on(Store::open(&config)).expect("a store");
     Queue { runtime, store, _directory: directory }
 }

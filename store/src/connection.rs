@@ -19,17 +19,35 @@ const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
 /// Bytes to which the write-ahead log is cut back.
 const JOURNAL_SIZE_LIMIT: &str = "67108864";
 
-/// Where the store lies and who opens it.
+/// Where the store lies and who opens it. Where it lies is for the constructor to say, so that nothing outside this crate
+/// depends on an engine.
 #[derive(Debug, Clone)]
 pub struct StoreConfig {
-    /// The SQLite file; it is made if it does not exist.
-    pub database_path: PathBuf,
-    /// The directory of the object store; likewise.
-    pub blob_directory: PathBuf,
+    /// The SQLite file.
+    database_path: PathBuf,
+    /// The directory of the object store.
+    blob_directory: PathBuf,
     /// Who opens it.
     pub role: Role,
     /// Added to the database's clock \[ms\]: zero but in tests of what time does.
     pub clock_offset_ms: i64,
+}
+
+impl StoreConfig {
+    /// A SQLite file and the blobs in one directory; what does not exist is made when the store is opened.
+    pub fn in_directory(directory: &Path, role: Role) -> Self {
+        Self {
+            database_path: directory.join("drillsweep.sqlite"),
+            blob_directory: directory.join("blobs"),
+            role,
+            clock_offset_ms: 0,
+        }
+    }
+
+    /// Whether there is a store already; opening makes one where there is none.
+    pub fn exists(&self) -> bool {
+        self.database_path.exists()
+    }
 }
 
 /// Who opens the store; it decides how durable a commit is.

@@ -62,14 +62,9 @@ fn main() {
 }
 
 async fn open(directory: &Path, clock_offset_ms: i64) -> Store {
-    Store::open(&StoreConfig {
-        database_path: directory.join("drillsweep.sqlite"),
-        blob_directory: directory.join("blobs"),
-        role: Role::Worker,
-        clock_offset_ms,
-    })
-    .await
-    .unwrap()
+    let mut config = StoreConfig::in_directory(directory, Role::Worker);
+    config.clock_offset_ms = clock_offset_ms;
+    Store::open(&config).await.unwrap()
 }
 
 /// A worker: claims and finishes until nothing is ready, and tells of every result that was taken.

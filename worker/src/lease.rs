@@ -178,12 +178,7 @@ mod tests {
     #[test]
     fn a_worker_of_many_short_points_is_heard_of() {
         let directory = tempfile::tempdir().unwrap();
-        let config = StoreConfig {
-            database_path: directory.path().join("store.sqlite"),
-            blob_directory: directory.path().join("blobs"),
-            role: Role::Worker,
-            clock_offset_ms: 0,
-        };
+        let config = StoreConfig::in_directory(directory.path(), Role::Worker);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         let store = runtime.block_on(Store::open(&config)).unwrap();
         let worker = WorkerRecord {

@@ -58,14 +58,7 @@ impl Bench {
 
     pub(crate) async fn with(config: Config) -> Self {
         let directory = TempDir::new().unwrap();
-        let store = Store::open(&StoreConfig {
-            database_path: directory.path().join("drillsweep.sqlite"),
-            blob_directory: directory.path().join("blobs"),
-            role: Role::Server,
-            clock_offset_ms: 0,
-        })
-        .await
-        .unwrap();
+        let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Server)).await.unwrap();
         let (stop, stopping) = watch::channel(false);
         let config = Config { poll_interval: Duration::from_millis(10), ..config };
         Bench { routes: router(store.clone(), config, stopping), store, stop, _directory: directory }

@@ -1,41 +1,68 @@
-//! A store in a temporary directory.
+//! What an engine must give the tests, and what they have in common.
 
 use drillsweep_store::{
     CachePolicy, Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig,
     SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
-use tempfile::TempDir;
 
 pub(crate) const PHYSICS: i64 = 1;
 pub(crate) const LEASE_MS: i64 = 60_000;
 
-pub(crate) struct Bench {
-    directory: TempDir,
-}
+/// An engine of the store, as far as the tests must know it: a place for data that is its own and goes with it. All that it
+/// says about objects and the database is found out past the store.
+pub(crate) trait Engine {
+    /// A place with nothing in it.
+    fn new() -> Self;
 
-impl Bench {
-    pub(crate) fn new() -> Self {
-        Bench { directory: TempDir::new().unwrap() }
-    }
+    /// What opens the store in this place.
+    fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig;
 
-    pub(crate) fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig {
-        StoreConfig {
-            database_path: self.directory.path().join("data").join("drillsweep.sqlite"),
-            blob_directory: self.directory.path().join("data").join("blobs"),
-            role,
-            clock_offset_ms,
-        }
-    }
+    /// Everything in the object store, by name.
+    fn objects(&self) -> Vec<Object>;
+
+    /// Writes or overwrites an object.
+    fn write_object(&self, name: &str, content: &[u8]);
+
+    /// Deletes an object.
+    fn delete_object(&self, name: &str);
+
+    /// Leaves what a writer leaves that is killed before it has written an object of this content.
+    fn abandon_upload(&self, content: &[u8]);
+
+    /// From now on no object can be written whose name begins with `probe/`.
+    fn refuse_scratch_objects(&self);
+
+    /// Whether the database has these bytes anywhere on its disk, whatever column they are in.
+    fn database_holds(&self, bytes: &[u8]) -> bool;
 
     /// The store, as it is now.
-    pub(crate) async fn open(&self) -> Store {
+    async fn open(&self) -> Store {
         self.after(0).await
     }
 
     /// The same store some milliseconds later, over connections of its own.
-    pub(crate) async fn after(&self, milliseconds: i64) -> Store {
+    async fn after(&self, milliseconds: i64) -> Store {
         Store::open(&self.config(Role::Server, milliseconds)).await.unwrap()
     }
+
+    /// Size of everything in the object store.
+    fn bytes_of_objects(&self) -> u64 {
+        self.objects().iter().map(|object| object.bytes).sum()
+    }
+}
+
+/// An object of the object store.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Object {
+    pub(crate) name: String,
+    pub(crate) bytes: u64,
+    /// Another one after every write, whatever is written.
+    pub(crate) version: String,
+}
+
+/// The name of a blob's object.
+pub(crate) fn object_name(blob: &str) -> String {
+    format!("{}/{}/{blob}", &blob[..2], &blob[2..4])
 }
 
 /// A work key that sorts against the order of its number, so that an order by key cannot pass for one by time.

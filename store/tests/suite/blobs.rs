@@ -1,24 +1,12 @@
 //! Blobs: named by their content, written once.
 
-use std::path::{Path, PathBuf};
+use drillsweep_store::{BlobId, StoreError};
 
-use drillsweep_store::{BlobId, Role, StoreError};
+use crate::bench::{Engine, object_name};
 
-use crate::bench::Bench;
-
-fn files(directory: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() { found.extend(files(&path)) } else { found.push(path) }
-    }
-    found
-}
-
-#[tokio::test]
-async fn the_name_is_the_blake3_hash_of_the_content() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn the_name_is_the_blake3_hash_of_the_content<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let id = store.blobs().put(Vec::new()).await.unwrap();
     // The first test vector of BLAKE3: empty input.
     let hash = "af1349b9f5f9a1a6a0404dea36dcc9499bcb25c9adc112b7cc9a93cae41f3262";
@@ -27,35 +15,31 @@ async fn the_name_is_the_blake3_hash_of_the_content() {
     assert!(matches!("af13".parse::<BlobId>(), Err(StoreError::Corrupt(_))));
 }
 
-#[tokio::test]
-async fn the_same_content_is_stored_once_and_never_rewritten() {
-    let bench = Bench::new();
-    let store = bench.open().await;
-    let directory = bench.config(Role::Server, 0).blob_directory;
+pub(crate) async fn the_same_content_is_stored_once_and_never_rewritten<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let content = b"orbit".repeat(1_000);
     let id = store.blobs().put(content.clone()).await.unwrap();
-    let written = files(&directory);
+    let written = engine.objects();
     assert_eq!(written.len(), 1);
-    let modified = std::fs::metadata(&written[0]).unwrap().modified().unwrap();
+    assert_eq!((&written[0].name, written[0].bytes), (&object_name(&id.to_string()), 5_000));
 
     let (again, at_once) =
         tokio::join!(store.blobs().put(content.clone()), store.blobs().put(content.clone()));
     assert_eq!((again.unwrap(), at_once.unwrap()), (id, id));
-    assert_eq!(files(&directory), written);
-    assert_eq!(std::fs::metadata(&written[0]).unwrap().modified().unwrap(), modified);
+    assert_eq!(engine.objects(), written);
 
     let other = store.blobs().put(b"spectrum".to_vec()).await.unwrap();
     assert_ne!(other, id);
-    // Another process on the same directory reads what was written.
-    let reader = bench.open().await;
+    // Another process on the same store reads what was written.
+    let reader = engine.open().await;
     assert_eq!(reader.blobs().get(id).await.unwrap(), content);
     assert_eq!(reader.blobs().get(other).await.unwrap(), b"spectrum".as_slice());
 }
 
-#[tokio::test]
-async fn a_range_is_cut_from_the_content() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_range_is_cut_from_the_content<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let content: Vec<u8> = (0..=255).collect();
     let id = store.blobs().put(content.clone()).await.unwrap();
     assert_eq!(store.blobs().get_range(id, 10..20).await.unwrap(), content[10..20]);

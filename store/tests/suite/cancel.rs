@@ -3,15 +3,14 @@
 use drillsweep_store::{FailureClass, Renewal, StateCounts, WorkState};
 
 use crate::bench::{
-    Bench, LEASE_MS, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
+    Engine, LEASE_MS, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
 };
 
 const CANCELLED: &str = r#"{"class":"cancelled"}"#;
 
-#[tokio::test]
-async fn queued_points_end_at_once_and_running_ones_at_their_next_renewal() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_renewal<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2, 3])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let running = claim(&store, "w").await;
@@ -31,10 +30,9 @@ async fn queued_points_end_at_once_and_running_ones_at_their_next_renewal() {
     assert!(!store.cancel_sweep("t").await.unwrap());
 }
 
-#[tokio::test]
-async fn work_that_another_live_sweep_wants_goes_on() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn work_that_another_live_sweep_wants_goes_on<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2, 3])).await;
     submit(&store, &sweep("b", [1, 3])).await;
     let running = claim(&store, "w").await;
@@ -48,10 +46,9 @@ async fn work_that_another_live_sweep_wants_goes_on() {
     assert_eq!(states(&store, "b").await, [WorkState::Leased, WorkState::Cancelled]);
 }
 
-#[tokio::test]
-async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
     let running = claim(&store, "w").await;
     assert!(store.cancel_sweep("a").await.unwrap());
@@ -65,10 +62,9 @@ async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all()
     assert_eq!(sweep_record(&store, "b").await.counts.done, 1);
 }
 
-#[tokio::test]
-async fn cancelled_work_is_queued_again_when_it_is_asked_for_again() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn cancelled_work_is_queued_again_when_it_is_asked_for_again<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;
     assert!(store.cancel_sweep("a").await.unwrap());
     assert!(sweep_record(&store, "a").await.finished.is_some());
@@ -87,10 +83,9 @@ async fn cancelled_work_is_queued_again_when_it_is_asked_for_again() {
     assert_eq!(record.counts, StateCounts { total: 2, running: 1, queued: 1, ..StateCounts::default() });
 }
 
-#[tokio::test]
-async fn a_retry_takes_back_the_cancellation_of_running_work() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_retry_takes_back_the_cancellation_of_running_work<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
     let running = claim(&store, "w").await;
     assert!(store.cancel_sweep("a").await.unwrap());
@@ -99,10 +94,9 @@ async fn a_retry_takes_back_the_cancellation_of_running_work() {
     assert!(finish(&store, &running).await);
 }
 
-#[tokio::test]
-async fn unwanted_work_that_comes_back_is_not_queued() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn unwanted_work_that_comes_back_is_not_queued<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2, 3])).await;
     let released = claim(&store, "w").await;
     let broken = claim(&store, "w").await;
@@ -111,15 +105,14 @@ async fn unwanted_work_that_comes_back_is_not_queued() {
     assert!(store.release(&released.lease).await.unwrap());
     assert!(store.retry_later(&broken.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
     assert_eq!(silent.lease.key, key(3));
-    assert_eq!(bench.after(LEASE_MS + 1).await.reap_expired().await.unwrap(), 1);
+    assert_eq!(engine.after(LEASE_MS + 1).await.reap_expired().await.unwrap(), 1);
     assert_eq!(states(&store, "s").await, [WorkState::Cancelled; 3]);
     assert!(sweep_record(&store, "s").await.finished.is_some());
 }
 
-#[tokio::test]
-async fn a_result_that_comes_in_spite_of_a_cancellation_is_kept() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_result_that_comes_in_spite_of_a_cancellation_is_kept<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let running = claim(&store, "w").await;
     assert!(store.cancel_sweep("s").await.unwrap());

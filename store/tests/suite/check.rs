@@ -1,32 +1,29 @@
 //! The check of the whole store: silent where all is well, and naming what was damaged.
 
-use drillsweep_store::{Role, StoreError};
+use drillsweep_store::StoreError;
 
-use crate::bench::{Bench, claim, finish, submit, sweep};
+use crate::bench::{Engine, claim, finish, object_name, submit, sweep};
 
-#[tokio::test]
-async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", 1..=3)).await;
-    let mut blobs = Vec::new();
+    let (mut blobs, mut contents) = (Vec::new(), Vec::new());
     for _ in 0..3 {
         let claim = claim(&store, "w").await;
         assert!(finish(&store, &claim).await);
+        contents.push(claim.lease.key);
         blobs.push(store.blobs().put(claim.lease.key.to_vec()).await.unwrap().to_string());
     }
     let report = store.check().await.unwrap();
     assert_eq!((report.results, report.blobs, report.bytes), (3, 3, 96));
     assert_eq!(report.problems, Vec::<String>::new());
 
-    let file = |blob: &str| {
-        bench.config(Role::Server, 0).blob_directory.join(&blob[..2]).join(&blob[2..4]).join(blob)
-    };
-    std::fs::remove_file(file(&blobs[0])).unwrap();
-    let mut content = std::fs::read(file(&blobs[1])).unwrap();
-    content[7] ^= 1;
-    std::fs::write(file(&blobs[1]), &content).unwrap();
-    std::fs::write(file(&blobs[2]), &content[..16]).unwrap();
+    let [gone, changed, cut] = [0, 1, 2].map(|number: usize| object_name(&blobs[number]));
+    engine.delete_object(&gone);
+    contents[1][7] ^= 1;
+    engine.write_object(&changed, &contents[1]);
+    engine.write_object(&cut, &contents[2][..16]);
     let problems = store.check().await.unwrap().problems;
     assert_eq!(problems.len(), 3, "{problems:?}");
     let of = |blob: &String| problems.iter().find(|problem| problem.contains(blob.as_str())).unwrap();

@@ -1,4 +1,4 @@
-//! Several threads, each with connections of its own, on one file.
+//! Several threads, each with connections of its own, on one store.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Barrier};
@@ -6,7 +6,7 @@ use std::thread;
 
 use drillsweep_store::{Renewal, Role, Store, StoreConfig, SubmitOutcome, WorkKey};
 
-use crate::bench::{Bench, LEASE_MS, claim_or_none, finish, key, submit, sweep, sweep_record};
+use crate::bench::{Engine, LEASE_MS, claim_or_none, finish, key, submit, sweep, sweep_record};
 
 /// Runs a job on a thread of its own, with its own runtime and its own store.
 fn on_a_thread<T: Send + 'static>(
@@ -22,17 +22,15 @@ fn on_a_thread<T: Send + 'static>(
     })
 }
 
-#[test]
-fn four_workers_share_a_thousand_points_without_losing_or_doubling_one() {
-    let bench = Bench::new();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-    let store = runtime.block_on(bench.open());
-    runtime.block_on(submit(&store, &sweep("s", 0..1_000)));
+pub(crate) async fn four_workers_share_a_thousand_points_without_losing_or_doubling_one<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", 0..1_000)).await;
 
     let start = Arc::new(Barrier::new(4));
     let workers: Vec<_> = (0..4)
         .map(|worker| {
-            on_a_thread(bench.config(Role::Worker, 0), &start, async move |store| {
+            on_a_thread(engine.config(Role::Worker, 0), &start, async move |store| {
                 let name = format!("worker {worker}");
                 let mut done: Vec<WorkKey> = Vec::new();
                 while let Some(claim) = claim_or_none(&store, &name).await {
@@ -52,17 +50,18 @@ fn four_workers_share_a_thousand_points_without_losing_or_doubling_one() {
         }
     }
     assert!((0..1_000).all(|number| times.get(&key(number)) == Some(&1)), "each point once");
-    let record = runtime.block_on(sweep_record(&store, "s"));
+    let record = sweep_record(&store, "s").await;
     assert_eq!((record.counts.done, record.finished.is_some()), (1_000, true));
 }
 
-#[test]
-fn writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked() {
-    let bench = Bench::new();
+pub(crate) async fn writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked<
+    E: Engine,
+>() {
+    let engine = E::new();
     let start = Arc::new(Barrier::new(4));
     let mut threads: Vec<thread::JoinHandle<()>> = Vec::new();
     for owner in 0..2_u32 {
-        threads.push(on_a_thread(bench.config(Role::Server, 0), &start, async move |store| {
+        threads.push(on_a_thread(engine.config(Role::Server, 0), &start, async move |store| {
             for round in 0..30 {
                 let id = format!("{owner} {round}");
                 let first = 1_000 * round;
@@ -79,7 +78,7 @@ fn writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked(
         }));
     }
     for worker in 0..2 {
-        threads.push(on_a_thread(bench.config(Role::Worker, 0), &start, async move |store| {
+        threads.push(on_a_thread(engine.config(Role::Worker, 0), &start, async move |store| {
             let name = format!("worker {worker}");
             for _ in 0..300 {
                 if let Some(claim) = claim_or_none(&store, &name).await {
@@ -95,15 +94,14 @@ fn writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked(
     }
 }
 
-#[test]
-fn several_may_open_a_new_file_at_once() {
+pub(crate) async fn several_may_open_a_new_store_at_once<E: Engine>() {
     for _ in 0..5 {
-        let bench = Bench::new();
+        let engine = E::new();
         let start = Arc::new(Barrier::new(8));
         let opened: Vec<_> = (0..8)
             .map(|number| {
                 let role = if number % 2 == 0 { Role::Server } else { Role::Worker };
-                on_a_thread(bench.config(role, 0), &start, async |store| store.queue_depths().await.unwrap())
+                on_a_thread(engine.config(role, 0), &start, async |store| store.queue_depths().await.unwrap())
             })
             .collect();
         for opened in opened {
@@ -112,13 +110,12 @@ fn several_may_open_a_new_file_at_once() {
     }
 }
 
-#[test]
-fn of_several_submissions_with_one_idempotency_key_one_is_stored() {
-    let bench = Bench::new();
+pub(crate) async fn of_several_submissions_with_one_idempotency_key_one_is_stored<E: Engine>() {
+    let engine = E::new();
     let start = Arc::new(Barrier::new(4));
     let outcomes: Vec<_> = (0..4)
         .map(|number| {
-            on_a_thread(bench.config(Role::Server, 0), &start, async move |store| {
+            on_a_thread(engine.config(Role::Server, 0), &start, async move |store| {
                 let mut sweep = sweep(&format!("s{number}"), 0..50);
                 sweep.idempotency_key = Some(("once".to_owned(), [7; 32]));
                 store.submit_sweep(&sweep).await.unwrap()

@@ -6,16 +6,15 @@ use drillsweep_store::{
 };
 
 use crate::bench::{
-    Bench, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
+    Engine, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
     sweep_record,
 };
 
 const LONG_AGO: std::time::Duration = std::time::Duration::from_secs(86_400);
 
-#[tokio::test]
-async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_paused_sweep_is_not_handed_out_until_it_goes_on<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     let running = claim(&store, "w").await;
     assert!(store.pause_sweep("s", true).await.unwrap());
@@ -23,7 +22,7 @@ async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
     assert_eq!(claim_or_none(&store, "w").await, None);
     let depths = QueueDepths { held: 1, leased: 1, ..QueueDepths::default() };
     assert_eq!(store.queue_depths().await.unwrap(), depths);
-    assert_eq!(bench.after(9_000).await.census(LONG_AGO).await.unwrap().oldest_queued_ms, 0);
+    assert_eq!(engine.after(9_000).await.census(LONG_AGO).await.unwrap().oldest_queued_ms, 0);
     // What is under way goes on; what comes back waits with the rest.
     assert!(store.release(&running.lease).await.unwrap());
     assert_eq!(claim_or_none(&store, "w").await, None);
@@ -36,10 +35,9 @@ async fn a_paused_sweep_is_not_handed_out_until_it_goes_on() {
     assert!(!store.pause_sweep("t", true).await.unwrap());
 }
 
-#[tokio::test]
-async fn a_pause_does_not_hold_what_another_sweep_wants() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_pause_does_not_hold_what_another_sweep_wants<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;
     submit(&store, &sweep("b", [2])).await;
     assert!(store.pause_sweep("a", true).await.unwrap());
@@ -55,10 +53,9 @@ async fn a_pause_does_not_hold_what_another_sweep_wants() {
     assert_eq!(claim(&store, "w").await.lease.key, key(1));
 }
 
-#[tokio::test]
-async fn what_people_decide_about_a_sweep_can_be_changed() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn what_people_decide_about_a_sweep_can_be_changed<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
     submit(&store, &sweep("b", [2, 3])).await;
     submit(&store, &NewSweep { priority: 3, ..sweep("c", [3]) }).await;
@@ -88,10 +85,9 @@ async fn what_people_decide_about_a_sweep_can_be_changed() {
     assert!(!store.change_sweep("t", &changes).await.unwrap());
 }
 
-#[tokio::test]
-async fn points_are_added_once_and_go_on_from_the_last() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     for _ in 0..2 {
         assert!(finish(&store, &claim(&store, "w").await).await);
@@ -116,7 +112,7 @@ async fn points_are_added_once_and_go_on_from_the_last() {
     }
     let finished = sweep_record(&store, "s").await.finished;
     assert!(finished.is_some());
-    let later = bench.after(60_000).await;
+    let later = engine.after(60_000).await;
     let again = later.append_points("s", &base, PHYSICS, &points, "{}", 9).await.unwrap();
     assert_eq!(again, AppendOutcome::Added(0));
     assert_eq!(sweep_record(&store, "s").await.finished, finished, "nothing was added, nothing ends anew");
@@ -128,10 +124,9 @@ async fn points_are_added_once_and_go_on_from_the_last() {
     assert_eq!(none, AppendOutcome::NoSuchSweep);
 }
 
-#[tokio::test]
-async fn what_is_added_to_a_paused_sweep_waits_with_the_rest() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn what_is_added_to_a_paused_sweep_waits_with_the_rest<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     // Work that was cancelled before it could be held back.
     submit(&store, &sweep("gone", [2])).await;
     assert!(store.cancel_sweep("gone").await.unwrap());
@@ -154,10 +149,9 @@ fn refresh(id: &str) -> NewSweep {
     NewSweep { cache: CachePolicy::Refresh, ..sweep(id, [1]) }
 }
 
-#[tokio::test]
-async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
     assert!(finish(&store, &claim(&store, "first").await).await);
     submit(&store, &refresh("new")).await;
@@ -169,10 +163,9 @@ async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then() {
     assert_eq!(store.artifacts(&key(1)).await.unwrap().len(), 1);
 }
 
-#[tokio::test]
-async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
     assert!(finish(&store, &claim(&store, "first").await).await);
     // Paused: not computed, though a live sweep has the point; that one has its result.
@@ -195,10 +188,9 @@ async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it() {
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
 }
 
-#[tokio::test]
-async fn a_refresh_that_fails_leaves_the_old_result_and_says_why() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_refresh_that_fails_leaves_the_old_result_and_says_why<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
     assert!(finish(&store, &claim(&store, "first").await).await);
     let error = r#"{"class":"timeout"}"#;
@@ -215,24 +207,23 @@ async fn a_refresh_that_fails_leaves_the_old_result_and_says_why() {
     }
     submit(&store, &refresh("disk")).await;
     for round in 0..5 {
-        let later = bench.after(round * 100_000).await;
+        let later = engine.after(round * 100_000).await;
         assert!(later.retry_later(&claim(&later, "fourth").await.lease, "{}").await.unwrap());
     }
     submit(&store, &refresh("silence")).await;
     for round in 5..8 {
-        claim(&bench.after(round * 100_000).await, "fifth").await;
+        claim(&engine.after(round * 100_000).await, "fifth").await;
     }
-    assert_eq!(bench.after(900_000).await.reap_expired().await.unwrap(), 1);
+    assert_eq!(engine.after(900_000).await.reap_expired().await.unwrap(), 1);
     assert_eq!(states(&store, "old").await, [WorkState::Done]);
     let point = point_record(&store, "old", 1).await;
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
     assert!(point.error_json.unwrap().contains("3 workers went silent"));
 }
 
-#[tokio::test]
-async fn a_refresh_begins_at_the_beginning() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_refresh_begins_at_the_beginning<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
     let running = claim(&store, "first").await;
     let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
@@ -242,10 +233,9 @@ async fn a_refresh_begins_at_the_beginning() {
     assert_eq!(claim(&store, "second").await.checkpoint, None);
 }
 
-#[tokio::test]
-async fn only_what_is_known_is_taken_or_nothing_is_stored() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn only_what_is_known_is_taken_or_nothing_is_stored<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("known", [1, 2, 3])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let failing = claim(&store, "w").await;
@@ -264,10 +254,9 @@ async fn only_what_is_known_is_taken_or_nothing_is_stored() {
     submit(&store, &only("meanwhile", &[1])).await;
 }
 
-#[tokio::test]
-async fn sweeps_are_found_by_their_tags_and_states() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn sweeps_are_found_by_their_tags_and_states<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     for (id, tags) in [("a", r#"["x","y"]"#), ("b", r#"["xy"]"#), ("c", "[]")] {
         submit(&store, &NewSweep { tags_json: tags.to_owned(), ..sweep(id, [1]) }).await;
     }

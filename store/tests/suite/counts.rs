@@ -2,7 +2,9 @@
 
 use drillsweep_store::{Claim, FailureClass, StateCounts, Store, WorkState};
 
-use crate::bench::{Bench, LEASE_MS, claim, claim_or_none, finish, key, states, submit, sweep, sweep_record};
+use crate::bench::{
+    Engine, LEASE_MS, claim, claim_or_none, finish, key, states, submit, sweep, sweep_record,
+};
 
 /// A small generator (xorshift): the same numbers in every run.
 struct Dice(u64);
@@ -40,13 +42,12 @@ async fn check(store: &Store, sweeps: &[String], step: usize) {
     }
 }
 
-#[tokio::test]
-async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_history() {
+pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_history<E: Engine>() {
     for seed in [0x9e37_79b9, 0x1234_5678_9abc, 0xdead_beef_cafe] {
-        let bench = Bench::new();
+        let engine = E::new();
         let mut dice = Dice(seed);
         let mut clock = 0;
-        let mut store = bench.open().await;
+        let mut store = engine.open().await;
         let mut sweeps: Vec<String> = Vec::new();
         let mut claims: Vec<Claim> = Vec::new();
         for step in 0..250 {
@@ -67,7 +68,7 @@ async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_histo
                 }
                 6 => {
                     clock += 20_000;
-                    store = bench.after(clock).await;
+                    store = engine.after(clock).await;
                     store.reap_expired().await.unwrap();
                 }
                 kind if !claims.is_empty() => {
@@ -90,14 +91,13 @@ async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_histo
     }
 }
 
-#[tokio::test]
-async fn events_tell_the_history_in_the_order_of_versions() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn events_tell_the_history_in_the_order_of_versions<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     submit(&store, &sweep("other", [2])).await;
     let silent = claim(&store, "w").await;
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
     let again = claim(&later, "w").await;
     assert_eq!(again.lease.key, silent.lease.key);
     assert!(finish(&later, &again).await);

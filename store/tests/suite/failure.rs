@@ -4,7 +4,7 @@ use drillsweep_store::{
     FailureClass, FailureFilter, FailurePlace, FailureRecord, NewSweep, Store, WorkState,
 };
 
-use crate::bench::{Bench, claim, finish, submit, sweep};
+use crate::bench::{Engine, claim, finish, submit, sweep};
 
 async fn list(store: &Store, filter: FailureFilter<'_>, after: Option<&FailurePlace>) -> Vec<FailureRecord> {
     store.failures(&filter, after, 2).await.unwrap()
@@ -33,18 +33,17 @@ fn places(places: &[(&str, i64)]) -> Vec<(String, i64)> {
     places.iter().map(|(sweep, ordinal)| ((*sweep).to_owned(), *ordinal)).collect()
 }
 
-#[tokio::test]
-async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2, 3])).await;
     fail(&store, FailureClass::Physical, r#"{"class":"physical"}"#).await;
-    let later = bench.after(1_000).await;
+    let later = engine.after(1_000).await;
     fail(&later, FailureClass::Timeout, r#"{"class":"timeout"}"#).await;
     assert!(finish(&later, &claim(&later, "w").await).await);
     // The same work as point 1 of "a", twice: it failed when it failed.
     submit(&later, &NewSweep { owner: "bert".to_owned(), ..sweep("b", [1, 4, 1]) }).await;
-    let latest = bench.after(2_000).await;
+    let latest = engine.after(2_000).await;
     for _ in 0..3 {
         let doomed = claim(&latest, "w").await;
         assert!(latest.crashed(&doomed.lease, r#"{"class":"crash"}"#).await.unwrap());
@@ -68,10 +67,9 @@ async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first() {
     assert_eq!(all(&store, everything).await, places(&[("b", 2)]));
 }
 
-#[tokio::test]
-async fn an_error_that_is_no_json_has_no_class() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn an_error_that_is_no_json_has_no_class<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
     fail(&store, FailureClass::Physical, "of an older version").await;
     assert_eq!(all(&store, FailureFilter::default()).await.len(), 1);

@@ -2,7 +2,7 @@
 
 use drillsweep_store::{NewSweep, Store, WorkKey};
 
-use crate::bench::{Bench, claim, finish, key, submit, sweep};
+use crate::bench::{Engine, claim, finish, key, submit, sweep};
 
 /// How far apart start-time fair queueing lets two owners of equal weight get, who both have work all the time: the
 /// cost of one piece of work of each (Goyal, Vin and Cheng 1996, theorem 1).
@@ -34,10 +34,9 @@ fn among(served: &[WorkKey], numbers: std::ops::Range<u32>) -> usize {
     served.iter().filter(|served| keys.contains(served)).count()
 }
 
-#[tokio::test]
-async fn ten_points_do_not_wait_for_ten_thousand() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn ten_points_do_not_wait_for_ten_thousand<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "large", 0..10_000).await;
     assert_eq!(among(&serve(&store, 300).await, 0..10_000), 300);
     submit_of(&store, "bert", "small", 20_000..20_010).await;
@@ -45,10 +44,9 @@ async fn ten_points_do_not_wait_for_ten_thousand() {
     assert_eq!(among(&serve(&store, 20 + BOUND).await, 20_000..20_010), 10);
 }
 
-#[tokio::test]
-async fn ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "large", 0..10_000).await;
     submit_of(&store, "bert", "small", 9_990..10_000).await;
     assert_eq!(among(&serve(&store, 20 + BOUND).await, 9_990..10_000), 10);
@@ -58,10 +56,9 @@ async fn ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among() {
     assert_eq!(among(&serve(&store, 20 + BOUND).await, 20_000..20_010), 10);
 }
 
-#[tokio::test]
-async fn an_owner_cannot_jump_the_queue_with_many_small_sweeps() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn an_owner_cannot_jump_the_queue_with_many_small_sweeps<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "one large", 0..100).await;
     for small in 0..100 {
         let number = 1_000 + small;
@@ -71,10 +68,9 @@ async fn an_owner_cannot_jump_the_queue_with_many_small_sweeps() {
     assert_even(&served, 0..100, 1_000..1_100);
 }
 
-#[tokio::test]
-async fn idle_time_is_not_saved_up() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn idle_time_is_not_saved_up<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "long ago", 0..200).await;
     serve(&store, 150).await;
     // Bert has asked for nothing all this time; that does not give him 150 turns in a row.
@@ -83,10 +79,9 @@ async fn idle_time_is_not_saved_up() {
     assert_even(&served, 0..200, 5_000..5_200);
 }
 
-#[tokio::test]
-async fn urgency_counts_within_an_owner_only() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn urgency_counts_within_an_owner_only<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "plain", 0..100).await;
     let urgent = NewSweep { owner: "anne".to_owned(), priority: 10, ..sweep("urgent", 100..200) };
     submit(&store, &urgent).await;
@@ -96,10 +91,9 @@ async fn urgency_counts_within_an_owner_only() {
     assert_eq!(among(&served, 0..100), 0, "the urgent ones first");
 }
 
-#[tokio::test]
-async fn retried_points_do_not_go_before_everybody_else() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn retried_points_do_not_go_before_everybody_else<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit_of(&store, "anne", "cancelled", 0..100).await;
     assert!(store.cancel_sweep("cancelled").await.unwrap());
     submit_of(&store, "bert", "first", 1_000..1_100).await;

@@ -3,30 +3,28 @@
 use drillsweep_store::{FailureClass, NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
 
 use crate::bench::{
-    Bench, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
+    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
     sweep_record,
 };
 
-#[tokio::test]
-async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let first = claim(&store, "first").await;
     assert_eq!(first.lease.attempt, 1);
 
-    let shortly_before = bench.after(LEASE_MS - 5_000).await;
+    let shortly_before = engine.after(LEASE_MS - 5_000).await;
     assert_eq!(claim_or_none(&shortly_before, "second").await, None);
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
     let second = claim(&later, "second").await;
     assert_eq!((second.lease.key, second.lease.attempt), (key(1), 2));
     assert_eq!(point_record(&later, "s", 1).await.attempts, 2);
 }
 
-#[tokio::test]
-async fn a_buried_workers_points_are_free_at_once_and_nobody_elses() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     for (id, process) in [("dead", 7), ("alive", 8)] {
         let worker = WorkerRecord {
             id: id.to_owned(),
@@ -47,7 +45,7 @@ async fn a_buried_workers_points_are_free_at_once_and_nobody_elses() {
     assert_eq!(claim_or_none(&store, "heir").await, None);
     assert_eq!(store.bury_worker("here", 7).await.unwrap(), 1);
 
-    let heir = claim(&bench.after(1).await, "heir").await;
+    let heir = claim(&engine.after(1).await, "heir").await;
     assert_eq!((heir.lease.key, heir.lease.attempt), (lost.lease.key, 2));
     assert!(!finish(&store, &lost).await, "its late result is refused");
     assert!(finish(&store, &kept).await);
@@ -55,13 +53,12 @@ async fn a_buried_workers_points_are_free_at_once_and_nobody_elses() {
     assert_eq!(left.iter().map(|worker| worker.id.as_str()).collect::<Vec<_>>(), ["alive"]);
 }
 
-#[tokio::test]
-async fn a_late_writer_changes_nothing() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let late = claim(&store, "late").await;
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
 
     let refuses_the_late_one = async || {
         let version = store.sweep_version("s").await.unwrap();
@@ -92,49 +89,46 @@ async fn a_late_writer_changes_nothing() {
     assert!(!finish(&later, &prompt).await);
 }
 
-#[tokio::test]
-async fn the_same_worker_cannot_write_with_its_earlier_attempt() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn the_same_worker_cannot_write_with_its_earlier_attempt<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let earlier = claim(&store, "w").await;
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
     let now = claim(&later, "w").await;
     assert!(!finish(&later, &earlier).await);
     assert!(finish(&later, &now).await);
 }
 
-#[tokio::test]
-async fn a_renewal_extends_the_lease_and_carries_the_progress() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_renewal_extends_the_lease_and_carries_the_progress<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     let running = claim(&store, "w").await;
     let version = store.sweep_version("s").await.unwrap();
 
-    let at_50_s = bench.after(50_000).await;
+    let at_50_s = engine.after(50_000).await;
     assert_eq!(at_50_s.renew(&running.lease, LEASE_MS, 0.25).await.unwrap(), Renewal::Held);
     assert_eq!(point_record(&store, "s", 1).await.progress, 0.25);
     assert_eq!(sweep_record(&store, "s").await.progress, 0.25);
     // Progress is not a change of state.
     assert_eq!(store.sweep_version("s").await.unwrap(), version);
 
-    assert_eq!(bench.after(100_000).await.reap_expired().await.unwrap(), 0);
-    assert_eq!(bench.after(50_000 + LEASE_MS + 5_000).await.reap_expired().await.unwrap(), 1);
+    assert_eq!(engine.after(100_000).await.reap_expired().await.unwrap(), 0);
+    assert_eq!(engine.after(50_000 + LEASE_MS + 5_000).await.reap_expired().await.unwrap(), 1);
     let point = point_record(&store, "s", 1).await;
     assert_eq!((point.state, point.progress), (WorkState::Queued, 0.0));
 }
 
-#[tokio::test]
-async fn a_point_whose_workers_die_three_times_is_dead() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_point_whose_workers_die_three_times_is_dead<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     for death in 1..=3 {
-        let store = bench.after((death - 1) * 2 * LEASE_MS).await;
+        let store = engine.after((death - 1) * 2 * LEASE_MS).await;
         assert_eq!(claim(&store, "doomed").await.lease.attempt, death);
     }
-    let end = bench.after(6 * LEASE_MS).await;
+    let end = engine.after(6 * LEASE_MS).await;
     assert_eq!(claim_or_none(&end, "w").await, None);
     assert_eq!(states(&store, "s").await, [WorkState::Dead]);
     let record = sweep_record(&store, "s").await;
@@ -148,14 +142,13 @@ async fn a_point_whose_workers_die_three_times_is_dead() {
     // A retry begins to count anew.
     assert_eq!(end.retry_sweep("s").await.unwrap(), Some(1));
     claim(&end, "doomed").await;
-    let after_one_more = bench.after(8 * LEASE_MS).await;
+    let after_one_more = engine.after(8 * LEASE_MS).await;
     assert!(finish(&after_one_more, &claim(&after_one_more, "w").await).await);
 }
 
-#[tokio::test]
-async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let released = claim(&store, "w").await;
     assert!(store.release(&released.lease).await.unwrap());
@@ -168,25 +161,25 @@ async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token() 
     assert!(finish(&store, &again).await);
 }
 
-#[tokio::test]
-async fn an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_again_and_is_given_up_at_the_fifth()
- {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_again_and_is_given_up_at_the_fifth<
+    E: Engine,
+>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let mut clock = 0;
     for wait in [5_000, 10_000, 20_000, 40_000] {
-        let store = bench.after(clock).await;
+        let store = engine.after(clock).await;
         let failing = claim(&store, "w").await;
         assert!(store.retry_later(&failing.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
         assert_eq!(states(&store, "s").await, [WorkState::Waiting]);
         assert_eq!(store.queue_depths().await.unwrap().waiting, 1);
-        let too_early = bench.after(clock + wait - 2_000).await;
+        let too_early = engine.after(clock + wait - 2_000).await;
         assert_eq!(claim_or_none(&too_early, "w").await, None);
         // The margin is for the time that the test itself takes.
         clock += wait * 3 / 2 + 2_000;
     }
-    let last = bench.after(clock).await;
+    let last = engine.after(clock).await;
     let failing = claim(&last, "w").await;
     assert!(last.retry_later(&failing.lease, r#"{"class":"infrastructure"}"#).await.unwrap());
     let point = point_record(&last, "s", 1).await;
@@ -195,14 +188,13 @@ async fn an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_agai
     assert!(sweep_record(&last, "s").await.finished.is_some());
 }
 
-#[tokio::test]
-async fn points_that_failed_together_do_not_come_back_together() {
-    let bench = Bench::new();
-    submit(&bench.open().await, &sweep("s", 0..100)).await;
+pub(crate) async fn points_that_failed_together_do_not_come_back_together<E: Engine>() {
+    let engine = E::new();
+    submit(&engine.open().await, &sweep("s", 0..100)).await;
     let mut clock = 0;
     // The fourth wait, so long that the time which the test itself takes hardly counts.
     for wait in [5_000, 10_000, 20_000, 40_000] {
-        let store = bench.after(clock).await;
+        let store = engine.after(clock).await;
         while let Some(failing) = claim_or_none(&store, "w").await {
             assert!(store.retry_later(&failing.lease, "{}").await.unwrap());
         }
@@ -212,16 +204,15 @@ async fn points_that_failed_together_do_not_come_back_together() {
         }
     }
     // Of waits spread evenly over 40 to 60 s about half are over after 50 s; without a spread all would be.
-    let store = bench.after(clock).await;
+    let store = engine.after(clock).await;
     store.reap_expired().await.unwrap();
     let ready = store.queue_depths().await.unwrap().queued;
     assert!((15..=85).contains(&ready), "{ready}");
 }
 
-#[tokio::test]
-async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_done() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_done<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let first = claim(&store, "first").await;
     assert_eq!(first.checkpoint, None);
@@ -233,7 +224,7 @@ async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_done() {
     // A worker that dies on the way does not lose it either.
     let second = claim(&store, "second").await;
     assert_eq!((second.checkpoint, second.lease.attempt), (Some(blob), 2));
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
     let third = claim(&later, "third").await;
     assert_eq!(third.checkpoint, Some(blob));
     // Nor does one that gives the point up for having taken too long: a retry goes on from there.
@@ -244,17 +235,16 @@ async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_done() {
     assert!(finish(&later, &fourth).await);
 }
 
-#[tokio::test]
-async fn work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_not() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_not<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let error = r#"{"class":"crash","reason":"panicked"}"#;
     let first = claim(&store, "survivor").await;
     assert!(store.crashed(&first.lease, error).await.unwrap());
     assert_eq!(states(&store, "s").await, [WorkState::Queued]);
     claim(&store, "killed").await;
-    let later = bench.after(LEASE_MS + 1).await;
+    let later = engine.after(LEASE_MS + 1).await;
     let third = claim(&later, "survivor").await;
     assert!(later.crashed(&third.lease, error).await.unwrap());
     let point = point_record(&later, "s", 1).await;
@@ -262,10 +252,9 @@ async fn work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_no
     assert_eq!(claim_or_none(&later, "w").await, None);
 }
 
-#[tokio::test]
-async fn a_worker_gets_only_work_of_its_own_numbers() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_worker_gets_only_work_of_its_own_numbers<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &NewSweep { physics_version: PHYSICS - 1, ..sweep("old", [1]) }).await;
     submit(&store, &sweep("new", [2])).await;
     assert_eq!(claim(&store, "w").await.lease.key, key(2));
@@ -274,10 +263,9 @@ async fn a_worker_gets_only_work_of_its_own_numbers() {
     assert_eq!(claimed.lease.key, key(1));
 }
 
-#[tokio::test]
-async fn the_urgent_goes_first_then_the_order_asked() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn the_urgent_goes_first_then_the_order_asked<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("plain", [1, 2, 3])).await;
     // Point 2 becomes as urgent as the sweep that also wants it.
     submit(&store, &NewSweep { priority: 5, ..sweep("urgent", [4, 2]) }).await;
@@ -288,10 +276,9 @@ async fn the_urgent_goes_first_then_the_order_asked() {
     assert_eq!(order, [key(2), key(4), key(1), key(3)]);
 }
 
-#[tokio::test]
-async fn workers_are_listed_while_they_are_heard_of() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn workers_are_listed_while_they_are_heard_of<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let worker = |id: &str| drillsweep_store::WorkerRecord {
         id: id.to_owned(),
         host: "rig".to_owned(),
@@ -302,7 +289,7 @@ async fn workers_are_listed_while_they_are_heard_of() {
         last_seen: 0,
     };
     store.register_worker(&worker("a")).await.unwrap();
-    let later = bench.after(90_000).await;
+    let later = engine.after(90_000).await;
     later.register_worker(&worker("b")).await.unwrap();
     let ids = async |within| -> Vec<String> {
         later.workers(within).await.unwrap().into_iter().map(|worker| worker.id).collect()

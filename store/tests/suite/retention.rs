@@ -1,12 +1,11 @@
 //! Retention: what expires, what stays, and that the space comes back.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::Duration;
 
-use drillsweep_store::{Garbage, NewSweep, RetentionPolicy, Role, Store, StoreError, SweepChanges};
+use drillsweep_store::{Garbage, NewSweep, RetentionPolicy, Store, StoreError, SweepChanges};
 
-use crate::bench::{Bench, claim, finish, key, point_record, submit, sweep};
+use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep};
 
 const HOUR: u64 = 3_600;
 const DAY: u64 = 24 * HOUR;
@@ -34,67 +33,50 @@ async fn collect(store: &Store) -> Garbage {
     done
 }
 
-fn bytes_of_blobs(bench: &Bench) -> u64 {
-    fn size(directory: &Path) -> u64 {
-        let entries = std::fs::read_dir(directory).unwrap().map(Result::unwrap);
-        entries
-            .map(
-                |entry| {
-                    if entry.path().is_dir() { size(&entry.path()) } else { entry.metadata().unwrap().len() }
-                },
-            )
-            .sum()
-    }
-    size(&bench.config(Role::Server, 0).blob_directory)
-}
-
-#[tokio::test]
-async fn a_blob_that_no_row_names_goes_after_its_grace() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_blob_that_no_row_names_goes_after_its_grace<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
-    let named = bytes_of_blobs(&bench);
+    let named = engine.bytes_of_objects();
     let orphan = store.blobs().put(vec![7; 1_000]).await.unwrap();
-    assert_eq!(collect(&bench.after(DAY_MS / 2).await).await, Garbage::default());
-    let found = collect(&bench.after(DAY_MS + 60_000).await).await;
+    assert_eq!(collect(&engine.after(DAY_MS / 2).await).await, Garbage::default());
+    let found = collect(&engine.after(DAY_MS + 60_000).await).await;
     assert_eq!(found, Garbage { blobs: 1, blob_bytes: 1_000, ..Garbage::default() });
     assert!(store.blobs().get(orphan).await.is_err());
-    assert_eq!(bytes_of_blobs(&bench), named);
+    assert_eq!(engine.bytes_of_objects(), named);
 }
 
-#[tokio::test]
-async fn what_a_killed_upload_left_goes_too_and_strange_files_stay() {
-    let bench = Bench::new();
-    let store = bench.open().await;
-    let directory = bench.config(Role::Server, 0).blob_directory;
-    std::fs::create_dir_all(directory.join("ab/cd")).unwrap();
-    std::fs::write(directory.join("ab/cd/abcd0123#1"), b"half").unwrap();
-    std::fs::write(directory.join("README"), b"not ours").unwrap();
+pub(crate) async fn what_a_killed_upload_left_goes_too_and_strange_files_stay<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    engine.abandon_upload(b"half");
+    engine.write_object("README", b"not ours");
     drop(store);
-    let found = collect(&bench.after(2 * DAY_MS).await).await;
+    let found = collect(&engine.after(2 * DAY_MS).await).await;
     assert_eq!(found, Garbage { unfinished_uploads: 1, unfinished_bytes: 4, ..Garbage::default() });
-    assert_eq!(bytes_of_blobs(&bench), 8);
+    assert_eq!(engine.bytes_of_objects(), 8);
 }
 
-#[tokio::test]
-async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned<
+    E: Engine,
+>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("old", [1, 2, 3])).await;
     for _ in 0..3 {
         assert!(finish(&store, &claim(&store, "w").await).await);
     }
-    submit(&bench.after(20 * DAY_MS).await, &sweep("young", [2])).await;
+    submit(&engine.after(20 * DAY_MS).await, &sweep("young", [2])).await;
     submit(&store, &sweep("pinned", [3])).await;
     let pin = |is_pinned| SweepChanges { is_pinned: Some(is_pinned), ..SweepChanges::default() };
     assert!(store.change_sweep("pinned", &pin(true)).await.unwrap());
-    let before = bytes_of_blobs(&bench);
+    let before = engine.bytes_of_objects();
 
-    let later = bench.after(31 * DAY_MS).await;
+    let later = engine.after(31 * DAY_MS).await;
     let found = collect(&later).await;
     assert_eq!((found.artifacts, found.blobs, found.blob_bytes), (1, 1, 32));
-    assert_eq!(bytes_of_blobs(&bench), before - 32);
+    assert_eq!(engine.bytes_of_objects(), before - 32);
     for (number, is_expired) in [(1, true), (2, false), (3, false)] {
         let artifact = &later.artifacts(&key(number)).await.unwrap()[0];
         assert_eq!(artifact.expired.is_some(), is_expired, "{number}");
@@ -103,15 +85,14 @@ async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_p
     assert!(point_record(&later, "old", 1).await.summary_json.is_some(), "the summary stays");
 
     assert!(later.change_sweep("pinned", &pin(false)).await.unwrap());
-    let found = collect(&bench.after(51 * DAY_MS).await).await;
+    let found = collect(&engine.after(51 * DAY_MS).await).await;
     assert_eq!((found.artifacts, found.blobs), (2, 2));
-    assert_eq!(bytes_of_blobs(&bench), before - 3 * 32);
+    assert_eq!(engine.bytes_of_objects(), before - 3 * 32);
 }
 
-#[tokio::test]
-async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_sweep_goes_at_its_time_and_leaves_what_others_have<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("goes", [1, 2])).await;
     submit(&store, &sweep("goes too", [3])).await;
     submit(&store, &sweep("stays", [2])).await;
@@ -125,9 +106,9 @@ async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
         assert!(store.change_sweep(id, &changes).await.unwrap());
     }
     // The scenario of "stays" is not in use: its point was there, by that of "goes".
-    let found = collect(&bench.after(DAY_MS / 2).await).await;
+    let found = collect(&engine.after(DAY_MS / 2).await).await;
     assert_eq!((found.sweeps, found.scenarios), (0, 1));
-    let found = collect(&bench.after(2 * DAY_MS).await).await;
+    let found = collect(&engine.after(2 * DAY_MS).await).await;
     assert_eq!((found.sweeps, found.results, found.scenarios, found.blobs), (2, 2, 1, 2));
     assert_eq!(store.sweep("goes").await.unwrap(), None);
     assert!(store.sweep("unfinished").await.unwrap().is_some());
@@ -140,15 +121,14 @@ async fn a_sweep_goes_at_its_time_and_leaves_what_others_have() {
     assert!(store.sweep("again").await.unwrap().unwrap().finished.is_none());
 }
 
-#[tokio::test]
-async fn no_row_names_a_blob_that_is_gone() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn no_row_names_a_blob_that_is_gone<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     // The worker finds the blob of an earlier result, and the collector takes it before the row is written.
     let claim = claim(&store, "w").await;
     let blob = store.blobs().put(claim.lease.key.to_vec()).await.unwrap();
-    assert_eq!(bench.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap().blobs, 1);
+    assert_eq!(engine.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap().blobs, 1);
     let artifact = drillsweep_store::NewArtifact {
         name: "history".to_owned(),
         media_type: "application/vnd.apache.parquet".to_owned(),
@@ -162,10 +142,9 @@ async fn no_row_names_a_blob_that_is_gone() {
     assert!(finish(&store, &claim).await);
 }
 
-#[tokio::test]
-async fn an_owner_who_was_forgotten_begins_like_one_who_was_idle() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn an_owner_who_was_forgotten_begins_like_one_who_was_idle<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let of = |owner: &str, id: &str, numbers: std::ops::Range<u32>| NewSweep {
         owner: owner.to_owned(),
         ..sweep(id, numbers)

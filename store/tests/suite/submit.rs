@@ -5,13 +5,12 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState};
 
 use crate::bench::{
-    Bench, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep, sweep_record,
+    Engine, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep, sweep_record,
 };
 
-#[tokio::test]
-async fn a_sweep_is_read_back_as_it_was_submitted() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_sweep_is_read_back_as_it_was_submitted<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [10, 20, 30])).await;
 
     let record = sweep_record(&store, "s").await;
@@ -33,10 +32,9 @@ async fn a_sweep_is_read_back_as_it_was_submitted() {
     assert_eq!(store.sweep_version("t").await.unwrap(), None);
 }
 
-#[tokio::test]
-async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     let first = claim(&store, "w").await;
     assert_eq!(first.scenario, scenario("s", 1));
@@ -63,10 +61,9 @@ async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table() {
     );
 }
 
-#[tokio::test]
-async fn the_same_point_is_computed_once_for_every_sweep_that_has_it() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn the_same_point_is_computed_once_for_every_sweep_that_has_it<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;
     submit(&store, &sweep("b", [2, 3])).await;
     let mut claimed = Vec::new();
@@ -91,10 +88,9 @@ async fn the_same_point_is_computed_once_for_every_sweep_that_has_it() {
     assert_eq!(store.known_results(&[key(1), key(9), key(3)]).await.unwrap(), 2);
 }
 
-#[tokio::test]
-async fn a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 1, 2])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let record = sweep_record(&store, "s").await;
@@ -104,10 +100,9 @@ async fn a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once() {
     assert!(sweep_record(&store, "s").await.finished.is_some());
 }
 
-#[tokio::test]
-async fn a_physical_failure_is_final_until_a_retry_is_asked_for() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn a_physical_failure_is_final_until_a_retry_is_asked_for<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
     let failed = claim(&store, "w").await;
     let error = r#"{"class":"physical","time":1.25,"node":49}"#;
@@ -130,10 +125,9 @@ async fn a_physical_failure_is_final_until_a_retry_is_asked_for() {
     assert_eq!(store.retry_sweep("c").await.unwrap(), None);
 }
 
-#[tokio::test]
-async fn the_same_idempotency_key_gives_the_sweep_that_it_made() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn the_same_idempotency_key_gives_the_sweep_that_it_made<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     let with_key = |id: &str, owner: &str, body: u8| {
         let mut sweep = sweep(id, [1, 2]);
         sweep.owner = owner.to_owned();
@@ -157,10 +151,9 @@ async fn the_same_idempotency_key_gives_the_sweep_that_it_made() {
     assert_eq!(ids, ["d", "a"]);
 }
 
-#[tokio::test]
-async fn pages_hold_every_row_once_and_in_order() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn pages_hold_every_row_once_and_in_order<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", 1..=25)).await;
     for _ in 0..4 {
         assert!(finish(&store, &claim(&store, "w").await).await);
@@ -201,17 +194,16 @@ async fn pages_hold_every_row_once_and_in_order() {
     assert_eq!(ids(Some("bert"), None, 10).await, ["t3", "t1"]);
 }
 
-#[tokio::test]
-async fn everything_is_there_after_reopening() {
-    let bench = Bench::new();
-    let store = bench.open().await;
+pub(crate) async fn everything_is_there_after_reopening<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2, 3])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let running = claim(&store, "w").await;
     let before = sweep_record(&store, "s").await;
     store.close().await;
 
-    let store = bench.open().await;
+    let store = engine.open().await;
     assert_eq!(sweep_record(&store, "s").await, before);
     assert_eq!(states(&store, "s").await, [WorkState::Done, WorkState::Leased, WorkState::Queued]);
     assert!(finish(&store, &running).await);

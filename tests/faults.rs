@@ -1,5 +1,5 @@
 //! Faults that a service meets in years of work, made to happen: kills, sleep, full disks, points that kill whoever
-//! simulates them, starved processors.
+//! simulates them, starved processors, clocks that are set.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -133,6 +133,55 @@ fn known_worker(data: &Path) -> Logged {
     Logged::start(&mut command(data, &["worker", "--lease-seconds", "2"]))
 }
 
+/// The wall clock of processes, to be set while they run.
+struct Clock {
+    directory: tempfile::TempDir,
+}
+
+impl Clock {
+    fn new() -> Self {
+        let clock = Clock { directory: tempfile::tempdir().unwrap() };
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/clock_shift.c");
+        let mut compiler = Command::new("cc");
+        compiler.args(["-shared", "-fPIC", "-O1", "-o"]).arg(clock.library()).arg(source);
+        assert!(compiler.status().unwrap().success());
+        clock.set(0);
+        clock
+    }
+
+    fn library(&self) -> PathBuf {
+        self.directory.path().join("clock_shift.so")
+    }
+
+    fn file(&self) -> PathBuf {
+        self.directory.path().join("seconds")
+    }
+
+    /// Puts a process that is yet to be started under this clock.
+    fn rules(&self, mut command: Command) -> Command {
+        command.env("LD_PRELOAD", self.library()).env("CLOCK_SHIFT_FILE", self.file());
+        command
+    }
+
+    /// So many seconds before or after the machine's clock.
+    fn set(&self, seconds: i64) {
+        // In one step: nobody reads half a number.
+        let written = self.directory.path().join("next");
+        std::fs::write(&written, seconds.to_string()).unwrap();
+        std::fs::rename(&written, self.file()).unwrap();
+    }
+
+    fn serve(&self, data: &Path) -> (Logged, String) {
+        let server = Logged::start(&mut self.rules(command(data, &["serve", "--listen", "127.0.0.1:0"])));
+        let address = server.address();
+        (server, address)
+    }
+
+    fn worker(&self, data: &Path) -> Logged {
+        Logged::start(&mut self.rules(command(data, &["worker", "--lease-seconds", "3"])))
+    }
+}
+
 /// The attempt of the point that it claimed last.
 fn last_attempt(log: &str) -> Option<u64> {
     let line = log.lines().rfind(|line| line.contains("point claimed"))?;
@@ -241,6 +290,108 @@ fn worker_that_slept_past_its_lease_changes_nothing_when_it_wakes() {
     assert_eq!(wait(&address, &next, completed)["counts"]["succeeded"], 2);
     assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}/points/1")), result, "the first result stands");
     assert_eq!(check(data.path()), (3, vec![]));
+}
+
+const HOUR: i64 = 3_600;
+
+#[test]
+fn clock_that_jumps_to_and_fro_while_a_sweep_runs_loses_nothing() {
+    let (data, clock) = (tempfile::tempdir().unwrap(), Clock::new());
+    let (_server, address) = clock.serve(data.path());
+    let sweep = submit(&address, &request(10.0, 3, 4));
+    // Nothing happens to the sweep yet: a long poll lasts as long as it was asked to.
+    let polling = {
+        let url = format!("{address}/v1/sweeps/{sweep}?wait=2s");
+        std::thread::spawn(move || {
+            let start = Instant::now();
+            (get(&url), start.elapsed())
+        })
+    };
+    for hours in [1, -1].into_iter().cycle().take_while(|_| !polling.is_finished()) {
+        clock.set(hours * HOUR);
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let (polled, time) = polling.join().unwrap();
+    assert_eq!(polled["counts"]["queued"], 12);
+    assert!((Duration::from_secs(2)..Duration::from_secs(30)).contains(&time), "{time:?}");
+
+    clock.set(0);
+    let workers = [clock.worker(data.path()), clock.worker(data.path())];
+    let claims = || {
+        let claims = |worker: &Logged| worker.log.lock().unwrap().matches("point claimed").count();
+        workers.iter().map(claims).sum::<usize>()
+    };
+    let jumps = [1, 0, -1, 0];
+    for hours in jumps {
+        // Somebody has begun a point since the last jump, and more are to come.
+        let before = claims();
+        workers[0].wait_for(|_| (claims() > before).then_some(()));
+        assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["state"], "running");
+        clock.set(hours * HOUR);
+    }
+    let ended = wait(&address, &sweep, completed);
+    assert_eq!(ended["counts"]["succeeded"], 12, "{ended}");
+    let attempts: u64 =
+        points(&address, &sweep).iter().map(|point| point["attempts"].as_u64().unwrap()).sum();
+    // Set forward, the clock ends the leases of both workers; set back, none.
+    let forwards = [0, 1, 0, -1].iter().zip(jumps).filter(|(from, to)| *to > **from).count() as u64;
+    assert!((12..=12 + 2 * forwards).contains(&attempts), "{attempts} attempts");
+
+    // The register follows the clock, both ways.
+    for hours in [1, 0] {
+        clock.set(hours * HOUR);
+        let now = jiff::Timestamp::now().as_second() + hours * HOUR;
+        workers[0].wait_for(|_| {
+            let listed = get(&format!("{address}/v1/workers"))["workers"].as_array().unwrap().clone();
+            let seen = |worker: &Value| {
+                worker["seen"].as_str().unwrap().parse::<jiff::Timestamp>().unwrap().as_second()
+            };
+            let is_current = |worker: &Value| (now..now + PATIENCE.as_secs() as i64).contains(&seen(worker));
+            (listed.len() == 2 && listed.iter().all(is_current)).then_some(())
+        });
+    }
+    assert_eq!(check(data.path()), (12, vec![]));
+}
+
+#[test]
+fn point_of_a_dead_worker_does_not_wait_for_the_hour_by_which_the_clock_was_set_back() {
+    let (data, clock) = (tempfile::tempdir().unwrap(), Clock::new());
+    let (_server, address) = clock.serve(data.path());
+    let sweep = submit(&address, &request(6.0, 1, 1));
+    let mut doomed = clock.worker(data.path());
+    doomed.wait_for(last_attempt);
+    // Stopped, it cannot renew its lease by the new time.
+    doomed.process.signal(Signal::STOP);
+    clock.set(-HOUR);
+    doomed.kill();
+    let _heir = clock.worker(data.path());
+    let ended = wait(&address, &sweep, completed);
+    assert_eq!(ended["counts"]["succeeded"], 1, "{ended}");
+    assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}/points/1"))["attempts"], 2);
+    let listed = get(&format!("{address}/v1/workers"))["workers"].as_array().unwrap().len();
+    assert_eq!(listed, 1, "the dead one is not listed");
+    assert_eq!(check(data.path()), (1, vec![]));
+}
+
+#[test]
+fn token_goes_by_the_clock_and_opens_nothing_when_it_has_expired() {
+    let (data, clock) = (tempfile::tempdir().unwrap(), Clock::new());
+    let create = ["token", "create", "--owner", "anne", "--expires", "1h"];
+    let token = String::from_utf8(command(data.path(), &create).output().unwrap().stdout).unwrap();
+    let (_server, address) = clock.serve(data.path());
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    let status = |authorization: Option<&str>| {
+        let request = agent.get(format!("{address}/v1/sweeps"));
+        let request =
+            authorization.into_iter().fold(request, |request, text| request.header("authorization", text));
+        request.call().unwrap().status().as_u16()
+    };
+    let bearer = format!("Bearer {}", token.trim());
+    for (seconds, expected) in [(0, 200), (HOUR, 401), (-HOUR, 200), (0, 200)] {
+        clock.set(seconds);
+        assert_eq!(status(Some(&bearer)), expected, "{seconds} s");
+        assert_eq!(status(None), 401, "{seconds} s");
+    }
 }
 
 #[test]

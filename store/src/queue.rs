@@ -18,6 +18,9 @@ const INFRASTRUCTURE_TRIES: i64 = 5;
 /// so that points which failed together, as when a disk was full, do not come back together.
 const FIRST_RETRY_MS: i64 = 5_000;
 
+/// Longest wait before the last of these retries \[ms\].
+const LONGEST_RETRY_MS: i64 = (FIRST_RETRY_MS << (INFRASTRUCTURE_TRIES - 2)) * 3 / 2;
+
 /// The condition of every write of a worker: its attempt is still the current one. Parameters 2 to 4 are those of
 /// [`Lease`]; the first is the clock's offset, as everywhere.
 macro_rules! holds_lease {
@@ -135,7 +138,7 @@ impl Store {
             "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
                     lease_owner = ?2, lease_until = ",
             now!(),
-            " + ?3, changed = ",
+            " + ?3, lease_ms = ?3, changed = ",
             now!(),
             " WHERE key = (
                   SELECT key FROM work
@@ -170,7 +173,7 @@ impl Store {
         let cancel_requested: Vec<i64> = sqlx::query_scalar(concat!(
             "UPDATE work SET progress = ?5, lease_until = ",
             now!(),
-            " + ?6",
+            " + ?6, lease_ms = ?6",
             holds_lease!(),
             " RETURNING cancel_requested"
         ))
@@ -374,6 +377,9 @@ impl Store {
     /// Takes work back from workers that are silent beyond their lease, and wakes retries that are due. Tells how
     /// many leases had run out.
     ///
+    /// A clock that was set back holds nothing up: a lease or a wait that ends later than it could, had it begun now, is
+    /// brought forward. Leases get their whole length once more, in which a living worker renews them.
+    ///
     /// # Errors
     /// When the database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
@@ -381,15 +387,34 @@ impl Store {
         let is_due: i64 = sqlx::query_scalar(concat!(
             "SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < ",
             now!(),
-            ") OR EXISTS (SELECT 1 FROM work WHERE state = 'waiting' AND ready_at <= ",
+            ") OR EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until > ",
             now!(),
-            ")"
+            " + lease_ms) OR EXISTS (SELECT 1 FROM work WHERE state = 'waiting' AND (ready_at <= ",
+            now!(),
+            " OR ready_at > ",
+            now!(),
+            " + ?2))"
         ))
         .bind(self.clock_offset_ms)
+        .bind(LONGEST_RETRY_MS)
         .fetch_one(&self.pool)
         .await?;
         if is_due == 0 {
             return Ok(0);
+        }
+        let too_long = sqlx::query(concat!(
+            "UPDATE work SET lease_until = ",
+            now!(),
+            " + lease_ms WHERE state = 'leased' AND lease_until > ",
+            now!(),
+            " + lease_ms"
+        ))
+        .bind(self.clock_offset_ms)
+        .execute(&self.pool)
+        .await?
+        .rows_affected();
+        if too_long > 0 {
+            tracing::warn!(leases = too_long, "the clock was set back; leases are counted from now");
         }
         let expired: Vec<(String, i64, Option<String>)> = sqlx::query_as(concat!(
             "UPDATE work SET
@@ -421,10 +446,14 @@ impl Store {
         sqlx::query(concat!(
             "UPDATE work SET state = 'queued', changed = ",
             now!(),
-            " WHERE state = 'waiting' AND ready_at <= ",
-            now!()
+            " WHERE state = 'waiting' AND (ready_at <= ",
+            now!(),
+            " OR ready_at > ",
+            now!(),
+            " + ?2)"
         ))
         .bind(self.clock_offset_ms)
+        .bind(LONGEST_RETRY_MS)
         .execute(&self.pool)
         .await?;
         Ok(expired.len() as u64)

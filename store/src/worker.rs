@@ -84,7 +84,8 @@ impl Store {
         Ok(ended)
     }
 
-    /// Workers heard of within the last `within_ms` milliseconds, oldest first.
+    /// Workers heard of within the last `within_ms` milliseconds, oldest first. One that was last heard of in the future, as it
+    /// seems after the clock was set back, has been silent since.
     ///
     /// # Errors
     /// When the database fails.
@@ -92,7 +93,9 @@ impl Store {
         let query = concat!(
             "SELECT id, host, process, version, physics_version, started, last_seen FROM worker WHERE last_seen > ",
             now!(),
-            " - ?2 ORDER BY started, id"
+            " - ?2 AND last_seen < ",
+            now!(),
+            " + ?2 ORDER BY started, id"
         );
         Ok(sqlx::query_as(query).bind(self.clock_offset_ms).bind(within_ms).fetch_all(&self.pool).await?)
     }

@@ -303,3 +303,57 @@ pub(crate) async fn workers_are_listed_while_they_are_heard_of<E: Engine>() {
     later.remove_worker("a").await.unwrap();
     assert_eq!(ids(120_000).await, ["b"]);
 }
+
+/// How far the clock is set back in the tests below.
+const BACK_MS: i64 = 3_600_000;
+
+pub(crate) async fn a_clock_that_is_set_back_keeps_no_point_with_a_dead_worker<E: Engine>() {
+    let engine = E::new();
+    let before = engine.after(BACK_MS).await;
+    submit(&before, &sweep("s", [1, 2])).await;
+    let dead = claim(&before, "dead").await;
+    let alive = claim(&before, "alive").await;
+
+    let back = engine.open().await;
+    assert_eq!(claim_or_none(&back, "heir").await, None, "neither has been silent for a lease");
+    let renewed = engine.after(LEASE_MS / 2).await;
+    assert_eq!(renewed.renew(&alive.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+    let shortly_before = engine.after(LEASE_MS - 5_000).await;
+    assert_eq!(claim_or_none(&shortly_before, "heir").await, None);
+    let later = engine.after(LEASE_MS + 5_000).await;
+    let heir = claim(&later, "heir").await;
+    assert_eq!((heir.lease.key, heir.lease.attempt), (dead.lease.key, 2));
+    assert!(!finish(&later, &dead).await);
+    assert!(finish(&later, &alive).await, "who renewed has it still");
+}
+
+pub(crate) async fn a_clock_that_is_set_back_holds_up_no_retry<E: Engine>() {
+    let engine = E::new();
+    let before = engine.after(BACK_MS).await;
+    submit(&before, &sweep("s", [1])).await;
+    let failing = claim(&before, "w").await;
+    assert!(before.retry_later(&failing.lease, "{}").await.unwrap());
+    assert_eq!(claim_or_none(&before, "w").await, None);
+    assert_eq!(claim(&engine.open().await, "w").await.lease.attempt, 2);
+}
+
+pub(crate) async fn a_clock_that_is_set_back_makes_no_dead_worker_alive<E: Engine>() {
+    let engine = E::new();
+    let worker = |id: &str| WorkerRecord {
+        id: id.to_owned(),
+        host: "rig".to_owned(),
+        process: 42,
+        version: "0.1.0".to_owned(),
+        physics_version: PHYSICS,
+        started: 0,
+        last_seen: 0,
+    };
+    let before = engine.after(BACK_MS).await;
+    for id in ["dead", "alive"] {
+        before.register_worker(&worker(id)).await.unwrap();
+    }
+    let back = engine.open().await;
+    back.register_worker(&worker("alive")).await.unwrap();
+    let left = back.workers(LEASE_MS).await.unwrap();
+    assert_eq!(left.iter().map(|worker| worker.id.as_str()).collect::<Vec<_>>(), ["alive"]);
+}

@@ -76,6 +76,9 @@ macro_rules! conformance {
                 a_worker_gets_only_work_of_its_own_numbers,
                 the_urgent_goes_first_then_the_order_asked,
                 workers_are_listed_while_they_are_heard_of,
+                a_clock_that_is_set_back_keeps_no_point_with_a_dead_worker,
+                a_clock_that_is_set_back_holds_up_no_retry,
+                a_clock_that_is_set_back_makes_no_dead_worker_alive,
             }
             probe {
                 a_probe_leaves_nothing_behind,

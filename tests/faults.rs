@@ -249,6 +249,7 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
     for id in &repeated {
         assert_eq!(wait(&address, id, completed)["counts"]["succeeded"], 16, "of the same work");
     }
+    collect_orphans(stormy.path());
     let table = |server: &str, sweep: &str| bytes(&format!("{server}/v1/sweeps/{sweep}/table?format=csv"));
     assert_eq!(
         table(&address, &sweep),
@@ -264,6 +265,35 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
         }
     }
     assert_eq!(check(stormy.path()), (16, vec![]), "every point is done once");
+}
+
+/// Runs the garbage collector two hours later, and finds nothing left that no result names.
+fn collect_orphans(data: &Path) {
+    let blobs = data.join("blobs");
+    // What a killed worker uploaded is what the next one uploads, and is named by it: these two are not.
+    let orphan = blobs.join("00/00").join("0".repeat(64));
+    std::fs::create_dir_all(orphan.parent().unwrap()).unwrap();
+    std::fs::write(&orphan, b"orphan").unwrap();
+    std::fs::write(blobs.join("00/00/0123#1"), b"half of an orphan").unwrap();
+
+    let clock = Clock::new();
+    clock.set(2 * HOUR);
+    let collected = clock.rules(command(data, &["gc", "--json", "--grace-hours", "1"])).output().unwrap();
+    let report: Value = serde_json::from_slice(&collected.stdout).unwrap();
+    assert!(
+        report["blobs"].as_u64() >= Some(1) && report["unfinished_uploads"].as_u64() >= Some(1),
+        "{report}"
+    );
+    assert_eq!(
+        (&report["results"], &report["artifacts"]),
+        (&json!(0), &json!(0)),
+        "nothing has reached its age"
+    );
+    // All that results name is there, and as many files as that.
+    let mut check = command(data, &["check", "--json"]);
+    let report: Value = serde_json::from_slice(&check.output().unwrap().stdout).unwrap();
+    assert_eq!(report["problems"], json!([]));
+    assert_eq!(Some(files(&blobs).len() as u64), report["blobs"].as_u64(), "{:?}", files(&blobs));
 }
 
 #[test]

@@ -155,7 +155,8 @@ pub struct PointDetail {
     /// The scalar results; the same fields make up the point's row in the sweep's table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub summary: Option<Map<String, Value>>,
-    /// Which code computed it, where, and at what cost.
+    /// Which code computed it, where, and at what cost. Where it was computed anew (`cache=refresh`) and came out otherwise,
+    /// which equal keys rule out, `disagreement` says what `differs` and has the provenance of the `earlier` result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub provenance: Option<Map<String, Value>>,
     /// Names of the tables that the run produced.

@@ -58,6 +58,7 @@ struct CensusGauges {
     oldest_queued: Gauge<f64, AtomicU64>,
     database: Gauge,
     write_ahead_log: Gauge,
+    disagreements: Gauge,
     artifacts: Gauge,
 }
 
@@ -116,6 +117,11 @@ impl CensusGauges {
             Unit::Bytes,
             self.write_ahead_log.clone(),
         );
+        registry.register(
+            "results_that_disagree",
+            "Results that were computed anew and came out otherwise: never, if all is well",
+            self.disagreements.clone(),
+        );
         registry.register_with_unit(
             "artifacts",
             "Size of the tables of all results, those that are shared counted each time",
@@ -135,6 +141,7 @@ impl CensusGauges {
         self.oldest_queued.set(census.oldest_queued_ms as f64 * 1e-3);
         self.database.set(census.database_bytes);
         self.write_ahead_log.set(census.write_ahead_log_bytes);
+        self.disagreements.set(census.disagreements);
         self.artifacts.set(census.artifact_bytes);
     }
 }

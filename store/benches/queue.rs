@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use divan::Bencher;
-use drillsweep_store::{CachePolicy, NewArtifact, NewPoint, NewSweep, Role, Store, StoreConfig};
+use drillsweep_store::{CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, Role, Store, StoreConfig};
 use tempfile::TempDir;
 use tokio::runtime::Runtime;
 
@@ -68,7 +68,13 @@ fn claim_renew_finish(bencher: Bencher, role: Role) {
         queue.runtime.block_on(async {
             let claim = queue.store.claim("w", 1, 60_000).await.expect("claimed").expect("work is ready");
             queue.store.renew(&claim.lease, 60_000, 0.5).await.expect("renewed");
-            queue.store.finish_done(&claim.lease, &summary, "{}", &artifacts).await.expect("finished")
+            let result = NewResult {
+                summary_json: &summary,
+                provenance_json: "{}",
+                artifacts: &artifacts,
+                is_repeatable: true,
+            };
+            queue.store.finish_done(&claim.lease, &result).await.expect("finished")
         })
     });
 }

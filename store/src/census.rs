@@ -23,6 +23,8 @@ pub struct Census {
     pub database_bytes: i64,
     /// Size of its write-ahead log.
     pub write_ahead_log_bytes: i64,
+    /// Results that were computed anew and came out otherwise.
+    pub disagreements: i64,
     /// Size of all artifacts, those that share a blob counted each time.
     pub artifact_bytes: i64,
 }
@@ -54,6 +56,9 @@ impl Store {
         .await?;
         let artifact_bytes: i64 =
             sqlx::query_scalar("SELECT coalesce(sum(bytes), 0) FROM artifact").fetch_one(&self.pool).await?;
+        let disagreements: i64 = sqlx::query_scalar("SELECT count(*) FROM result WHERE disagrees <> 0")
+            .fetch_one(&self.pool)
+            .await?;
         let workers = self.workers(silence.as_millis() as i64).await?.len() as i64;
         let size = |suffix: &str| {
             let mut path = self.database_path.clone().into_os_string();
@@ -80,6 +85,7 @@ impl Store {
             oldest_queued_ms,
             database_bytes: size(""),
             write_ahead_log_bytes: size("-wal"),
+            disagreements,
             artifact_bytes,
         })
     }

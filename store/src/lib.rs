@@ -31,7 +31,7 @@ pub use error::{Result, StoreError};
 pub use event::Event;
 pub use failure::{FailureFilter, FailurePlace, FailureRecord};
 pub use point::{Artifact, PointRecord, ScenarioText, TableRecord};
-pub use queue::{Claim, FailureClass, Lease, NewArtifact, QueueDepths, Renewal};
+pub use queue::{Claim, FailureClass, Lease, NewArtifact, NewResult, QueueDepths, Renewal};
 pub use retention::{Garbage, RetentionPolicy};
 pub use state::{StateCounts, WorkKey, WorkState};
 pub use submit::{AppendOutcome, CachePolicy, NewPoint, NewSweep, SubmitOutcome};

@@ -1,6 +1,8 @@
 //! The queue: claiming work, keeping the lease, ending it.
 
-use sqlx::SqliteExecutor;
+use std::collections::BTreeMap;
+
+use sqlx::{Sqlite, SqliteExecutor, Transaction};
 
 use crate::blob::BlobId;
 use crate::connection::{Store, now};
@@ -113,6 +115,61 @@ pub struct QueueDepths {
     pub leased: i64,
 }
 
+/// A result to store.
+#[derive(Debug, Clone, Copy)]
+pub struct NewResult<'a> {
+    /// Scalar results as a JSON object.
+    pub summary_json: &'a str,
+    /// Where and how it was computed, as a JSON object.
+    pub provenance_json: &'a str,
+    /// Its artifacts.
+    pub artifacts: &'a [NewArtifact],
+    /// Whether summary and artifacts are the same whenever the work is done; not so where they hold times that it took.
+    pub is_repeatable: bool,
+}
+
+/// The result that a new one takes the place of.
+struct Earlier {
+    summary: String,
+    provenance: String,
+    disagrees: bool,
+    blobs: BTreeMap<String, String>,
+}
+
+impl Earlier {
+    async fn read(tx: &mut Transaction<'static, Sqlite>, key: &[u8]) -> Result<Option<Self>> {
+        let row: Option<(String, String, bool)> =
+            sqlx::query_as("SELECT summary, provenance, disagrees FROM result WHERE work_key = ?1")
+                .bind(key)
+                .fetch_optional(&mut **tx)
+                .await?;
+        let Some((summary, provenance, disagrees)) = row else { return Ok(None) };
+        let blobs: Vec<(String, String)> =
+            sqlx::query_as("SELECT name, blob FROM artifact WHERE work_key = ?1")
+                .bind(key)
+                .fetch_all(&mut **tx)
+                .await?;
+        Ok(Some(Self { summary, provenance, disagrees, blobs: blobs.into_iter().collect() }))
+    }
+
+    /// What of a new result is not as it was: `summary`, and names of artifacts.
+    fn differences(&self, result: &NewResult<'_>) -> Vec<String> {
+        let mut blobs = self.blobs.clone();
+        let mut differences = Vec::new();
+        if self.summary != result.summary_json {
+            differences.push("summary".to_owned());
+        }
+        for artifact in result.artifacts {
+            if blobs.remove(&artifact.name) != Some(artifact.blob.to_string()) {
+                differences.push(artifact.name.clone());
+            }
+        }
+        // What the new one has not.
+        differences.extend(blobs.into_keys());
+        differences
+    }
+}
+
 impl Store {
     /// Hands out the next work item of the worker's physics version; none if nothing is ready. Owners take turns; of the
     /// owner whose turn it is the most urgent goes first, then the order asked for.
@@ -194,15 +251,12 @@ impl Store {
 
     /// Stores a result. False if the lease was lost: then nothing is written.
     ///
+    /// A result that was computed anew takes the place of the one before, with its artifacts. Where it should be the same and
+    /// is not, its provenance says so for good: `disagreement` tells what differs, and the provenance of the one before.
+    ///
     /// # Errors
-    /// When the database fails.
-    pub async fn finish_done(
-        &self,
-        lease: &Lease,
-        summary_json: &str,
-        provenance_json: &str,
-        artifacts: &[NewArtifact],
-    ) -> Result<bool> {
+    /// When the database fails, or a blob is not there.
+    pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
         let mut tx = self.write().await?;
         let key = lease.key.as_slice();
         let finished: Vec<i64> = sqlx::query_scalar(concat!(
@@ -218,16 +272,16 @@ impl Store {
         .fetch_all(&mut *tx)
         .await?;
         let Some(now) = finished.first() else { return Ok(false) };
-        // A result that was computed anew takes the place of the one before, with its artifacts.
+        let earlier = Earlier::read(&mut tx, key).await?;
         sqlx::query("DELETE FROM result WHERE work_key = ?1").bind(key).execute(&mut *tx).await?;
         sqlx::query("INSERT INTO result (work_key, summary, provenance, created) VALUES (?1, ?2, ?3, ?4)")
             .bind(key)
-            .bind(summary_json)
-            .bind(provenance_json)
+            .bind(result.summary_json)
+            .bind(result.provenance_json)
             .bind(now)
             .execute(&mut *tx)
             .await?;
-        for artifact in artifacts {
+        for artifact in result.artifacts {
             // Under the lock that blobs are deleted under: it stays.
             if !self.blobs().contains(artifact.blob).await? {
                 return Err(StoreError::BlobMissing(artifact.blob.to_string()));
@@ -243,6 +297,20 @@ impl Store {
             .bind(artifact.row_count)
             .execute(&mut *tx)
             .await?;
+        }
+        if let Some(earlier) = earlier.filter(|_| result.is_repeatable) {
+            let differences = earlier.differences(result).join(", ");
+            if !differences.is_empty() {
+                let key = blake3::Hash::from_bytes(lease.key).to_hex();
+                tracing::warn!(
+                    key = key.as_str(),
+                    differences,
+                    "computed anew, a result came out otherwise than before"
+                );
+                note_disagreement(&mut tx, lease.key.as_slice(), &differences, &earlier.provenance).await?;
+            } else if earlier.disagrees {
+                keep_disagreement(&mut tx, lease.key.as_slice(), &earlier.provenance).await?;
+            }
         }
         tx.commit().await?;
         Ok(true)
@@ -501,4 +569,42 @@ impl Store {
             .rows_affected();
         Ok(changed == 1)
     }
+}
+
+/// Marks a result as other than the one before.
+async fn note_disagreement(
+    tx: &mut Transaction<'static, Sqlite>,
+    key: &[u8],
+    differences: &str,
+    earlier_provenance: &str,
+) -> Result<()> {
+    sqlx::query(
+        "UPDATE result SET disagrees = 1, provenance = json_set(provenance, '$.disagreement',
+             json_object('differs', ?2, 'earlier', json_remove(?3, '$.disagreement')))
+         WHERE work_key = ?1",
+    )
+    .bind(key)
+    .bind(differences)
+    .bind(earlier_provenance)
+    .execute(&mut **tx)
+    .await?;
+    Ok(())
+}
+
+/// Marks a result as one of which another has been seen, though the last two agree.
+async fn keep_disagreement(
+    tx: &mut Transaction<'static, Sqlite>,
+    key: &[u8],
+    earlier_provenance: &str,
+) -> Result<()> {
+    sqlx::query(
+        "UPDATE result SET disagrees = 1,
+             provenance = json_set(provenance, '$.disagreement', json_extract(?2, '$.disagreement'))
+         WHERE work_key = ?1",
+    )
+    .bind(key)
+    .bind(earlier_provenance)
+    .execute(&mut **tx)
+    .await?;
+    Ok(())
 }

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use drillsweep_store::{
-    CachePolicy, NewArtifact, NewPoint, NewSweep, Renewal, Role, Store, StoreConfig, SubmitOutcome, WorkState,
+    CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, Renewal, Role, Store, StoreConfig,
+    SubmitOutcome, WorkState,
 };
 
 const POINTS: i64 = 1_000;
@@ -91,7 +92,9 @@ async fn work(directory: &Path, clock: i64, name: &str) {
             hang_until_killed();
         }
         assert_eq!(store.renew(&claim.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
-        assert!(store.finish_done(&claim.lease, "{}", "{}", &[artifact]).await.unwrap());
+        let artifacts = &[artifact];
+        let result = NewResult { summary_json: "{}", provenance_json: "{}", artifacts, is_repeatable: true };
+        assert!(store.finish_done(&claim.lease, &result).await.unwrap());
         tell(&claim.scenario.changes_json);
     }
 }

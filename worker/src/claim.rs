@@ -8,7 +8,8 @@ use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::transient::Checkpoint;
 use drillsweep_store::{
-    BlobId, Claim, FailureClass, Lease, NewArtifact, Role, Store, StoreConfig, StoreError, WorkerRecord,
+    BlobId, Claim, FailureClass, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError,
+    WorkerRecord,
 };
 use jiff::Timestamp;
 use serde_json::{Value, json};
@@ -294,7 +295,14 @@ async fn write_end(
             Ok(artifacts) => {
                 let summary = Value::Object(computed.summary_row()).to_string();
                 let provenance = Value::Object(computed.provenance.clone()).to_string();
-                store.finish_done(lease, &summary, &provenance, &artifacts).await
+                let result = NewResult {
+                    summary_json: &summary,
+                    provenance_json: &provenance,
+                    artifacts: &artifacts,
+                    // A study of what accuracy costs measures times.
+                    is_repeatable: computed.study.is_none(),
+                };
+                store.finish_done(lease, &result).await
             }
             Err(error) => {
                 tracing::warn!(%error, "artifacts cannot be written");

@@ -8,7 +8,7 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use drillsweep_server::{Config, router};
 use drillsweep_store::{
-    Claim, ColumnData, FailureClass, NewArtifact, Role, Store, StoreConfig, Table, encode_parquet,
+    Claim, ColumnData, FailureClass, NewArtifact, NewResult, Role, Store, StoreConfig, Table, encode_parquet,
 };
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
@@ -97,6 +97,11 @@ impl Bench {
 
     /// Claims the next point and ends it with the tables of [`tables`].
     pub(crate) async fn succeed(&self) {
+        self.succeed_with(1e-9).await;
+    }
+
+    /// The same with a number of one's own in the summary.
+    pub(crate) async fn succeed_with(&self, residual: f64) {
         let claim = self.claim().await;
         let scenario =
             drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap();
@@ -111,15 +116,15 @@ impl Bench {
                 blob: self.store.blobs().put(parquet).await.unwrap(),
             });
         }
-        let summary =
-            json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": 1e-9});
+        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual});
         let provenance = json!({"version": "bench"});
-        let is_taken = self
-            .store
-            .finish_done(&claim.lease, &summary.to_string(), &provenance.to_string(), &artifacts)
-            .await
-            .unwrap();
-        assert!(is_taken);
+        let result = NewResult {
+            summary_json: &summary.to_string(),
+            provenance_json: &provenance.to_string(),
+            artifacts: &artifacts,
+            is_repeatable: true,
+        };
+        assert!(self.store.finish_done(&claim.lease, &result).await.unwrap());
     }
 
     /// Claims the next point and ends it as diverged.

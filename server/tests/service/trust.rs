@@ -144,6 +144,16 @@ async fn metrics_have_a_listener_of_their_own() {
     let bench = Bench::new().await;
     bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.04]}}})).await;
     bench.diverge().await;
+    bench.succeed().await;
+    // Computed anew, it comes out otherwise.
+    let run = json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.04}});
+    let refreshed = bench.post("/v1/sweeps?cache=refresh", run).await.json();
+    bench.succeed_with(2e-9).await;
+    let path = format!("/v1/sweeps/{}/points/1", refreshed["id"].as_str().unwrap());
+    let point = bench.get(&path).await.json();
+    let told = json!({"differs": "summary", "earlier": {"version": "bench"}});
+    assert_eq!(point["provenance"]["disagreement"], told);
+    bench.submit(json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.05}})).await;
     let (api, metrics) =
         (TcpListener::bind("127.0.0.1:0").await.unwrap(), TcpListener::bind("127.0.0.1:0").await.unwrap());
     let (api_address, metrics_address) = (api.local_addr().unwrap(), metrics.local_addr().unwrap());
@@ -167,7 +177,8 @@ async fn metrics_have_a_listener_of_their_own() {
     for line in [
         "drillsweep_work{state=\"queued\"} 1",
         "drillsweep_points{state=\"failed\"} 1",
-        "drillsweep_sweeps 1",
+        "drillsweep_sweeps 3",
+        "drillsweep_results_that_disagree 1",
         "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"/v1/sweeps/{id}\",status=\"404\"} 1",
         "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"none\",status=\"404\"} 1",
     ] {

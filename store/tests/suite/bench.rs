@@ -1,8 +1,8 @@
 //! What an engine must give the tests, and what they have in common.
 
 use drillsweep_store::{
-    CachePolicy, Claim, NewArtifact, NewPoint, NewSweep, PointRecord, Role, ScenarioText, Store, StoreConfig,
-    SubmitOutcome, SweepRecord, WorkKey, WorkState,
+    CachePolicy, Claim, NewArtifact, NewPoint, NewResult, NewSweep, PointRecord, Role, ScenarioText, Store,
+    StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 
 pub(crate) const PHYSICS: i64 = 1;
@@ -125,7 +125,13 @@ pub(crate) async fn finish(store: &Store, claim: &Claim) -> bool {
         row_count: 7,
     };
     let summary = format!(r#"{{"by":"{}"}}"#, claim.lease.worker);
-    store.finish_done(&claim.lease, &summary, r#"{"version":"test"}"#, &[artifact]).await.unwrap()
+    let result = NewResult {
+        summary_json: &summary,
+        provenance_json: r#"{"version":"test"}"#,
+        artifacts: &[artifact],
+        is_repeatable: true,
+    };
+    store.finish_done(&claim.lease, &result).await.unwrap()
 }
 
 pub(crate) async fn sweep_record(store: &Store, id: &str) -> SweepRecord {

@@ -1,8 +1,8 @@
 //! Pausing, changing, extending and refreshing: what a sweep's owner does with it while it runs.
 
 use drillsweep_store::{
-    AppendOutcome, CachePolicy, FailureClass, NewPoint, NewSweep, QueueDepths, StateCounts, SubmitOutcome,
-    SweepChanges, SweepFilter, WorkState,
+    AppendOutcome, CachePolicy, FailureClass, NewArtifact, NewPoint, NewResult, NewSweep, QueueDepths,
+    StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
 
 use crate::bench::{
@@ -161,6 +161,65 @@ pub(crate) async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then<
     assert!(finish(&store, &claim(&store, "second").await).await);
     assert_eq!(summary("old").await.as_deref(), Some(r#"{"by":"second"}"#));
     assert_eq!(store.artifacts(&key(1)).await.unwrap().len(), 1);
+}
+
+/// Claims what is next and finishes it with this summary and, as the history, this content.
+async fn finish_with(store: &Store, worker: &str, summary: &str, history: &[u8], is_repeatable: bool) {
+    let claim = claim(store, worker).await;
+    let artifact = NewArtifact {
+        name: "history".to_owned(),
+        media_type: "application/octet-stream".to_owned(),
+        blob: store.blobs().put(history.to_vec()).await.unwrap(),
+        bytes: history.len() as i64,
+        row_count: 1,
+    };
+    let provenance = format!(r#"{{"worker":"{worker}"}}"#);
+    let result = NewResult {
+        summary_json: summary,
+        provenance_json: &provenance,
+        artifacts: &[artifact],
+        is_repeatable,
+    };
+    assert!(store.finish_done(&claim.lease, &result).await.unwrap());
+}
+
+pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    let provenance = async || point_record(&store, "s", 1).await.provenance_json.unwrap();
+    let disagreements = async || store.census(LONG_AGO).await.unwrap().disagreements;
+    submit(&store, &sweep("s", [1])).await;
+    finish_with(&store, "first", r#"{"radius":1}"#, b"orbit", true).await;
+    submit(&store, &refresh("same")).await;
+    finish_with(&store, "second", r#"{"radius":1}"#, b"orbit", true).await;
+    assert_eq!(provenance().await, r#"{"worker":"second"}"#);
+    assert_eq!(disagreements().await, 0);
+
+    submit(&store, &refresh("summary")).await;
+    finish_with(&store, "third", r#"{"radius":2}"#, b"orbit", true).await;
+    let told = r#"{"worker":"third","disagreement":{"differs":"summary","earlier":{"worker":"second"}}}"#;
+    assert_eq!(provenance().await, told);
+    submit(&store, &refresh("history")).await;
+    finish_with(&store, "fourth", r#"{"radius":2}"#, b"another orbit", true).await;
+    let disagreement = r#""disagreement":{"differs":"history","earlier":{"worker":"third"}}"#;
+    assert_eq!(provenance().await, format!(r#"{{"worker":"fourth",{disagreement}}}"#));
+    // That the last two agree does not make it good.
+    submit(&store, &refresh("again")).await;
+    finish_with(&store, "fifth", r#"{"radius":2}"#, b"another orbit", true).await;
+    assert_eq!(provenance().await, format!(r#"{{"worker":"fifth",{disagreement}}}"#));
+    assert_eq!(disagreements().await, 1, "results, not times");
+    assert_eq!(point_record(&store, "s", 1).await.summary_json.as_deref(), Some(r#"{"radius":2}"#));
+}
+
+pub(crate) async fn a_refresh_of_what_was_measured_may_disagree<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    finish_with(&store, "first", r#"{"seconds":1}"#, b"one", false).await;
+    submit(&store, &refresh("new")).await;
+    finish_with(&store, "second", r#"{"seconds":2}"#, b"two", false).await;
+    assert_eq!(store.census(LONG_AGO).await.unwrap().disagreements, 0);
+    assert_eq!(point_record(&store, "s", 1).await.provenance_json.as_deref(), Some(r#"{"worker":"second"}"#));
 }
 
 pub(crate) async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it<E: Engine>() {

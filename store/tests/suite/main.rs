@@ -39,6 +39,8 @@ macro_rules! conformance {
                 points_are_added_once_and_go_on_from_the_last,
                 what_is_added_to_a_paused_sweep_waits_with_the_rest,
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
+                a_refresh_that_disagrees_is_told,
+                a_refresh_of_what_was_measured_may_disagree,
                 a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it,
                 a_refresh_that_fails_leaves_the_old_result_and_says_why,
                 a_refresh_begins_at_the_beginning,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use drillsweep_store::{Garbage, NewSweep, RetentionPolicy, Store, StoreError, SweepChanges};
+use drillsweep_store::{Garbage, NewResult, NewSweep, RetentionPolicy, Store, StoreError, SweepChanges};
 
 use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep};
 
@@ -136,7 +136,9 @@ pub(crate) async fn no_row_names_a_blob_that_is_gone<E: Engine>() {
         bytes: 32,
         row_count: 7,
     };
-    let refused = store.finish_done(&claim.lease, "{}", "{}", &[artifact]).await;
+    let result =
+        NewResult { summary_json: "{}", provenance_json: "{}", artifacts: &[artifact], is_repeatable: true };
+    let refused = store.finish_done(&claim.lease, &result).await;
     assert!(matches!(refused, Err(StoreError::BlobMissing(_))), "{refused:?}");
     // It still holds the lease, and writes the blob again.
     assert!(finish(&store, &claim).await);

@@ -45,7 +45,8 @@ pub struct Sweep {
     /// What was asked for; left out of lists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,
-    /// What was asked for later, the points of each after those before; left out of lists.
+    /// What was asked for later, the points of each after those before: the latest hundred requests, all in an export; left out of
+    /// lists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub appended: Vec<AppendRequest>,
     /// Where to read more.

@@ -94,10 +94,11 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
     })
 }
 
-/// The same with the request that made it.
-pub(crate) fn sweep_with_request(record: &SweepRecord) -> Result<Sweep> {
+/// The same with the request that made it and those that added to it.
+pub(crate) fn sweep_with_requests(record: &SweepRecord, appended: &[String]) -> Result<Sweep> {
     let request = Some(Box::new(read(&record.request_json)?));
-    Ok(Sweep { request, appended: read(&record.appended_json)?, ..sweep(record)? })
+    let appended = appended.iter().map(|request| read(request)).collect::<Result<_>>()?;
+    Ok(Sweep { request, appended, ..sweep(record)? })
 }
 
 /// A point's row in a list.

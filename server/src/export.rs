@@ -60,7 +60,7 @@ pub(crate) async fn export(
     Path(id): Path<String>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
-    let sweep = crate::sweeps::load(&app, &id).await?;
+    let sweep = crate::sweeps::load_whole(&app, &id).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
     let archive =

@@ -262,11 +262,21 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
     Ok(Json(SweepList { sweeps, next }))
 }
 
+/// Requests by which points were added that an answer has: who adds them one by one has thousands, and is answered every time.
+const APPENDED_SHOWN: i64 = 100;
+
 pub(crate) async fn load(app: &App, id: &str) -> Result<Sweep> {
-    match app.store.sweep(id).await? {
-        Some(record) => convert::sweep_with_request(&record),
-        None => Err(convert::no_such_sweep(id)),
-    }
+    load_with(app, id, APPENDED_SHOWN).await
+}
+
+/// The sweep with all that was ever asked for.
+pub(crate) async fn load_whole(app: &App, id: &str) -> Result<Sweep> {
+    load_with(app, id, i64::MAX).await
+}
+
+async fn load_with(app: &App, id: &str, appended: i64) -> Result<Sweep> {
+    let Some(record) = app.store.sweep(id).await? else { return Err(convert::no_such_sweep(id)) };
+    convert::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)
 }
 
 /// Whether and for what a request waits.

@@ -93,6 +93,27 @@ fn submit_ten_thousand_points(bencher: Bencher) {
         });
 }
 
+/// One more point, to a sweep that has one and to one that has ten thousand.
+#[divan::bench(args = [1, POINTS], sample_count = 1_000, sample_size = 1)]
+fn append_a_point(bencher: Bencher, points: i64) {
+    let queue = queue(Role::Server);
+    let mut sweep = sweep(1);
+    sweep.points.truncate(points as usize);
+    queue.runtime.block_on(queue.store.submit_sweep(&sweep)).expect("submitted");
+    let number = Cell::new(0);
+    bencher
+        .with_inputs(|| {
+            number.set(number.get() + 1);
+            let mut point = sweep.points[0].clone();
+            point.work_key = *blake3::hash(format!("appended {}", number.get()).as_bytes()).as_bytes();
+            [point]
+        })
+        .bench_local_values(|point| {
+            let append = queue.store.append_points("1", &sweep.base_json, 1, &point, "{}", 100_000);
+            queue.runtime.block_on(append).expect("appended")
+        });
+}
+
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn cancel_ten_thousand_points(bencher: Bencher) {
     let queue = queue(Role::Server);

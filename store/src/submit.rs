@@ -137,7 +137,7 @@ impl Store {
             is_paused: false,
         };
         insert(&mut tx, &wanted, &sweep.points, now).await?;
-        count_points(&mut tx, &sweep.id, now).await?;
+        count_points(&mut tx, &sweep.id, 0, now).await?;
         tx.commit().await?;
         Ok(SubmitOutcome::Created)
     }
@@ -169,16 +169,19 @@ impl Store {
         if cancelled != 0 {
             return Ok(AppendOutcome::Cancelled);
         }
-        let has: Vec<(Vec<u8>, i64)> = sqlx::query_as(
-            "SELECT p.work_key, w.physics_version FROM point p JOIN work w ON w.key = p.work_key WHERE p.sweep_id = ?1",
+        // All points of a sweep are of one version: the first tells.
+        let version: Option<i64> = sqlx::query_scalar(
+            "SELECT w.physics_version FROM point p JOIN work w ON w.key = p.work_key
+             WHERE p.sweep_id = ?1 ORDER BY p.ordinal LIMIT 1",
         )
         .bind(sweep_id)
-        .fetch_all(&mut *tx)
+        .fetch_optional(&mut *tx)
         .await?;
-        if let Some((_, other)) = has.iter().find(|(_, version)| *version != physics_version) {
-            return Ok(AppendOutcome::OtherNumbers(*other));
+        if let Some(other) = version.filter(|version| *version != physics_version) {
+            return Ok(AppendOutcome::OtherNumbers(other));
         }
-        let mut seen: HashSet<&[u8]> = has.iter().map(|(key, _)| key.as_slice()).collect();
+        let has = points_of(&mut tx, sweep_id, points).await?;
+        let mut seen: HashSet<&[u8]> = has.iter().map(Vec::as_slice).collect();
         let fresh: Vec<NewPoint> = points
             .iter()
             .filter(|point| seen.insert(&point.work_key))
@@ -208,17 +211,37 @@ impl Store {
         };
         insert(&mut tx, &wanted, &fresh, now).await?;
         sqlx::query(
-            "UPDATE sweep SET points = ?2, appended = json_insert(appended, '$[#]', json(?3)), version = version + 1
-             WHERE id = ?1",
+            "INSERT INTO appended (sweep_id, number, request)
+             SELECT ?1, coalesce(max(number), 0) + 1, ?2 FROM appended WHERE sweep_id = ?1",
         )
         .bind(sweep_id)
-        .bind(total as i64)
         .bind(request_json)
         .execute(&mut *tx)
         .await?;
-        count_points(&mut tx, sweep_id, now).await?;
+        sqlx::query("UPDATE sweep SET points = ?2, version = version + 1 WHERE id = ?1")
+            .bind(sweep_id)
+            .bind(total as i64)
+            .execute(&mut *tx)
+            .await?;
+        count_points(&mut tx, sweep_id, known, now).await?;
         tx.commit().await?;
         Ok(AppendOutcome::Added(fresh.len() as u64))
+    }
+
+    /// The requests by which points were added to a sweep: the last `limit` of them, in their order.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn appended_requests(&self, sweep_id: &str, limit: i64) -> Result<Vec<String>> {
+        let mut requests: Vec<String> = sqlx::query_scalar(
+            "SELECT request FROM appended WHERE sweep_id = ?1 ORDER BY number DESC LIMIT ?2",
+        )
+        .bind(sweep_id)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        requests.reverse();
+        Ok(requests)
     }
 
     /// How many of the given keys have a result already.
@@ -309,6 +332,26 @@ async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]
     Ok(missing)
 }
 
+/// Keys of the given points that the sweep has already.
+async fn points_of(
+    tx: &mut Transaction<'static, Sqlite>,
+    sweep_id: &str,
+    points: &[NewPoint],
+) -> Result<Vec<Vec<u8>>> {
+    let mut found = Vec::new();
+    for points in points.chunks(ROWS_AT_ONCE) {
+        let mut query = QueryBuilder::new("SELECT work_key FROM point WHERE sweep_id = ");
+        query.push_bind(sweep_id).push(" AND work_key IN (");
+        let mut list = query.separated(", ");
+        for point in points {
+            list.push_bind(point.work_key.as_slice());
+        }
+        query.push(")");
+        found.extend(query.build_query_scalar::<Vec<u8>>().fetch_all(&mut **tx).await?);
+    }
+    Ok(found)
+}
+
 /// The order in which an owner's open work was asked for.
 #[derive(Clone, Copy)]
 pub(crate) struct Order {
@@ -324,9 +367,10 @@ pub(crate) async fn end_of_order(tx: &mut Transaction<'static, Sqlite>, owner: &
         .bind(owner)
         .execute(&mut **tx)
         .await?;
+    // One statement for each end: asked for both at once, SQLite reads all of them.
     let (first, last) = sqlx::query_as(
-        "SELECT coalesce(min(vtime), 0), coalesce(max(vtime), 0) FROM work
-         WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')",
+        "SELECT coalesce((SELECT min(vtime) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')), 0),
+                coalesce((SELECT max(vtime) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')), 0)",
     )
     .bind(owner)
     .fetch_one(&mut **tx)
@@ -446,20 +490,22 @@ async fn insert_points(
     Ok(())
 }
 
-/// Counts the points of a sweep that is new or has new ones; from then on the counts follow the work.
-async fn count_points(tx: &mut Transaction<'static, Sqlite>, id: &str, now: i64) -> Result<()> {
+/// Counts the points of a sweep that are new, those after the ordinal `after`; from then on the counts follow the work.
+async fn count_points(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now: i64) -> Result<()> {
     sqlx::query(
         "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled, finished) = (
-             SELECT coalesce(sum(w.state IN ('waiting', 'queued')), 0),
-                    coalesce(sum(w.state = 'leased'), 0),
-                    coalesce(sum(w.state = 'done'), 0),
-                    coalesce(sum(w.state IN ('failed', 'dead')), 0),
-                    coalesce(sum(w.state = 'cancelled'), 0),
-                    CASE WHEN coalesce(sum(w.state IN ('waiting', 'queued', 'leased')), 0) = 0 THEN ?2 END
-             FROM point p JOIN work w ON w.key = p.work_key WHERE p.sweep_id = ?1)
+             SELECT points_queued + coalesce(sum(w.state IN ('waiting', 'queued')), 0),
+                    points_running + coalesce(sum(w.state = 'leased'), 0),
+                    points_done + coalesce(sum(w.state = 'done'), 0),
+                    points_failed + coalesce(sum(w.state IN ('failed', 'dead')), 0),
+                    points_cancelled + coalesce(sum(w.state = 'cancelled'), 0),
+                    CASE WHEN points_queued + points_running
+                              + coalesce(sum(w.state IN ('waiting', 'queued', 'leased')), 0) = 0 THEN ?3 END
+             FROM point p JOIN work w ON w.key = p.work_key WHERE p.sweep_id = ?1 AND p.ordinal > ?2)
          WHERE id = ?1",
     )
     .bind(id)
+    .bind(after)
     .bind(now)
     .execute(&mut **tx)
     .await?;

@@ -33,8 +33,6 @@ pub struct SweepRecord {
     pub expires: Option<i64>,
     /// Words to find it by, as a JSON array.
     pub tags_json: String,
-    /// The requests by which points were added later, as a JSON array.
-    pub appended_json: String,
     /// When it was submitted \[ms since the epoch\].
     pub created: i64,
     /// When its last point became final \[ms since the epoch\].
@@ -71,7 +69,6 @@ struct SweepRow {
     pinned: i64,
     expires: Option<i64>,
     tags: String,
-    appended: String,
     created: i64,
     finished: Option<i64>,
     points: i64,
@@ -88,7 +85,7 @@ struct SweepRow {
 macro_rules! select_sweeps {
     ($rest:literal) => {
         concat!(
-            "SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags, appended,
+            "SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags,
                     created, finished, points,
                     points_queued, points_running, points_done, points_failed, points_cancelled,
                     CASE points_running WHEN 0 THEN 0.0 ELSE (
@@ -354,7 +351,6 @@ impl SweepRow {
             is_pinned: self.pinned != 0,
             expires: self.expires,
             tags_json: self.tags,
-            appended_json: self.appended,
             created: self.created,
             finished: self.finished,
             counts: StateCounts {

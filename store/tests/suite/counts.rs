@@ -3,7 +3,8 @@
 use drillsweep_store::{Claim, FailureClass, StateCounts, Store, WorkState};
 
 use crate::bench::{
-    Engine, LEASE_MS, claim, claim_or_none, finish, key, states, submit, sweep, sweep_record,
+    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, scenario, states, submit, sweep,
+    sweep_record,
 };
 
 /// A small generator (xorshift): the same numbers in every run.
@@ -51,7 +52,7 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
         let mut sweeps: Vec<String> = Vec::new();
         let mut claims: Vec<Claim> = Vec::new();
         for step in 0..250 {
-            match dice.roll(12) {
+            match dice.roll(13) {
                 0 if sweeps.len() < 12 => {
                     let id = format!("s{step}");
                     // Few work items, so that sweeps share them and have some of them twice.
@@ -70,6 +71,13 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
                     clock += 20_000;
                     store = engine.after(clock).await;
                     store.reap_expired().await.unwrap();
+                }
+                12 if !sweeps.is_empty() => {
+                    let id = &sweeps[dice.roll(sweeps.len())];
+                    let points = sweep(id, (0..1 + dice.roll(4)).map(|_| dice.roll(20) as u32)).points;
+                    let base = scenario(id, 0).base_json;
+                    // A sweep that is cancelled, or has all of them, stays as it is.
+                    store.append_points(id, &base, PHYSICS, &points, "{}", 100).await.unwrap();
                 }
                 kind if !claims.is_empty() => {
                     // Some of these have lost their lease: then nothing may change.

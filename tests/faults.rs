@@ -185,7 +185,7 @@ impl Clock {
 /// The attempt of the point that it claimed last.
 fn last_attempt(log: &str) -> Option<u64> {
     let line = log.lines().rfind(|line| line.contains("point claimed"))?;
-    line.split("attempt=").nth(1)?.split_whitespace().next()?.parse().ok()
+    line.split("attempt=").nth(1)?.split(|sign: char| !sign.is_ascii_digit()).next()?.parse().ok()
 }
 
 #[test]

@@ -13,13 +13,17 @@ mod simulate;
 mod soak;
 mod submit;
 mod sweeps;
+#[cfg(feature = "opentelemetry")]
+mod telemetry;
 mod text;
 mod token;
 mod watch;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+use tracing_subscriber::{EnvFilter, Layer as _};
 
 /// Parametric sweeps of nonlinear drillstring dynamics.
 #[derive(Parser)]
@@ -99,10 +103,28 @@ enum Command {
     },
 }
 
+#[cfg(feature = "opentelemetry")]
+impl Command {
+    /// Under which name its traces appear; none of commands that only run for a moment.
+    fn service(&self) -> Option<&'static str> {
+        match self {
+            Command::Up(_) | Command::Serve(_) => Some("drillsweep-server"),
+            Command::Worker(_) => Some("drillsweep-worker"),
+            _ => None,
+        }
+    }
+}
+
 fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let filter = EnvFilter::try_from_env("DRILLSWEEP_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).with_filter(filter);
+    let registry = tracing_subscriber::registry().with(log);
+    #[cfg(feature = "opentelemetry")]
+    let telemetry = telemetry::Telemetry::new(arguments.command.service())?;
+    #[cfg(feature = "opentelemetry")]
+    let registry = registry.with(telemetry.layer());
+    registry.init();
     match arguments.command {
         Command::Up(arguments) => service::up(&arguments),
         Command::Serve(arguments) => service::serve(&arguments),

@@ -64,10 +64,12 @@ fn span(request: &Request) -> Span {
         request.id = id.unwrap_or_default(),
         http.method = %request.method(),
         http.path = request.uri().path(),
+        http.status = tracing::field::Empty,
     )
 }
 
-fn log_response<B>(response: &Response<B>, latency: Duration, _: &Span) {
+fn log_response<B>(response: &Response<B>, latency: Duration, span: &Span) {
+    span.record("http.status", response.status().as_u16());
     tracing::debug!(
         http.status = response.status().as_u16(),
         latency_ms = latency.as_secs_f64() * 1e3,

@@ -1,7 +1,7 @@
 //! The worker's loop: claim, simulate, store, again.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use drillsweep_api::compose;
 use drillsweep_sim::PHYSICS_VERSION;
@@ -14,6 +14,7 @@ use drillsweep_store::{
 use jiff::Timestamp;
 use serde_json::{Value, json};
 use tokio::sync::watch;
+use tracing::Instrument as _;
 
 use crate::calibration::calibrate;
 use crate::compute::{
@@ -133,9 +134,15 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
     tracing::info!(worker = %id, "worker ready");
     while !*stop.borrow() {
         let lease_ms = config.lease.as_millis() as i64;
+        let asked = Instant::now();
         match store.claim(&id, i64::from(PHYSICS_VERSION), lease_ms).await {
             Ok(Some(claim)) => {
-                work_on(&store, &heartbeat, &record, claim, config.point_timeout, &mut stop).await;
+                let key = hex(&claim.lease.key);
+                let span = tracing::info_span!("point", key = &key[..12], attempt = claim.lease.attempt);
+                let claim_ms = asked.elapsed().as_secs_f64() * 1e3;
+                span.in_scope(|| tracing::info!(claim_ms, "point claimed"));
+                let timeout = config.point_timeout;
+                work_on(&store, &heartbeat, &record, claim, timeout, &mut stop).instrument(span).await;
             }
             Ok(None) if config.drain => break,
             Ok(None) => idle(config.poll_interval, &mut stop).await,
@@ -189,8 +196,6 @@ async fn work_on(
     stop: &mut watch::Receiver<bool>,
 ) {
     let lease = claim.lease;
-    let point = hex(&lease.key);
-    tracing::info!(point = %&point[..12], attempt = lease.attempt, "point claimed");
     let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
         Ok(scenario) => scenario,
         Err(problem) => {
@@ -211,7 +216,9 @@ async fn work_on(
     let watched = control.clone();
     let started = Timestamp::now();
     let checkpoint = read_checkpoint(store, claim.checkpoint).await;
-    let mut computing = tokio::task::spawn_blocking(move || compute_from(&scenario, &watched, checkpoint));
+    let span = tracing::info_span!("compute");
+    let mut computing =
+        tokio::task::spawn_blocking(move || span.in_scope(|| compute_from(&scenario, &watched, checkpoint)));
     let timeout = timeout.map(|time| (time, tokio::time::Instant::now() + time));
     let overdue = async {
         match timeout {
@@ -251,7 +258,7 @@ async fn work_on(
         Ok(result) => Ended::Computed(result),
         Err(error) => Ended::Panicked(panic_text(error)),
     };
-    end(store, &lease, ended, verdict.get(), halt).await;
+    end(store, &lease, ended, verdict.get(), halt).instrument(tracing::info_span!("store")).await;
     heartbeat.watch(None);
 }
 
@@ -271,7 +278,7 @@ async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, hal
         match write_end(store, lease, &ended, reason, halt).await {
             Ok(true) => return,
             Ok(false) => {
-                tracing::warn!(point = %&hex(&lease.key)[..12], attempt = lease.attempt, "lease lost, result dropped");
+                tracing::warn!("lease lost, result dropped");
                 return;
             }
             Err(error) => {
@@ -315,11 +322,11 @@ async fn write_end(
         }
         Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
         Ended::Computed(Err(error)) => {
-            tracing::warn!(point = %&hex(&lease.key)[..12], %error, "point failed");
+            tracing::warn!(%error, "point failed");
             store.finish_failed(lease, FailureClass::Physical, &error.to_json().to_string()).await
         }
         Ended::Panicked(text) => {
-            tracing::error!(point = %&hex(&lease.key)[..12], text, "the simulation panicked");
+            tracing::error!(text, "the simulation panicked");
             let json = json!({ "class": "crash", "reason": format!("the simulation panicked: {text}") });
             store.crashed(lease, &json.to_string()).await
         }

@@ -1,7 +1,11 @@
 //! The largest sweep: a hundred thousand points through the whole service, on a file in the temporary directory, without
 //! the network.
+//!
+//! `DRILLSWEEP_BENCH_BESIDE` names a command that runs meanwhile, once a core and as nice as workers are: with one that simulates,
+//! this is what the service does while all cores are busy.
 
 use std::cell::Cell;
+use std::process::{Child, Command, Stdio};
 
 use axum::Router;
 use axum::body::{Body, Bytes};
@@ -17,7 +21,39 @@ use tokio::sync::watch;
 use tower::ServiceExt;
 
 fn main() {
+    let _load = Load::start();
     divan::main();
+}
+
+/// What keeps the cores busy, until it is dropped.
+struct Load(Vec<Child>);
+
+impl Load {
+    fn start() -> Self {
+        let Ok(beside) = std::env::var("DRILLSWEEP_BENCH_BESIDE") else { return Load(Vec::new()) };
+        let cores = std::thread::available_parallelism().expect("a number of cores").get();
+        let start = |_| {
+            let mut command = Command::new("nice");
+            command
+                .args(["-n", "10"])
+                .args(beside.split_whitespace())
+                .stdin(Stdio::null())
+                .stdout(Stdio::null());
+            command.spawn().expect("a command")
+        };
+        Load((0..cores).map(start).collect())
+    }
+}
+
+impl Drop for Load {
+    fn drop(&mut self) {
+        for child in &mut self.0 {
+            let ended = child.try_wait().expect("a state");
+            assert!(ended.is_none(), "what should keep a core busy had ended: {ended:?}");
+            child.kill().expect("killed");
+            child.wait().expect("ended");
+        }
+    }
 }
 
 struct Service {

@@ -44,6 +44,14 @@ impl NodeHistory {
         }
     }
 
+    /// Makes room for so many further samples.
+    pub(super) fn reserve(&mut self, samples: usize) {
+        let Self { node: _, u, v, w, theta_z, u_rate, v_rate, w_rate, theta_z_rate } = self;
+        for series in [u, v, w, theta_z, u_rate, v_rate, w_rate, theta_z_rate] {
+            series.reserve_exact(samples);
+        }
+    }
+
     /// Adds a sample of all six degrees of freedom.
     pub(super) fn push(&mut self, x: &[f64; 6], v: &[f64; 6]) {
         self.u.push(x[0]);

@@ -20,9 +20,8 @@ pub(super) struct Rk4<const D: usize> {
     damping_and_stiffness: MatrixPair<f64, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
-    /// Local error of a lateral displacement that a pair of steps may make, in hole radii; none means fixed steps.
-    tolerance: Option<f64>,
-    hole_radius: f64,
+    /// None means fixed steps.
+    adaptive: Option<Adaptive<D>>,
     rates: [(NodalVector<D>, NodalVector<D>); 4],
     stage: (NodalVector<D>, NodalVector<D>),
     /// What moves the string but the contacts.
@@ -31,6 +30,18 @@ pub(super) struct Rk4<const D: usize> {
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
     pub(super) steps: u64,
+}
+
+/// Step doubling.
+#[derive(Debug, Clone)]
+struct Adaptive<const D: usize> {
+    /// Local error of a lateral displacement that a pair of steps may make, in hole radii.
+    tolerance: f64,
+    hole_radius: f64,
+    /// After one long step.
+    coarse: State<D>,
+    /// After two of half its length.
+    fine: State<D>,
 }
 
 /// A step of the adaptive method became too short.
@@ -46,13 +57,18 @@ impl<const D: usize> Rk4<D> {
     ) -> Result<Self, SingularBlock> {
         let n = system.load.len();
         let zero = vec![[0.0; D]; n];
+        let state = State::at_rest(&zero, largest_step);
         Ok(Self {
             mass: mass_factor(system)?,
             damping_and_stiffness: MatrixPair::new(&system.damping, &system.stiffness),
             held: held_list(system),
             largest_step,
-            tolerance,
-            hole_radius,
+            adaptive: tolerance.map(|tolerance| Adaptive {
+                tolerance,
+                hole_radius,
+                coarse: state.clone(),
+                fine: state,
+            }),
             rates: std::array::from_fn(|_| (zero.clone(), zero.clone())),
             stage: (zero.clone(), zero.clone()),
             external: zero.clone(),
@@ -70,9 +86,10 @@ impl<const D: usize> Rk4<D> {
         time: f64,
         interval: f64,
         state: &mut State<D>,
-        Books { ledger, errors }: Books<'_, D>,
+        books: Books<'_, D>,
     ) -> Result<(), StepCollapsed> {
-        let Some(tolerance) = self.tolerance else {
+        let Some(mut adaptive) = self.adaptive.take() else {
+            let Books { ledger, errors } = books;
             let count = steps_per_interval(interval, self.largest_step);
             let h = interval / count as f64;
             for i in 0..count {
@@ -81,18 +98,32 @@ impl<const D: usize> Rk4<D> {
             }
             return Ok(());
         };
+        let outcome = self.advance_adaptively(forces, time, interval, state, books, &mut adaptive);
+        self.adaptive = Some(adaptive);
+        outcome
+    }
+
+    fn advance_adaptively(
+        &mut self,
+        forces: &Forces<D>,
+        time: f64,
+        interval: f64,
+        state: &mut State<D>,
+        Books { ledger, errors }: Books<'_, D>,
+        Adaptive { tolerance, hole_radius, coarse, fine }: &mut Adaptive<D>,
+    ) -> Result<(), StepCollapsed> {
         let mut elapsed = 0.0;
         while elapsed < interval * (1.0 - 1e-12) {
             let remaining = interval - elapsed;
             let wanted = state.adaptive_step.min(self.largest_step);
             let h = remaining / (2.0 * (remaining / (2.0 * wanted)).ceil().max(1.0));
             let start = time + elapsed;
-            let mut coarse = state.clone();
-            self.step(forces, start, 2.0 * h, &mut coarse, None);
-            let mut fine = state.clone();
+            coarse.copy_from(state);
+            self.step(forces, start, 2.0 * h, coarse, None);
+            fine.copy_from(state);
             let mark = ledger.mark();
             for half in 0..2 {
-                self.step(forces, start + f64::from(half) * h, h, &mut fine, Some(ledger));
+                self.step(forces, start + f64::from(half) * h, h, fine, Some(ledger));
             }
             // Two steps of h err by 1/15 of their distance from one step of 2h.
             let error = fine
@@ -100,19 +131,19 @@ impl<const D: usize> Rk4<D> {
                 .iter()
                 .zip(&coarse.displacement)
                 .fold(0.0_f64, |m, (a, b)| m.max((a[0] - b[0]).abs()).max((a[1] - b[1]).abs()))
-                / (15.0 * self.hole_radius);
-            if error <= tolerance {
+                / (15.0 * *hole_radius);
+            if error <= *tolerance {
                 errors.add(fine.displacement.len(), |n, d| {
                     (fine.displacement[n][d] - coarse.displacement[n][d]) / 15.0
                 });
-                *state = fine;
+                std::mem::swap(state, fine);
                 elapsed += 2.0 * h;
-                let factor = 0.9 * (tolerance / error.max(1e-300)).powf(0.2);
+                let factor = 0.9 * (*tolerance / error.max(1e-300)).powf(0.2);
                 state.adaptive_step = (h * factor.clamp(0.3, 2.0)).min(self.largest_step);
             } else {
                 ledger.roll_back(mark);
                 self.rejected += 1;
-                let factor = 0.9 * (tolerance / error).powf(0.2);
+                let factor = 0.9 * (*tolerance / error).powf(0.2);
                 state.adaptive_step = h * if factor.is_finite() { factor.clamp(0.1, 0.8) } else { 0.1 };
                 if state.adaptive_step < SMALLEST_STEP_RATIO * self.largest_step {
                     return Err(StepCollapsed);

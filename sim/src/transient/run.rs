@@ -107,6 +107,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let ledger = Ledger::new(model, &system, initial);
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
+        let ledger_every = (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64;
         let steps_per_sample = steps_per_interval(interval, stepping.step) * u64::from(subdivisions);
         let step = interval / steps_per_sample as f64;
         let hole_radius = 0.5 * scenario.well.hole_diameter;
@@ -145,7 +146,7 @@ impl<'m, const D: usize> Run<'m, D> {
                     .map(|node| NodeHistory::with_capacity(node, samples as usize))
                     .collect(),
                 contacts: vec![ContactStatistics::default(); model.node_count()],
-                energy: Vec::new(),
+                energy: Vec::with_capacity(ledger_rows(samples, ledger_every)),
             },
             model,
             system,
@@ -157,7 +158,7 @@ impl<'m, const D: usize> Run<'m, D> {
             samples,
             interval,
             steps_per_sample,
-            ledger_every: (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64,
+            ledger_every,
             subdivisions,
             fastest: 0,
         };
@@ -168,6 +169,11 @@ impl<'m, const D: usize> Run<'m, D> {
     pub(super) fn go_on_from(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
         self.progress = checkpoint.progress_for(&self.model.scenario, self.model.node_count())?;
         self.ledger.set_work(self.progress.work);
+        let progress = &mut self.progress;
+        for history in &mut progress.histories {
+            history.reserve((self.samples - progress.sample) as usize);
+        }
+        progress.energy.reserve(ledger_rows(self.samples - progress.sample, self.ledger_every));
         Ok(())
     }
 
@@ -348,7 +354,17 @@ impl<'m, const D: usize> Run<'m, D> {
 }
 
 impl<const D: usize> State<D> {
-    fn at_rest(displacement: &NodalVector<D>, adaptive_step: f64) -> Self {
+    /// Takes over another state of the same string.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self { displacement, velocity, acceleration, stage_power, adaptive_step } = self;
+        displacement.copy_from_slice(&other.displacement);
+        velocity.copy_from_slice(&other.velocity);
+        acceleration.copy_from_slice(&other.acceleration);
+        *stage_power = other.stage_power;
+        *adaptive_step = other.adaptive_step;
+    }
+
+    pub(super) fn at_rest(displacement: &NodalVector<D>, adaptive_step: f64) -> Self {
         let zero = vec![[0.0; D]; displacement.len()];
         Self {
             displacement: displacement.clone(),
@@ -358,6 +374,11 @@ impl<const D: usize> State<D> {
             adaptive_step,
         }
     }
+}
+
+/// Rows of the ledger over so many samples, the one at the end included.
+fn ledger_rows(samples: u64, every: u64) -> usize {
+    (samples / every) as usize + 2
 }
 
 /// Equal steps, none longer than `step`, that fill `interval` \[s\].

@@ -1,0 +1,78 @@
+//! The time loop lives in the memory that it was given at its start.
+
+use allocation_counter::measure;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
+use drillsweep_sim::scenario::{Accuracy, Integrator, TimeStepping, preset};
+use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::transient::{Outcome, Transient};
+
+#[test]
+fn steps_allocate_nothing() {
+    let adaptive = TimeStepping { tolerance: Some(1e-6), ..TimeStepping::fixed(Integrator::Rk4, 6e-5) };
+    for stepping in [
+        TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4),
+        TimeStepping::fixed(Integrator::Esdirk4, 1e-3),
+        TimeStepping::fixed(Integrator::Rk4, 5e-5),
+        adaptive,
+    ] {
+        // Rows of the ledger and samples of three nodes included.
+        let [shorter, longer] = [0.2, 0.4].map(|duration| {
+            let mut scenario = preset("paper-200m").expect("it ships with the crate");
+            scenario.duration = duration;
+            scenario.accuracy = Accuracy::Explicit(stepping);
+            scenario.recording.spectrum_windows.clear();
+            scenario.recording.orbit_window = None;
+            let model = Model::new(&scenario).expect("the preset has a model");
+            let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
+            let run = Transient::new(&model, &equilibrium).expect("the preset can be run");
+            let mut steps = 0;
+            let allocated = measure(|| {
+                let Ok(Outcome::Finished(records)) = run.run(&Control::new()) else {
+                    panic!("nothing stops it")
+                };
+                steps = records.effort.steps;
+            });
+            (steps, allocated.count_total)
+        });
+        assert!(longer.0 > shorter.0 + 100, "{stepping:?}");
+        assert_eq!(longer.1, shorter.1, "allocations of {} and {} steps: {stepping:?}", longer.0, shorter.0);
+    }
+}
+
+#[test]
+fn memory_grows_with_the_string_and_not_with_the_steps() {
+    let peak = |lengths: f64, duration: f64| {
+        let mut scenario = preset("paper-200m").expect("it ships with the crate");
+        scenario.duration = duration;
+        scenario.recording.nodes.truncate(1);
+        scenario.recording.spectrum_windows.clear();
+        scenario.recording.orbit_window = None;
+        let mesh = &mut scenario.mesh;
+        for length in
+            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
+        {
+            *length *= lengths;
+        }
+        let mut nodes = 0;
+        let bytes = measure(|| {
+            let model = Model::new(&scenario).expect("the preset has a model");
+            nodes = model.node_count();
+            let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
+            let run = Transient::new(&model, &equilibrium).expect("the preset can be run");
+            run.run(&Control::new()).expect("nothing stops it");
+        })
+        .bytes_max;
+        (nodes as f64, bytes as f64)
+    };
+    // What a run of the base case needs at most, with its model: 40 KB a node.
+    let (nodes, bytes) = peak(1.0, 0.05);
+    assert!(bytes < 40e3 * nodes, "{} B a node", bytes / nodes);
+    let (more_nodes, more_bytes) = peak(0.25, 0.05);
+    let growth = (more_bytes - bytes) / (more_nodes - nodes);
+    assert!(growth < 40e3, "{growth} B for each further node");
+    // Beyond that only what is recorded: eight series of doubles at 1 kHz, and the ledger's rows at 10 Hz.
+    let (_, longer) = peak(1.0, 1.05);
+    let recorded = 8.0 * 8.0 * 1000.0 + 12.0 * 8.0 * 10.0;
+    assert!(longer - bytes < 1.01 * recorded, "{} B for a second", longer - bytes);
+}

@@ -256,6 +256,11 @@ fn outputs_decide_which_tables_are_kept_and_change_no_number() {
         problem(&format!("{orbits}/orbit?node=10"))["type"],
         "urn:drillsweep:problem:node-not-recorded"
     );
+
+    // The whole result serves for any part of it.
+    let another = run(&json!({"orbits": {"decimation": 2}}));
+    let at_once = get(&format!("{server}/v1/sweeps/{another}"));
+    assert_eq!(at_once["counts"]["succeeded"], 1, "{at_once}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::scenario::{PRESETS, Problem, Problems, Scenario, ScenarioRequest, Warning};
+use drillsweep_sim::scenario::{Outputs, PRESETS, Problem, Problems, Scenario, ScenarioRequest, Warning};
 use drillsweep_sim::transient::step_problem;
 use indexmap::{IndexMap, IndexSet};
 use serde_json::{Map, Value, json};
@@ -39,6 +39,8 @@ pub struct SweepPoint {
     pub values: Vec<f64>,
     /// Content hash of physics version and scenario: equal keys, equal results.
     pub key: PointKey,
+    /// The key of the same point with everything kept, where this one keeps less: its result will do.
+    pub fuller_key: Option<PointKey>,
 }
 
 /// The content hash of a point.
@@ -452,7 +454,14 @@ fn points(request: &SweepRequest, layout: &Layout<'_>, base: Scenario, problems:
                 continue;
             }
         }
-        points.push(SweepPoint { ordinal, values, key: key(&scenario) });
+        let key_of_point = key(&scenario);
+        let fuller_key = (base.recording.outputs != Outputs::Full).then(|| {
+            let outputs = std::mem::take(&mut scenario.recording.outputs);
+            let fuller = key(&scenario);
+            scenario.recording.outputs = outputs;
+            fuller
+        });
+        points.push(SweepPoint { ordinal, values, key: key_of_point, fuller_key });
     }
     let expansion = Expansion { base, axes: layout.names.clone(), points, warnings: warnings.into_vec() };
     // The stability limit of an explicit step takes an equilibrium to find: the extreme points stand for all.
@@ -710,6 +719,9 @@ mod tests {
         let whole = key_of(json!({"preset": "paper-200m"}));
         assert_eq!(key_of(of(json!("full"))), whole);
         assert_ne!(key_of(of(json!("summary"))), whole);
+        let fuller = |body| expand(&request(body)).unwrap().points[0].fuller_key;
+        assert_eq!(fuller(of(json!("summary"))), Some(whole));
+        assert_eq!(fuller(of(json!("full"))), None);
         let by_path = json!({"preset": "paper-200m", "set": {"recording.outputs": "summary"}});
         assert_eq!(key_of(of(json!("summary"))), key_of(by_path));
         let found = problems(of(json!({"orbits": {"nodes": [{"node": 49}, {"node": 48}], "decimation": 0}})));

@@ -48,6 +48,7 @@ pub(crate) fn new_points(expansion: &Expansion) -> Result<Vec<NewPoint>> {
             ordinal: point.ordinal.into(),
             parameters_json: write(&expansion.parameters(point))?,
             work_key: point.key,
+            fuller_key: point.fuller_key,
             changes_json: write(&expansion.changes(point))?,
         })
     };

@@ -181,7 +181,7 @@ fn not_computed(missing: &[i64], total: usize) -> Error {
 }
 
 async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
-    let keys: Vec<_> = expansion.points.iter().map(|point| point.key).collect();
+    let keys: Vec<_> = expansion.points.iter().map(|point| (point.key, point.fuller_key)).collect();
     let known = match cache {
         CachePolicy::Refresh => 0,
         CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await?,

@@ -34,6 +34,7 @@ fn sweep(number: i64) -> NewSweep {
         parameters_json: format!(r#"{{"flow_rate":0.03,"mud_density":{ordinal}}}"#),
         changes_json: format!(r#"{{"mud.flow_rate":0.03,"mud.density":{ordinal}}}"#),
         work_key: *blake3::hash(format!("{number} {ordinal}").as_bytes()).as_bytes(),
+        fuller_key: None,
     };
     NewSweep {
         id: number.to_string(),

@@ -1,12 +1,13 @@
 //! Submitting a sweep.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 
-use sqlx::{QueryBuilder, Sqlite, Transaction};
+use sqlx::{QueryBuilder, Sqlite, SqliteExecutor, Transaction};
 
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
-use crate::state::WorkKey;
+use crate::state::{WorkKey, work_key};
 
 /// Distance of one point from the next in its owner's order.
 pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
@@ -50,6 +51,8 @@ pub struct NewPoint {
     pub parameters_json: String,
     /// Content hash.
     pub work_key: WorkKey,
+    /// That of work whose result has all that this point asks for, and more: where it is there it is taken, and nothing computed.
+    pub fuller_key: Option<WorkKey>,
     /// What it changes in the base scenario, as a JSON object by path.
     pub changes_json: String,
 }
@@ -115,8 +118,12 @@ impl Store {
         if let Some(known) = known_sweep(&mut tx, sweep).await? {
             return Ok(SubmitOutcome::Known(known));
         }
+        let points = match sweep.cache {
+            CachePolicy::Reuse | CachePolicy::Only => with_fuller(&mut tx, &sweep.points).await?,
+            CachePolicy::Refresh => Cow::from(&sweep.points),
+        };
         if sweep.cache == CachePolicy::Only {
-            let missing = not_computed(&mut tx, &sweep.points).await?;
+            let missing = not_computed(&mut tx, &points).await?;
             if !missing.is_empty() {
                 return Ok(SubmitOutcome::NotComputed(missing));
             }
@@ -136,7 +143,7 @@ impl Store {
             cache: sweep.cache,
             is_paused: false,
         };
-        insert(&mut tx, &wanted, &sweep.points, now).await?;
+        insert(&mut tx, &wanted, &points, now).await?;
         count_points(&mut tx, &sweep.id, 0, now).await?;
         tx.commit().await?;
         Ok(SubmitOutcome::Created)
@@ -180,7 +187,8 @@ impl Store {
         if let Some(other) = version.filter(|version| *version != physics_version) {
             return Ok(AppendOutcome::OtherNumbers(other));
         }
-        let has = points_of(&mut tx, sweep_id, points).await?;
+        let points = with_fuller(&mut tx, points).await?;
+        let has = points_of(&mut tx, sweep_id, &points).await?;
         let mut seen: HashSet<&[u8]> = has.iter().map(Vec::as_slice).collect();
         let fresh: Vec<NewPoint> = points
             .iter()
@@ -244,16 +252,24 @@ impl Store {
         Ok(requests)
     }
 
-    /// How many of the given keys have a result already.
+    /// How many points have a result already, of their own or by fuller work: their keys with that of the latter.
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn known_results(&self, keys: &[WorkKey]) -> Result<u64> {
+    pub async fn known_results(&self, keys: &[(WorkKey, Option<WorkKey>)]) -> Result<u64> {
         let mut known = 0;
         for keys in keys.chunks(ROWS_AT_ONCE) {
+            let fuller: Vec<WorkKey> = keys.iter().filter_map(|(_, fuller)| *fuller).collect();
+            let fuller = fuller_results(&self.pool, &fuller).await?;
+            let own: Vec<&WorkKey> = keys
+                .iter()
+                .filter(|(_, key)| key.is_none_or(|key| !fuller.contains(&key)))
+                .map(|(key, _)| key)
+                .collect();
+            known += (keys.len() - own.len()) as u64;
             let mut query = QueryBuilder::new("SELECT count(*) FROM result WHERE work_key IN (");
             let mut list = query.separated(", ");
-            for key in keys {
+            for key in own {
                 list.push_bind(key.as_slice());
             }
             query.push(")");
@@ -309,6 +325,43 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
         .await?;
     }
     Ok(())
+}
+
+/// The points, those for which fuller work has a result as points of that work.
+async fn with_fuller<'p>(
+    tx: &mut Transaction<'static, Sqlite>,
+    points: &'p [NewPoint],
+) -> Result<Cow<'p, [NewPoint]>> {
+    let mut all = Cow::from(points);
+    for (start, chunk) in (0..).step_by(ROWS_AT_ONCE).zip(points.chunks(ROWS_AT_ONCE)) {
+        let fuller: Vec<WorkKey> = chunk.iter().filter_map(|point| point.fuller_key).collect();
+        let found = fuller_results(&mut **tx, &fuller).await?;
+        for (index, point) in (start..).zip(chunk) {
+            if let Some(key) = point.fuller_key.filter(|key| found.contains(key)) {
+                all.to_mut()[index].work_key = key;
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Which of the keys belong to work that has a result with all its tables, and is not computed anew just now.
+async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
+    if keys.is_empty() {
+        return Ok(HashSet::new());
+    }
+    let mut query = QueryBuilder::new(
+        "SELECT key FROM work
+         WHERE state = 'done'
+           AND NOT EXISTS (SELECT 1 FROM artifact WHERE work_key = work.key AND expired IS NOT NULL) AND key IN (",
+    );
+    let mut list = query.separated(", ");
+    for key in keys {
+        list.push_bind(key.as_slice());
+    }
+    query.push(")");
+    let found: Vec<Vec<u8>> = query.build_query_scalar().fetch_all(executor).await?;
+    found.iter().map(|key| work_key(key)).collect()
 }
 
 /// Which of the points have neither a result nor failed, by ordinal.

@@ -176,6 +176,7 @@ async fn killed_workers_lose_and_double_nothing() {
         ordinal,
         parameters_json: "{}".to_owned(),
         work_key: key(ordinal),
+        fuller_key: None,
         changes_json: ordinal.to_string(),
     });
     let sweep = NewSweep {

@@ -78,6 +78,7 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         ordinal: index as i64 + 1,
         parameters_json: format!(r#"{{"flow_rate":{number}}}"#),
         work_key: key(number),
+        fuller_key: None,
         changes_json: scenario(id, number).changes_json,
     };
     NewSweep {

@@ -118,5 +118,5 @@ pub(crate) async fn a_result_that_comes_in_spite_of_a_cancellation_is_kept<E: En
     assert!(store.cancel_sweep("s").await.unwrap());
     assert!(finish(&store, &running).await);
     assert_eq!(states(&store, "s").await, [WorkState::Done]);
-    assert_eq!(store.known_results(&[key(1)]).await.unwrap(), 1);
+    assert_eq!(store.known_results(&[(key(1), None)]).await.unwrap(), 1);
 }

@@ -101,6 +101,7 @@ macro_rules! conformance {
                 a_result_is_read_back_with_its_artifacts_and_fills_the_table,
                 the_same_point_is_computed_once_for_every_sweep_that_has_it,
                 a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once,
+                a_point_whose_result_is_part_of_a_fuller_one_is_not_computed,
                 a_physical_failure_is_final_until_a_retry_is_asked_for,
                 the_same_idempotency_key_gives_the_sweep_that_it_made,
                 pages_hold_every_row_once_and_in_order,

@@ -2,10 +2,14 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use drillsweep_store::{FailureClass, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState};
+use drillsweep_store::{
+    AppendOutcome, CachePolicy, FailureClass, NewSweep, StateCounts, StoreError, SubmitOutcome, SweepFilter,
+    WorkState,
+};
 
 use crate::bench::{
-    Engine, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep, sweep_record,
+    Engine, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
+    sweep_record,
 };
 
 pub(crate) async fn a_sweep_is_read_back_as_it_was_submitted<E: Engine>() {
@@ -85,7 +89,44 @@ pub(crate) async fn the_same_point_is_computed_once_for_every_sweep_that_has_it<
     assert_eq!(record.finished, Some(record.created));
     assert_eq!(record.progress, 2.0);
     assert_eq!(claim_or_none(&store, "w").await, None);
-    assert_eq!(store.known_results(&[key(1), key(9), key(3)]).await.unwrap(), 2);
+    assert_eq!(store.known_results(&[1, 9, 3].map(|number| (key(number), None))).await.unwrap(), 2);
+}
+
+pub(crate) async fn a_point_whose_result_is_part_of_a_fuller_one_is_not_computed<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    let partly = |id: &str| {
+        let mut sweep = sweep(id, [11, 12, 13]);
+        for (point, number) in sweep.points.iter_mut().zip([1, 2, 3]) {
+            point.fuller_key = Some(key(number));
+        }
+        sweep
+    };
+    let keys = [1, 2, 3].map(|number| (key(10 + number), Some(key(number))));
+    assert_eq!(store.known_results(&keys).await.unwrap(), 0);
+    submit(&store, &sweep("full", [1, 2])).await;
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    // One has a result, one is under way, one was never asked for.
+    let under_way = claim(&store, "w").await;
+    assert_eq!(store.known_results(&keys).await.unwrap(), 1);
+    submit(&store, &partly("part")).await;
+    let counts = sweep_record(&store, "part").await.counts;
+    assert_eq!((counts.done, counts.queued), (1, 2));
+    assert_eq!(point_record(&store, "part", 1).await.work_key, key(1));
+    for number in [12, 13] {
+        let claimed = claim(&store, "w").await;
+        assert_eq!(claimed.lease.key, key(number));
+        assert!(finish(&store, &claimed).await);
+    }
+    assert!(finish(&store, &under_way).await);
+
+    // What a sweep has by a fuller result it is not given again.
+    let points = partly("more").points;
+    let added = store.append_points("part", "{}", PHYSICS, &points[..1], "{}", 10).await.unwrap();
+    assert_eq!(added, AppendOutcome::Added(0));
+    // Asked to compute anew, a point is computed as it was asked for.
+    submit(&store, &NewSweep { cache: CachePolicy::Refresh, ..partly("anew") }).await;
+    assert_eq!(claim(&store, "w").await.lease.key, key(11));
 }
 
 pub(crate) async fn a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once<E: Engine>() {

@@ -4,6 +4,7 @@ use std::ops::{Index, IndexMut};
 
 use super::column::Column;
 use super::lane::{Lane, Mask};
+use super::skew::WeightedPair;
 
 /// Degrees of freedom of a node, and rows of a block where nothing else is said.
 pub const DOFS: usize = 6;
@@ -55,7 +56,7 @@ impl<const D: usize> Block<f64, D> {
     #[inline(always)]
     pub fn add_products<const K: usize>(
         &mut self,
-        vectors: &[(f64, &[[f64; D]], &[[f64; D]]); K],
+        vectors: &[WeightedPair<'_, D>; K],
         left: usize,
         right: usize,
     ) {

@@ -38,7 +38,6 @@ macro_rules! conformance {
                 what_people_decide_about_a_sweep_can_be_changed,
                 points_are_added_once_and_go_on_from_the_last,
                 requests_are_kept_in_their_order_and_as_many_are_told_as_asked_for,
-                a_point_is_added_as_fast_to_a_large_sweep_as_to_a_small_one,
                 what_is_added_to_a_paused_sweep_waits_with_the_rest,
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
                 a_refresh_that_disagrees_is_told,

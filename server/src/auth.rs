@@ -17,7 +17,7 @@ use crate::app::App;
 use crate::error::{Error, Result};
 
 /// What everybody may ask for: health checks have no tokens, and the document is what a client begins with.
-const OPEN: [&str; 3] = ["/livez", "/readyz", "/openapi.json"];
+const OPEN: [&str; 5] = ["/livez", "/readyz", "/openapi.json", "/docs", "/docs/{name}"];
 
 /// Who asks.
 #[derive(Debug, Clone)]

@@ -8,6 +8,7 @@ mod artifact;
 mod auth;
 mod convert;
 mod cost;
+mod docs;
 mod error;
 mod events;
 mod export;

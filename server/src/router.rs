@@ -2,6 +2,7 @@
 
 use axum::Router;
 use axum::http::{Method, Uri};
+use axum::routing::get;
 use drillsweep_api::ProblemKind;
 use drillsweep_store::Store;
 use tokio::sync::watch;
@@ -11,7 +12,8 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 use crate::app::{App, Config};
 use crate::error::Error;
 use crate::{
-    cost, events, export, files, health, middleware, openapi, points, results, scenarios, status, sweeps,
+    cost, docs, events, export, files, health, middleware, openapi, points, results, scenarios, status,
+    sweeps,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -28,7 +30,7 @@ pub(crate) fn routes(app: &App) -> Router {
     middleware::wrap(routes, app)
 }
 
-/// Routes and their OpenAPI document; a route cannot exist without its entry there.
+/// Routes and their OpenAPI document; none for programs can exist without its entry there.
 pub(crate) fn documented() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::Document::openapi())
         .routes(routes!(sweeps::create, sweeps::list))
@@ -60,6 +62,9 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(status::queue))
         .routes(routes!(status::limits))
         .routes(routes!(openapi::show))
+        // For people: no part of what programs talk to.
+        .route("/docs", get(docs::start))
+        .route("/docs/{name}", get(docs::file))
         .routes(routes!(health::alive))
         .routes(routes!(health::ready))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use drillsweep_api::ProblemKind;
 use drillsweep_server::openapi_json;
+use drillsweep_store::{NewToken, TokenScope, TokenSecret};
 use serde_json::Value;
 
 use crate::bench::Bench;
@@ -118,4 +119,34 @@ fn problem_kinds_have_error_statuses() {
     for kind in ProblemKind::ALL {
         assert!((400..600).contains(&kind.status()), "{kind:?}");
     }
+}
+
+#[tokio::test]
+async fn people_read_the_document_as_pages_without_a_token() {
+    let bench = Bench::new().await;
+    let secret = TokenSecret::generate().unwrap();
+    let token =
+        NewToken { secret: &secret, owner: "anne", name: None, scope: TokenScope::Read, lifetime_ms: None };
+    bench.store.create_token(&token).await.unwrap();
+    assert_eq!(bench.get("/v1/sweeps").await.status, 401);
+    let start = bench.get("/docs").await;
+    assert_eq!(
+        (start.status.as_u16(), start.headers["location"].to_str().unwrap()),
+        (308, "/docs/index.html")
+    );
+    let index = bench.get("/docs/index.html").await;
+    assert_eq!(index.headers["content-type"], "text/html");
+    // All that the page loads is beside it.
+    let text = index.text().to_owned();
+    let files: Vec<&str> = text
+        .split('"')
+        .filter(|part| part.ends_with(".js") || part.ends_with(".css") || part.ends_with(".png"))
+        .map(|part| part.trim_start_matches("./"))
+        .collect();
+    assert!(files.len() >= 3 && files.iter().all(|file| !file.contains('/')), "{files:?}");
+    for file in files {
+        assert_eq!(bench.get(&format!("/docs/{file}")).await.status, 200, "{file}");
+    }
+    assert!(bench.get("/docs/swagger-initializer.js").await.text().contains("/openapi.json"));
+    bench.get("/docs/nothing.js").await.problem(404, "no-such-route");
 }

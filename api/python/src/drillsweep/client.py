@@ -125,9 +125,7 @@ class Client:
         **fields: Any,
     ) -> Sweep:
         """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
-        body = _request(
-            preset, scenario, set, None, name, owner, priority, tags, fields | {"outputs": outputs}
-        )
+        body = _request(preset, scenario, set, None, name, owner, priority, tags, fields | {"outputs": outputs})
         return Sweep(self, self._submit("/v1/runs", body, idempotency_key, cache))
 
     def plan(

@@ -50,7 +50,9 @@ def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> 
 def test_outputs_say_what_is_kept(client: Client) -> None:
     density = {**SHORT, "mud.density": 1350}
     run = client.run("paper-200m", set=density, outputs="summary").wait(timeout=120.0)
-    assert run.point(1).summary["contact_count"] > 0
+    summary = run.point(1).summary
+    assert summary is not None
+    assert summary["contact_count"] > 0
     with pytest.raises(Problem, match="keep the summary only"):
         run.point(1).profile()
 

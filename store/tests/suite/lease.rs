@@ -7,6 +7,18 @@ use crate::bench::{
     sweep_record,
 };
 
+fn worker(id: &str) -> WorkerRecord {
+    WorkerRecord {
+        id: id.to_owned(),
+        host: "rig".to_owned(),
+        process: 42,
+        version: "0.1.0".to_owned(),
+        physics_version: PHYSICS,
+        started: 0,
+        last_seen: 0,
+    }
+}
+
 pub(crate) async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
@@ -26,15 +38,7 @@ pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E:
     let engine = E::new();
     let store = engine.open().await;
     for (id, process) in [("dead", 7), ("alive", 8)] {
-        let worker = WorkerRecord {
-            id: id.to_owned(),
-            host: "here".to_owned(),
-            process,
-            version: "1".to_owned(),
-            physics_version: PHYSICS,
-            started: 0,
-            last_seen: 0,
-        };
+        let worker = WorkerRecord { process, ..worker(id) };
         store.register_worker(&worker).await.unwrap();
     }
     submit(&store, &sweep("s", [1, 2])).await;
@@ -43,7 +47,7 @@ pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E:
     // A process of the same number elsewhere is another one.
     assert_eq!(store.bury_worker("elsewhere", 7).await.unwrap(), 0);
     assert_eq!(claim_or_none(&store, "heir").await, None);
-    assert_eq!(store.bury_worker("here", 7).await.unwrap(), 1);
+    assert_eq!(store.bury_worker("rig", 7).await.unwrap(), 1);
 
     let heir = claim(&engine.after(1).await, "heir").await;
     assert_eq!((heir.lease.key, heir.lease.attempt), (lost.lease.key, 2));
@@ -279,15 +283,6 @@ pub(crate) async fn the_urgent_goes_first_then_the_order_asked<E: Engine>() {
 pub(crate) async fn workers_are_listed_while_they_are_heard_of<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
-    let worker = |id: &str| drillsweep_store::WorkerRecord {
-        id: id.to_owned(),
-        host: "rig".to_owned(),
-        process: 42,
-        version: "0.1.0".to_owned(),
-        physics_version: PHYSICS,
-        started: 0,
-        last_seen: 0,
-    };
     store.register_worker(&worker("a")).await.unwrap();
     let later = engine.after(90_000).await;
     later.register_worker(&worker("b")).await.unwrap();
@@ -339,15 +334,6 @@ pub(crate) async fn a_clock_that_is_set_back_holds_up_no_retry<E: Engine>() {
 
 pub(crate) async fn a_clock_that_is_set_back_makes_no_dead_worker_alive<E: Engine>() {
     let engine = E::new();
-    let worker = |id: &str| WorkerRecord {
-        id: id.to_owned(),
-        host: "rig".to_owned(),
-        process: 42,
-        version: "0.1.0".to_owned(),
-        physics_version: PHYSICS,
-        started: 0,
-        last_seen: 0,
-    };
     let before = engine.after(BACK_MS).await;
     for id in ["dead", "alive"] {
         before.register_worker(&worker(id)).await.unwrap();

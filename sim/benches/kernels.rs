@@ -5,7 +5,9 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
-use drillsweep_sim::linalg::{Block, BlockTridiagonal, BlockVector, Factor, MatrixPair};
+use drillsweep_sim::linalg::{
+    Block, BlockTridiagonal, BlockVector, Factor, MatrixPair, NodalField, SkewPart, Symmetric,
+};
 use drillsweep_sim::scenario::{ActiveEffects, Adhesion, ContactLaw};
 
 const ROWS: usize = 296;
@@ -38,11 +40,19 @@ fn multiply(bencher: Bencher) {
 
 #[divan::bench]
 fn multiply_two(bencher: Bencher) {
-    let pair = MatrixPair::new(&matrix(0.1), &matrix(0.4));
-    let (x, y, whole, mut out) = (vector(0.2), vector(0.3), vector(0.6), vector(0.5));
+    let pair = MatrixPair::<Symmetric>::new(&matrix(0.1), &matrix(0.4));
+    let [x, y, whole, mut out] = [0.2, 0.3, 0.6, 0.5].map(|seed| NodalField::from_nodes(&vector(seed)));
     bencher.bench_local(|| {
         pair.subtract_products(&whole, black_box(&x), black_box(&y), black_box(&mut out));
     });
+}
+
+/// Of five stages.
+#[divan::bench]
+fn skew_forms(bencher: Bencher) {
+    let skew = SkewPart::new(&matrix(0.1), 0.0);
+    let [v, x] = [0.2, 0.3].map(|seed| NodalField::from_nodes(&vector(seed)));
+    bencher.bench_local(|| skew.product(black_box([(1.0, &v, &x); 5])));
 }
 
 #[divan::bench]

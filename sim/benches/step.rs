@@ -7,20 +7,19 @@
 use std::hint::black_box;
 
 use drillsweep_sim::control::Control;
-use drillsweep_sim::linalg::{Block, BlockTridiagonal, Factor, Four, Lane, MatrixPair};
+use drillsweep_sim::linalg::{
+    Block, BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric,
+};
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 
-/// Nodes of the 200 m case.
-const ROWS: usize = 297;
-
 /// Bytes of a block of one lane.
-const BLOCK: f64 = 36.0 * 8.0;
+const BLOCK: usize = 36 * 8;
 
-/// Blocks of a row that a stage reads: mass and damping once (3 each), the factor (3) in each of two contact sweeps.
-const BLOCKS_PER_STAGE: f64 = 3.0 + 3.0 + 2.0 * 3.0;
+/// What the velocity of a stage is per displacement \[1/s\]: that of ESDIRK4 with 1 ms.
+const VELOCITY_PER_DISPLACEMENT: f64 = 4e3;
 
 /// Repeats of a short run; the shortest counts.
 const REPEATS: usize = 9;
@@ -31,11 +30,14 @@ fn main() {
 }
 
 fn report(out: &mut impl std::io::Write) -> std::io::Result<()> {
+    let matrices = Matrices::of_the_base_case();
+    let (one, four) = (matrices.alone(), matrices.side_by_side());
+
     writeln!(out, "the machine, one core")?;
-    let working_set = (9.0 * BLOCK * ROWS as f64) as usize;
-    let bandwidth = [1, 4].map(|lanes| stream(lanes * working_set));
-    for (lanes, rate) in [1, 4].into_iter().zip(bandwidth) {
-        let kilobytes = lanes * working_set / 1024;
+    let bandwidth = [&one, &four].map(|kernels| stream(kernels.lanes * kernels.working_set));
+    for (kernels, rate) in [&one, &four].into_iter().zip(bandwidth) {
+        let kilobytes = kernels.lanes * kernels.working_set / 1024;
+        let lanes = kernels.lanes;
         writeln!(
             out,
             "  reads {:6.1} GB/s from {kilobytes} KB, the matrices of {lanes} lane(s)",
@@ -46,40 +48,22 @@ fn report(out: &mut impl std::io::Write) -> std::io::Result<()> {
     writeln!(out, "  fused multiply-adds {:.1} Gflop/s", peak / 1e9)?;
 
     writeln!(out, "\nkernels, us for each lane           1 lane  4 lanes")?;
-    let (one, four) = (kernels::<f64>(), kernels::<Four>());
-    for (name, (one, four)) in ["M a + C v", "solve", "factor"].into_iter().zip(one.into_iter().zip(four)) {
-        writeln!(out, "  {name:30} {:8.2} {:8.2}", one * 1e6, four * 1e6 / 4.0)?;
-    }
-    let stage = |kernels: [f64; 3]| kernels[0] + 2.0 * kernels[1];
-    let bytes = BLOCKS_PER_STAGE * BLOCK * ROWS as f64;
-    let flops = BLOCKS_PER_STAGE * 72.0 * ROWS as f64;
-    writeln!(
-        out,
-        "  {:30} {:8.2} {:8.2}",
-        "a stage: one and two of them",
-        stage(one) * 1e6,
-        stage(four) * 1e6 / 4.0
-    )?;
-    writeln!(
-        out,
-        "  {:30} {:8.2} {:8.2}",
-        "its limit by cache reads",
-        bytes / bandwidth[0] * 1e6,
-        bytes / bandwidth[1] * 1e6
-    )?;
-    writeln!(
-        out,
-        "  {:30} {:8.2} {:8.2}",
-        "its limit by arithmetic",
-        flops / peak * 1e6,
-        flops / peak * 1e6
-    )?;
+    let mut row = |name: &str, value: &dyn Fn(&Kernels, f64) -> f64| {
+        let values = [value(&one, bandwidth[0]), value(&four, bandwidth[1])];
+        writeln!(out, "  {name:30} {:8.2} {:8.2}", values[0] * 1e6, values[1] * 1e6)
+    };
+    row("M a + C v", &|kernels, _| kernels.products)?;
+    row("solve", &|kernels, _| kernels.solve)?;
+    row("factor", &|kernels, _| kernels.factor)?;
+    row("a stage: one and two of them", &|kernels, _| kernels.products + 2.0 * kernels.solve)?;
+    row("its limit by cache reads", &|kernels, rate| kernels.bytes_per_stage as f64 / rate)?;
+    row("its limit by arithmetic", &|kernels, _| kernels.flops_per_stage as f64 / peak)?;
 
     writeln!(
         out,
         "\nwhole steps, alone           us/step  CPU s/s  stages  us/stage  of the kernels' limit"
     )?;
-    let limit = bytes / bandwidth[0];
+    let limit = one.bytes_per_stage as f64 / bandwidth[0];
     let preset = |preset| Accuracy::Preset(preset);
     let methods = [
         ("draft: generalized-alpha", preset(AccuracyPreset::Draft), 1.0, 0.5),
@@ -157,48 +141,132 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     timed
 }
 
-/// Shortest time \[s\] of `M a + C v`, a solve and a factorisation, all lanes together.
-fn kernels<L: Lane>() -> [f64; 3] {
-    let matrix = |seed: f64| {
-        let block = |row: usize, shift: f64| {
-            Block::from_fn(|i, j| {
-                let entry = (seed + (row * 36 + i * 6 + j) as f64).sin();
-                L::splat(if i == j { entry + shift } else { entry })
-            })
-        };
-        BlockTridiagonal::<L> {
-            lower: (0..ROWS).map(|row| block(row, 0.0)).collect(),
-            diagonal: (0..ROWS).map(|row| block(row + ROWS, 30.0)).collect(),
-            upper: (0..ROWS).map(|row| block(row + 2 * ROWS, 0.0)).collect(),
-        }
-    };
-    let vector = |seed: f64| -> Vec<[L; 6]> {
-        (0..ROWS).map(|row| std::array::from_fn(|i| L::splat((seed + (6 * row + i) as f64).cos()))).collect()
-    };
-    let (a, b, x, y, whole) = (matrix(0.1), matrix(0.4), vector(0.2), vector(0.3), vector(0.6));
-    let (pair, factor) = (MatrixPair::new(&a, &b), Factor::new(&a).expect("diagonally dominant"));
-    let (mut product, mut solution) = (vector(0.5), x.clone());
-    // In turn, as in a stage: the three matrices compete for the cache.
-    let mut shortest = [f64::INFINITY; 3];
-    for _ in 0..400 {
-        let times = [
-            timed(|| pair.subtract_products(&whole, black_box(&x), black_box(&y), &mut product)),
-            timed(|| factor.solve_in_place(black_box(&mut solution))),
-        ];
-        for (shortest, time) in shortest.iter_mut().zip(times) {
-            *shortest = shortest.min(time);
-        }
-        solution.copy_from_slice(&x);
-    }
-    for _ in 0..20 {
-        shortest[2] = shortest[2].min(timed(|| {
-            black_box(Factor::new(black_box(&a)).is_ok());
-        }));
-    }
-    shortest
+/// What the matrices' part of a stage takes for each of some lanes: `M a + C v` once, a solve in each of two contact sweeps.
+struct Kernels {
+    lanes: usize,
+    /// Shortest times \[s\].
+    products: f64,
+    solve: f64,
+    factor: f64,
+    /// Bytes of the matrices of a lane.
+    working_set: usize,
+    bytes_per_stage: usize,
+    flops_per_stage: usize,
 }
 
-/// Processor time of this thread \[s\]: others on the machine do not count.
+/// Those of the base case and its stages.
+struct Matrices {
+    mass: BlockTridiagonal<f64>,
+    damping: BlockTridiagonal<f64>,
+    stage: BlockTridiagonal<f64>,
+    load: Vec<[f64; 6]>,
+}
+
+impl Matrices {
+    fn of_the_base_case() -> Self {
+        let scenario = preset("paper-200m").expect("it ships with the program");
+        let model = Model::new(&scenario).expect("the preset has a model");
+        let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
+        let system = model.dynamic_system(&equilibrium);
+        let c = VELOCITY_PER_DISPLACEMENT;
+        let mut stage =
+            BlockTridiagonal::combine(c * c, &system.mass, c, &system.damping, 1.0, &system.stiffness);
+        for (block, held) in stage.diagonal.iter_mut().zip(&system.held) {
+            for dof in (0..6).filter(|&dof| held[dof]) {
+                block[(dof, dof)] = 1.0;
+            }
+        }
+        Self { stage, mass: system.mass, damping: system.damping, load: system.load }
+    }
+
+    fn rows(&self) -> usize {
+        self.mass.rows()
+    }
+
+    /// As a run does it.
+    fn alone(&self) -> Kernels {
+        let pair = MatrixPair::<Symmetric>::new(&self.mass, &self.damping);
+        let load = NodalField::from_nodes(&self.load);
+        let (x, y, mut product) = (load.clone(), load.clone(), load.clone());
+        let factor_size = 3 * BLOCK * self.rows();
+        // The mass' half that is kept is multiplied twice, but for its blocks on the diagonal.
+        let flops = 2 * (pair.size() / 8) + 2 * BLOCK / 8 * self.rows() + 2 * 2 * factor_size / 8;
+        let [products, solve, factor] = self.times::<f64>(|| {
+            pair.subtract_products(&load, black_box(&x), black_box(&y), &mut product);
+        });
+        Kernels {
+            lanes: 1,
+            products,
+            solve,
+            factor,
+            working_set: pair.size() + factor_size,
+            bytes_per_stage: pair.size() + 2 * factor_size,
+            flops_per_stage: flops,
+        }
+    }
+
+    /// Four points in the lanes of a register, whose matrices have all their entries in common places.
+    fn side_by_side(&self) -> Kernels {
+        let (mass, damping) = (in_lanes::<Four>(&self.mass), in_lanes::<Four>(&self.damping));
+        let x = self.in_lanes();
+        let mut product = x.clone();
+        let matrix_size = 3 * BLOCK * self.rows();
+        let times = self.times::<Four>(|| {
+            mass.multiply_into(black_box(&x), &mut product);
+            damping.multiply_add(black_box(&x), &mut product);
+        });
+        let [products, solve, factor] = times.map(|time| time / 4.0);
+        Kernels {
+            lanes: 4,
+            products,
+            solve,
+            factor,
+            working_set: 3 * matrix_size,
+            bytes_per_stage: 4 * matrix_size,
+            flops_per_stage: 2 * 4 * matrix_size / 8,
+        }
+    }
+
+    /// Shortest times \[s\] of the products, a solve and a factorisation, all lanes together.
+    fn times<L: Lane>(&self, mut products: impl FnMut()) -> [f64; 3] {
+        let stage = in_lanes::<L>(&self.stage);
+        let factor = Factor::new(&stage).expect("it is what a run solves");
+        let load: Vec<[L; 6]> = self.in_lanes();
+        let mut solution = load.clone();
+        let mut shortest = [f64::INFINITY; 3];
+        // In turn, as in a stage: the matrices compete for the cache.
+        for _ in 0..400 {
+            let times = [timed(&mut products), timed(|| factor.solve_in_place(black_box(&mut solution)))];
+            for (shortest, time) in shortest.iter_mut().zip(times) {
+                *shortest = shortest.min(time);
+            }
+            solution.copy_from_slice(&load);
+        }
+        for _ in 0..20 {
+            shortest[2] = shortest[2].min(timed(|| {
+                black_box(Factor::new(black_box(&stage)).is_ok());
+            }));
+        }
+        shortest
+    }
+
+    fn in_lanes<L: Lane>(&self) -> Vec<[L; 6]> {
+        self.load.iter().map(|node| node.map(L::splat)).collect()
+    }
+}
+
+/// The same matrix in every lane.
+fn in_lanes<L: Lane>(matrix: &BlockTridiagonal<f64>) -> BlockTridiagonal<L> {
+    let blocks = |blocks: &[Block<f64>]| {
+        blocks.iter().map(|block| Block::from_fn(|i, j| L::splat(block[(i, j)]))).collect()
+    };
+    BlockTridiagonal {
+        lower: blocks(&matrix.lower),
+        diagonal: blocks(&matrix.diagonal),
+        upper: blocks(&matrix.upper),
+    }
+}
+
 fn processor_time() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9

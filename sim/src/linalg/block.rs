@@ -2,9 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use super::column::Column;
 use super::lane::{Lane, Mask};
-use super::skew::WeightedPair;
 
 /// Degrees of freedom of a node, and rows of a block where nothing else is said.
 pub const DOFS: usize = 6;
@@ -47,42 +45,6 @@ impl<L, const D: usize> IndexMut<(usize, usize)> for Block<L, D> {
     #[inline(always)]
     fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut L {
         &mut self.columns[column][row]
-    }
-}
-
-impl<const D: usize> Block<f64, D> {
-    /// `self = self + sum_k weight_k v_k[left] x_k[right]^T` over weights, v and x.
-    // Without closures over arrays: they are not inlined, and a call a node is a tenth of the work.
-    #[inline(always)]
-    pub fn add_products<const K: usize>(
-        &mut self,
-        vectors: &[WeightedPair<'_, D>; K],
-        left: usize,
-        right: usize,
-    ) {
-        let mut columns = [Column::zero(); D];
-        for (column, rows) in columns.iter_mut().zip(&self.columns) {
-            *column = Column::new(rows);
-        }
-        for (weight, v, x) in vectors {
-            let weighted = Column::new(&v[left]).times(*weight);
-            for (column, factor) in columns.iter_mut().zip(&x[right]) {
-                *column = weighted.mul_add(*factor, *column);
-            }
-        }
-        for (column, rows) in columns.iter().zip(&mut self.columns) {
-            *rows = column.to_rows();
-        }
-    }
-
-    /// Sum over all entries of the products with those of another block.
-    #[inline(always)]
-    pub fn dot(&self, other: &Self) -> f64 {
-        let mut sum = Column::zero();
-        for (a, b) in self.columns.iter().zip(&other.columns) {
-            sum = Column::new(a).product(Column::new(b)).plus(sum);
-        }
-        sum.sum()
     }
 }
 

@@ -10,10 +10,6 @@ pub(super) struct Column {
 }
 
 impl Column {
-    pub(super) fn zero() -> Self {
-        Column { head: f64x4::splat(0.0), tail: f64x2::splat(0.0) }
-    }
-
     #[inline(always)]
     pub(super) fn new<const D: usize>(rows: &[f64; D]) -> Self {
         let at = |row: usize| if row < D { rows[row] } else { 0.0 };
@@ -27,29 +23,6 @@ impl Column {
             head: self.head.mul_add(f64x4::splat(factor), addend.head),
             tail: self.tail.mul_add(f64x2::splat(factor), addend.tail),
         }
-    }
-
-    #[inline(always)]
-    pub(super) fn times(self, factor: f64) -> Self {
-        Column { head: self.head * f64x4::splat(factor), tail: self.tail * f64x2::splat(factor) }
-    }
-
-    /// Row by row.
-    #[inline(always)]
-    pub(super) fn product(self, other: Self) -> Self {
-        Column { head: self.head * other.head, tail: self.tail * other.tail }
-    }
-
-    #[inline(always)]
-    pub(super) fn plus(self, other: Self) -> Self {
-        Column { head: self.head + other.head, tail: self.tail + other.tail }
-    }
-
-    /// The sum of all rows, by pairs.
-    #[inline(always)]
-    pub(super) fn sum(self) -> f64 {
-        let ([a, b, c, d], [e, f]) = (self.head.to_array(), self.tail.to_array());
-        ((a + b) + (c + d)) + (e + f)
     }
 
     #[inline(always)]

@@ -1,12 +1,16 @@
-//! Block-tridiagonal kernels over a lane type.
+//! Block-tridiagonal kernels, and the nodal vectors of a time step.
 //!
 //! A string is a chain, so every matrix of it couples a node to its two neighbours only: a
-//! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`]. All kernels are written over a
-//! [`Lane`]: one `f64`, or several sweep points side by side, with the same operations in the same order.
+//! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`]. These are written
+//! over a [`Lane`]: one `f64`, or several matrices side by side, with the same operations in the same order.
+//!
+//! A time step holds four neighbouring nodes of one string side by side in a [`NodalField`], and multiplies by a [`MatrixPair`] or takes
+//! the form of a [`SkewPart`]. Only [`Factor::solve_in_place`], a recurrence along the string, goes node by node.
 
 mod block;
 mod column;
 mod factor;
+mod field;
 mod four;
 mod lane;
 mod pair;
@@ -18,9 +22,10 @@ mod tests;
 
 pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
+pub use field::{Neighbourhood, NodalField, after, by_node};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
-pub use pair::MatrixPair;
+pub use pair::{General, MatrixPair, Storage, Symmetric};
 pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::BlockTridiagonal;
 

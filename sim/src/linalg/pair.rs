@@ -1,63 +1,264 @@
-//! Two block-tridiagonal matrices that are always read together.
+//! Two matrices whose products with two vectors are wanted together.
 
-use super::block::{Block, DOFS, Sum};
+use std::marker::PhantomData;
+
+use super::block::{Block, DOFS};
+use super::field::{Neighbourhood, NodalField, after, before};
+use super::four::Four;
 use super::lane::Lane;
 use super::tridiagonal::BlockTridiagonal;
 
-/// Two matrices A and B of the same size, their rows interleaved: a pass over both is one stream through the cache.
+const LANES: usize = Four::LANES;
+
+/// The body for every degree of freedom in turn, written out: left to itself, the compiler keeps a loop and counts entries in it.
+macro_rules! each_dof {
+    ($count:expr, $dof:ident, $body:block) => {
+        each_dof!($count, $dof, $body, 0 1 2 3 4 5)
+    };
+    ($count:expr, $dof:ident, $body:block, $($value:literal)*) => {
+        $(
+            let $dof: usize = $value;
+            if $dof < $count $body
+        )*
+    };
+}
+
+/// Two block-tridiagonal matrices A and B of the same size, copied so that the entries of four neighbouring rows lie side by side
+/// and both pass through the processor in one stream: reading them is what a product costs. So of a [`Symmetric`] A only half is
+/// kept, and of both not what couples the twist with the displacements where that is zero everywhere.
 #[derive(Debug, Clone)]
-pub struct MatrixPair<L, const D: usize = DOFS> {
-    rows: Vec<[Row<L, D>; 2]>,
+pub struct MatrixPair<A, const D: usize = DOFS> {
+    rows: usize,
+    /// Of every four rows in turn, first those of A, then those of B.
+    entries: Vec<Four>,
+    /// Whether the last degree of freedom couples with all others, or with the two before it alone.
+    last_couples: bool,
+    kind: PhantomData<A>,
 }
 
-/// The blocks of a row; those of the first and last row that stand outside the matrix take no part.
-#[derive(Debug, Clone, Copy)]
-struct Row<L, const D: usize> {
-    lower: Block<L, D>,
-    diagonal: Block<L, D>,
-    upper: Block<L, D>,
+/// How a matrix is kept, four block rows at a time, and multiplied.
+pub trait Storage<const D: usize> {
+    /// What the rows before leave for these.
+    type Carried: Copy;
+
+    /// What is carried into the first rows.
+    const NOTHING: Self::Carried;
+
+    /// Number of entries of four block rows.
+    fn count(last_couples: bool) -> usize;
+
+    /// Adds those of the rows from `first` on, zeros beyond the last one.
+    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>);
+
+    /// Their product with x.
+    fn product<const LAST: bool>(
+        entries: &[Four],
+        x: Neighbourhood<'_, D>,
+        carried: &mut Self::Carried,
+    ) -> [Four; D];
 }
 
-impl<L: Lane, const D: usize> MatrixPair<L, D> {
+impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     /// Copies two matrices.
     ///
     /// # Panics
     /// When they differ in size.
-    pub fn new(a: &BlockTridiagonal<L, D>, b: &BlockTridiagonal<L, D>) -> Self {
+    pub fn new(a: &BlockTridiagonal<f64, D>, b: &BlockTridiagonal<f64, D>) -> Self {
         assert_eq!(a.rows(), b.rows());
-        let row = |m: &BlockTridiagonal<L, D>, row: usize| Row {
-            lower: m.lower[row],
-            diagonal: m.diagonal[row],
-            upper: m.upper[row],
-        };
-        Self { rows: (0..a.rows()).map(|i| [row(a, i), row(b, i)]).collect() }
+        let last_couples = [a, b].into_iter().any(last_couples);
+        let mut entries = Vec::new();
+        for first in (0..a.rows()).step_by(LANES) {
+            A::store(a, first, last_couples, &mut entries);
+            General::store(b, first, last_couples, &mut entries);
+        }
+        Self { rows: a.rows(), entries, last_couples, kind: PhantomData }
+    }
+
+    /// Bytes that a product reads of the matrices.
+    pub fn size(&self) -> usize {
+        size_of_val(&*self.entries)
     }
 
     /// `out = whole - (A x + B y)`.
     ///
     /// # Panics
     /// When a vector has not as many rows as the matrices.
-    pub fn subtract_products(&self, whole: &[[L; D]], x: &[[L; D]], y: &[[L; D]], out: &mut [[L; D]]) {
-        let rows = self.rows.len();
-        assert!(whole.len() == rows && x.len() == rows && y.len() == rows && out.len() == rows);
-        for (i, ([a, b], (out, whole))) in self.rows.iter().zip(out.iter_mut().zip(whole)).enumerate() {
+    pub fn subtract_products(
+        &self,
+        whole: &NodalField<D>,
+        x: &NodalField<D>,
+        y: &NodalField<D>,
+        out: &mut NodalField<D>,
+    ) {
+        assert!([whole.nodes(), x.nodes(), y.nodes(), out.nodes()] == [self.rows; 4]);
+        if self.last_couples {
+            self.subtract::<true>(whole, x, y, out);
+        } else {
+            self.subtract::<false>(whole, x, y, out);
+        }
+    }
+
+    fn subtract<const LAST: bool>(
+        &self,
+        whole: &NodalField<D>,
+        x: &NodalField<D>,
+        y: &NodalField<D>,
+        out: &mut NodalField<D>,
+    ) {
+        let (of_a, of_b) = (A::count(LAST), <General as Storage<D>>::count(LAST));
+        let vectors = x.neighbourhoods().zip(y.neighbourhoods());
+        let groups =
+            self.entries.chunks_exact(of_a + of_b).zip(vectors).zip(whole.groups()).zip(out.groups_mut());
+        let mut carried = A::NOTHING;
+        for (((entries, (x, y)), whole), out) in groups {
+            let (a, b) = entries.split_at(of_a);
             // Two sums that do not wait for each other.
-            let (of_a, of_b) = (a.product(i, x), b.product(i, y));
-            *out = std::array::from_fn(|dof| whole[dof] - (of_a[dof] + of_b[dof]));
+            let a = A::product::<LAST>(a, x, &mut carried);
+            let b = General::product::<LAST>(b, y, &mut ());
+            for dof in 0..D {
+                out[dof] = whole[dof] - (a[dof] + b[dof]);
+            }
         }
     }
 }
 
-impl<L: Lane, const D: usize> Row<L, D> {
-    #[inline(always)]
-    fn product(&self, row: usize, x: &[[L; D]]) -> [L; D] {
-        let mut sum = self.diagonal.add_product(&x[row], Sum::zero());
-        if row > 0 {
-            sum = self.lower.add_product(&x[row - 1], sum);
-        }
-        if row + 1 < x.len() {
-            sum = self.upper.add_product(&x[row + 1], sum);
-        }
-        sum.total()
+/// Any matrix, by columns: of a column the blocks below, on and above the diagonal.
+#[derive(Debug, Clone, Copy)]
+pub struct General;
+
+impl<const D: usize> Storage<D> for General {
+    type Carried = ();
+    const NOTHING: () = ();
+
+    fn count(last_couples: bool) -> usize {
+        3 * block_count::<D>(last_couples)
     }
+
+    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
+        for column in 0..D {
+            for (blocks, rows) in blocks(matrix) {
+                for row in (0..D).filter(|&row| is_kept::<D>(row, column, last_couples)) {
+                    entries.push(side_by_side(&blocks[..rows.end], rows.start, first, (row, column)));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn product<const LAST: bool>(entries: &[Four], x: Neighbourhood<'_, D>, (): &mut ()) -> [Four; D] {
+        assert!(entries.len() == <Self as Storage<D>>::count(LAST));
+        let mut sums = [Four::ZERO; D];
+        let mut next = 0;
+        each_dof!(D, column, {
+            for x in [before(x, column), x[1][column], after(x, column)] {
+                for (row, sum) in sums.iter_mut().enumerate() {
+                    if is_kept::<D>(row, column, LAST) {
+                        *sum = entries[next].mul_add(x, *sum);
+                        next += 1;
+                    }
+                }
+            }
+        });
+        sums
+    }
+}
+
+/// A symmetric matrix, by columns: of a column the blocks on and above the diagonal; what stands below it is not looked at.
+#[derive(Debug, Clone, Copy)]
+pub struct Symmetric;
+
+impl<const D: usize> Storage<D> for Symmetric {
+    /// The products of the transposed blocks above the diagonal with the nodes of the rows before, which the next rows get.
+    type Carried = [Four; D];
+    const NOTHING: [Four; D] = [Four::ZERO; D];
+
+    fn count(last_couples: bool) -> usize {
+        2 * block_count::<D>(last_couples)
+    }
+
+    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
+        for column in 0..D {
+            for (blocks, rows) in blocks(matrix).into_iter().skip(1) {
+                for row in (0..D).filter(|&row| is_kept::<D>(row, column, last_couples)) {
+                    entries.push(side_by_side(&blocks[..rows.end], rows.start, first, (row, column)));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn product<const LAST: bool>(
+        entries: &[Four],
+        x: Neighbourhood<'_, D>,
+        carried: &mut [Four; D],
+    ) -> [Four; D] {
+        assert!(entries.len() == <Self as Storage<D>>::count(LAST));
+        let own = &x[1];
+        let (mut sums, mut onwards) = ([Four::ZERO; D], [Four::ZERO; D]);
+        let mut next = 0;
+        each_dof!(D, column, {
+            for (row, sum) in sums.iter_mut().enumerate() {
+                if is_kept::<D>(row, column, LAST) {
+                    *sum = entries[next].mul_add(own[column], *sum);
+                    next += 1;
+                }
+            }
+            let after = after(x, column);
+            for (row, sum) in sums.iter_mut().enumerate() {
+                if is_kept::<D>(row, column, LAST) {
+                    *sum = entries[next].mul_add(after, *sum);
+                    onwards[column] = entries[next].mul_add(own[row], onwards[column]);
+                    next += 1;
+                }
+            }
+        });
+        let from_before = [*carried, onwards, onwards];
+        *carried = onwards;
+        for (dof, sum) in sums.iter_mut().enumerate() {
+            *sum = *sum + before(&from_before, dof);
+        }
+        sums
+    }
+}
+
+/// Whether an entry of a block is kept.
+#[inline(always)]
+const fn is_kept<const D: usize>(row: usize, column: usize, last_couples: bool) -> bool {
+    let (lower, higher) = if row < column { (row, column) } else { (column, row) };
+    last_couples || higher + 1 < D || lower + 3 >= D
+}
+
+/// Entries of a block that are kept.
+#[inline(always)]
+const fn block_count<const D: usize>(last_couples: bool) -> usize {
+    if last_couples { D * D } else { D * D - 2 * (D - 3) }
+}
+
+/// Whether there is anything that need not be kept.
+fn last_couples<const D: usize>(matrix: &BlockTridiagonal<f64, D>) -> bool {
+    blocks(matrix).into_iter().any(|(blocks, rows)| {
+        blocks[rows]
+            .iter()
+            .any(|block| (0..D).any(|i| (0..D).any(|j| !is_kept::<D>(i, j, false) && block[(i, j)] != 0.0)))
+    })
+}
+
+/// The blocks below, on and above the diagonal, with the rows that have one.
+fn blocks<const D: usize>(
+    matrix: &BlockTridiagonal<f64, D>,
+) -> [(&[Block<f64, D>], std::ops::Range<usize>); 3] {
+    let rows = matrix.rows();
+    [(&matrix.lower, 1..rows), (&matrix.diagonal, 0..rows), (&matrix.upper, 0..rows - 1)]
+}
+
+/// One entry of four blocks from `first` on; zeros where there is no block.
+fn side_by_side<const D: usize>(
+    blocks: &[Block<f64, D>],
+    start: usize,
+    first: usize,
+    place: (usize, usize),
+) -> Four {
+    let entry =
+        |row: usize| if row < start { 0.0 } else { blocks.get(row).map_or(0.0, |block| block[place]) };
+    Four::new(std::array::from_fn(|lane| entry(first + lane)))
 }

@@ -60,9 +60,8 @@ fn relative_difference(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
 fn products_equal_dense_products() {
     let mut numbers = Numbers(1);
     for rows in ROW_COUNTS {
-        let (a, b) = (numbers.matrix(rows, 2.0), numbers.matrix(rows, 1.0));
-        let (x, y) = (numbers.vector(rows), numbers.vector(rows));
-        let (dense_ax, dense_by) = (dense(&a) * flat(&x), dense(&b) * flat(&y));
+        let (a, x) = (numbers.matrix(rows, 2.0), numbers.vector(rows));
+        let dense_ax = dense(&a) * flat(&x);
 
         let mut out = numbers.vector(rows);
         a.multiply_into(&x, &mut out);
@@ -70,28 +69,125 @@ fn products_equal_dense_products() {
 
         a.multiply_add(&x, &mut out);
         assert!(relative_difference(&flat(&out), &(&dense_ax * 2.0)) < 1e-14, "{rows} rows");
+    }
+}
 
-        let whole = numbers.vector(rows);
-        MatrixPair::new(&a, &b).subtract_products(&whole, &x, &y, &mut out);
-        let expected = flat(&whole) - &dense_ax - &dense_by;
-        assert!(relative_difference(&flat(&out), &expected) < 1e-14, "{rows} rows");
+/// Two products in one, of matrices that couple the last degree of freedom with all others and of matrices that do not.
+#[test]
+fn products_of_pairs_equal_dense_products() {
+    let mut numbers = Numbers(3);
+    for rows in ROW_COUNTS {
+        for last_couples in [true, false] {
+            let mut matrix = || {
+                let mut matrix = numbers.matrix(rows, 2.0);
+                let BlockTridiagonal { lower, diagonal, upper } = &mut matrix;
+                for block in lower.iter_mut().chain(diagonal).chain(upper).filter(|_| !last_couples) {
+                    for displacement in 0..3 {
+                        block[(displacement, 5)] = 0.0;
+                        block[(5, displacement)] = 0.0;
+                    }
+                }
+                matrix
+            };
+            let (a, b) = (matrix(), matrix());
+            let a = BlockTridiagonal::combine(0.5, &a, 0.5, &transposed(&a), 0.0, &a);
+            let (x, y, whole) = (numbers.vector(rows), numbers.vector(rows), numbers.vector(rows));
+            let expected = flat(&whole) - dense(&a) * flat(&x) - dense(&b) * flat(&y);
+            let [x, y, whole] = [x, y, whole].map(|vector| NodalField::from_nodes(&vector));
+            let mut out = NodalField::zeros(rows);
+            MatrixPair::<Symmetric>::new(&a, &b).subtract_products(&whole, &x, &y, &mut out);
+            assert!(relative_difference(&flat(&out.to_nodes()), &expected) < 1e-14, "symmetric, {rows} rows");
+            MatrixPair::<General>::new(&a, &b).subtract_products(&whole, &x, &y, &mut out);
+            assert!(relative_difference(&flat(&out.to_nodes()), &expected) < 1e-14, "general, {rows} rows");
+        }
     }
 }
 
 #[test]
-fn sums_of_products_of_two_vectors_equal_dense_ones() {
+fn forms_of_the_skew_part_equal_dense_ones() {
     let mut numbers = Numbers(9);
-    let (vectors, others) = ([(); 3].map(|()| numbers.vector(2)), [(); 3].map(|()| numbers.vector(2)));
-    let other = numbers.block(0.0);
-    let mut sum = numbers.block(1.0);
-    let column = |row: &[f64; DOFS]| DVector::from_row_slice(row);
-    let dense = |block: &Block<f64>| DMatrix::from_fn(DOFS, DOFS, |i, j| block[(i, j)]);
-    let expected = (0..3).fold(dense(&sum), |sum, k| {
-        sum + column(&vectors[k][0]) * column(&others[k][1]).transpose() * (k as f64 - 0.5)
-    });
-    sum.add_products(&[0, 1, 2].map(|k| (k as f64 - 0.5, &*vectors[k], &*others[k])), 0, 1);
-    assert!((dense(&sum) - &expected).amax() < 1e-15 * 4.0);
-    assert!((sum.dot(&other) - expected.dot(&dense(&other))).abs() < 1e-14);
+    for rows in ROW_COUNTS {
+        for last_couples in [true, false] {
+            let mut matrix = numbers.matrix(rows, 2.0);
+            if !last_couples {
+                let BlockTridiagonal { lower, diagonal, upper } = &mut matrix;
+                for block in lower.iter_mut().chain(diagonal).chain(upper) {
+                    for dof in 0..5 {
+                        block[(dof, 5)] = 0.0;
+                        block[(5, dof)] = 0.0;
+                    }
+                }
+            }
+            let pairs = [(); 3].map(|()| (numbers.next(), numbers.vector(rows), numbers.vector(rows)));
+            let skew = (dense(&matrix) - dense(&matrix).transpose()) * 0.5;
+            let form = |(weight, v, x): &(f64, BlockVector<f64>, BlockVector<f64>)| {
+                weight * (flat(v).transpose() * &skew * flat(x))[(0, 0)]
+            };
+            let expected = pairs.iter().map(form).sum::<f64>();
+            let fields =
+                pairs.map(|(weight, v, x)| (weight, NodalField::from_nodes(&v), NodalField::from_nodes(&x)));
+            let got =
+                SkewPart::new(&matrix, 0.0).product(fields.each_ref().map(|(weight, v, x)| (*weight, v, x)));
+            // Rounding of 108 products of values up to one in each row.
+            assert!((got - expected).abs() < 1e-14 * rows as f64, "{rows} rows: {got} against {expected}");
+        }
+    }
+}
+
+#[test]
+fn small_skew_entries_are_left_out() {
+    let mut matrix = BlockTridiagonal::zeros(2);
+    matrix.diagonal[0][(0, 1)] = 2e-3;
+    matrix.upper[0][(2, 3)] = 2.0;
+    let unit = |node: usize, dof: usize| {
+        let mut field = NodalField::<DOFS>::zeros(2);
+        field[(node, dof)] = 1.0;
+        field
+    };
+    let skew = SkewPart::new(&matrix, 1e-3);
+    assert_eq!(skew.product([(1.0, &unit(0, 0), &unit(0, 1))]), 0.0);
+    assert_eq!(skew.product([(1.0, &unit(0, 2), &unit(1, 3))]), 1.0);
+    assert_eq!(skew.product([(3.0, &unit(1, 3), &unit(0, 2))]), -3.0);
+}
+
+#[test]
+fn a_field_holds_what_its_nodes_hold() {
+    let mut numbers = Numbers(11);
+    for rows in ROW_COUNTS {
+        let nodes = numbers.vector(rows);
+        let mut field = NodalField::from_nodes(&nodes);
+        assert_eq!(field.to_nodes(), nodes);
+        for (node, values) in nodes.iter().enumerate() {
+            assert_eq!(field.node(node), *values);
+            // The neighbour after every node, zeros after the last one.
+            let group = field.neighbourhood(node / 4);
+            for dof in 0..DOFS {
+                let next = nodes.get(node + 1).map_or(0.0, |next| next[dof]);
+                assert_eq!(after(group, dof).lane(node % 4), next);
+            }
+        }
+        field[(rows - 1, 2)] = f64::INFINITY;
+        assert!(NodalField::from_nodes(&nodes).is_finite() && !field.is_finite());
+        // Of five and of four degrees of freedom likewise.
+        let five: Vec<[f64; 5]> = nodes.iter().map(|[a, b, c, d, e, _]| [*a, *b, *c, *d, *e]).collect();
+        let four: Vec<[f64; 4]> = nodes.iter().map(|[a, b, c, d, ..]| [*a, *b, *c, *d]).collect();
+        assert_eq!(NodalField::from_nodes(&five).to_nodes(), five);
+        assert_eq!(NodalField::from_nodes(&four).to_nodes(), four);
+    }
+}
+
+fn transposed(matrix: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
+    let transposed = |block: &Block<f64>| Block::from_fn(|row, column| block[(column, row)]);
+    let rows = matrix.rows();
+    let mut out = BlockTridiagonal::zeros(rows);
+    for row in 0..rows {
+        out.diagonal[row] = transposed(&matrix.diagonal[row]);
+        if row > 0 {
+            out.lower[row] = transposed(&matrix.upper[row - 1]);
+            out.upper[row - 1] = transposed(&matrix.lower[row]);
+        }
+    }
+    out
 }
 
 #[test]
@@ -233,7 +329,7 @@ fn a_lane_has_the_bits_of_a_run_alone() {
     let (x, y) = (vector(&|lane| alone[lane].2.clone()), vector(&|lane| alone[lane].3.clone()));
 
     let mut products = y.clone();
-    MatrixPair::new(&a, &b).subtract_products(&y, &x, &y, &mut products);
+    a.multiply_add(&x, &mut products);
     let mut solutions = y.clone();
     let splat = Four::splat;
     let combined = BlockTridiagonal::combine(splat(0.3), &a, splat(-0.7), &b, splat(0.11), &a);
@@ -241,7 +337,7 @@ fn a_lane_has_the_bits_of_a_run_alone() {
 
     for (lane, (a, b, x, y)) in alone.iter().enumerate() {
         let mut product = y.clone();
-        MatrixPair::new(a, b).subtract_products(y, x, y, &mut product);
+        a.multiply_add(x, &mut product);
         assert_eq!(lane_of(&products, lane), product);
         let mut solution = y.clone();
         let combined = BlockTridiagonal::combine(0.3, a, -0.7, b, 0.11, a);

@@ -72,7 +72,7 @@ impl Checkpoint {
         }
         let progress: Progress<D> = postcard::from_bytes(&self.progress)?;
         let State { displacement, velocity, acceleration, .. } = &progress.state;
-        let lengths = [displacement.len(), velocity.len(), acceleration.len(), progress.contacts.len()];
+        let lengths = [displacement.nodes(), velocity.nodes(), acceleration.nodes(), progress.contacts.len()];
         if lengths != [nodes; 4] || progress.histories.iter().any(|history| history.node >= nodes) {
             return Err(CheckpointError::OtherScenario);
         }
@@ -84,25 +84,25 @@ fn encoded(value: &impl Serialize) -> Vec<u8> {
     postcard::to_stdvec(value).expect("numbers and vectors always encode")
 }
 
-/// Nodal vectors as one row of numbers: serde knows no arrays of a length that is a parameter.
+/// Fields as one row of numbers, node by node: serde knows no arrays of a length that is a parameter.
 pub(super) mod nodal {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-    use crate::model::NodalVector;
+    use crate::linalg::NodalField;
 
     pub(in super::super) fn serialize<S: Serializer, const D: usize>(
-        values: &NodalVector<D>,
+        values: &NodalField<D>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        values.as_flattened().serialize(serializer)
+        values.to_nodes().as_flattened().serialize(serializer)
     }
 
     pub(in super::super) fn deserialize<'de, T: Deserializer<'de>, const D: usize>(
         deserializer: T,
-    ) -> Result<NodalVector<D>, T::Error> {
+    ) -> Result<NodalField<D>, T::Error> {
         let flat = Vec::<f64>::deserialize(deserializer)?;
         match flat.as_chunks::<D>() {
-            (nodes, []) => Ok(nodes.to_vec()),
+            (nodes, []) => Ok(NodalField::from_nodes(nodes)),
             _ => Err(de::Error::invalid_length(flat.len(), &"a multiple of a node's degrees of freedom")),
         }
     }

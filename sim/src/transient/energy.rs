@@ -7,10 +7,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::{ContactForces, side_by_side};
+use super::forces::ContactForces;
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
 use crate::contact::ContactParameters;
-use crate::linalg::{BlockTridiagonal, Four, Lane};
+use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::model::{DynamicSystem, Model, NodalVector};
 
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
@@ -110,7 +110,9 @@ pub(super) struct Ledger<const D: usize> {
     initial_wall: f64,
     /// Rounding of the balance \[J\].
     rounding: f64,
-    scratch: NodalVector<D>,
+    /// Displacements and velocities, node by node.
+    motion: [NodalVector<D>; 2],
+    product: NodalVector<D>,
 }
 
 impl<const D: usize> Ledger<D> {
@@ -132,7 +134,8 @@ impl<const D: usize> Ledger<D> {
             initial_stored: 0.0,
             initial_wall: 0.0,
             rounding: 0.0,
-            scratch: vec![[0.0; D]; model.node_count()],
+            motion: std::array::from_fn(|_| vec![[0.0; D]; model.node_count()]),
+            product: vec![[0.0; D]; model.node_count()],
         };
         ledger.rounding = ROUNDING * ledger.size_of_terms(initial);
         ledger.initial_stored = ledger.stored(initial);
@@ -145,8 +148,8 @@ impl<const D: usize> Ledger<D> {
     pub(super) fn book(
         &mut self,
         weight: f64,
-        velocity: &mut NodalVector<D>,
-        displacement: &mut NodalVector<D>,
+        velocity: &mut NodalField<D>,
+        displacement: &mut NodalField<D>,
         contact: &ContactForces,
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) {
@@ -168,27 +171,25 @@ impl<const D: usize> Ledger<D> {
     /// Powers \[W\] of contact and unbalance.
     pub(super) fn power(
         &self,
-        velocity: &[[f64; D]],
-        displacement: &[[f64; D]],
+        velocity: &NodalField<D>,
+        displacement: &NodalField<D>,
         contact: &ContactForces,
         unbalance: impl Iterator<Item = (usize, [f64; 2])>,
     ) -> Work {
         let mut power = Work {
             unbalance: unbalance
-                .map(|(node, force)| velocity[node][0] * force[0] + velocity[node][1] * force[1])
+                .map(|(node, force)| velocity[(node, 0)] * force[0] + velocity[(node, 1)] * force[1])
                 .sum(),
             ..Work::default()
         };
         let zero = Four::splat(0.0);
         let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
-        for group in contact.touching() {
-            let rate = |dof| side_by_side(velocity, group.first, dof);
-            let (u, v) =
-                (side_by_side(displacement, group.first, 0), side_by_side(displacement, group.first, 1));
-            let (u_rate, v_rate) = (rate(0), rate(1));
+        for (i, group) in contact.touching() {
+            let (x, rates) = (&displacement.groups()[i], &velocity.groups()[i]);
+            let (u, v, u_rate, v_rate) = (x[0], x[1], rates[0], rates[1]);
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
             let normal = -(group.normal_force / group.radius * u_rate.mul_add(u, v_rate * v));
-            let twist_power = if self.has_twist { rate(D - 1) * group.torque } else { zero };
+            let twist_power = if self.has_twist { rates[D - 1] * group.torque } else { zero };
             let whole = u_rate.mul_add(group.force[0], v_rate.mul_add(group.force[1], twist_power));
             normal_power = normal_power + normal;
             friction_power = friction_power + (whole - normal);
@@ -222,12 +223,21 @@ impl<const D: usize> Ledger<D> {
     }
 
     /// The balance at `time` \[s\].
-    pub(super) fn row(&mut self, time: f64, displacement: &[[f64; D]], velocity: &[[f64; D]]) -> EnergyRow {
+    pub(super) fn row(
+        &mut self,
+        time: f64,
+        displacement: &NodalField<D>,
+        velocity: &NodalField<D>,
+    ) -> EnergyRow {
         self.settle();
-        self.mass.multiply_into(velocity, &mut self.scratch);
-        let kinetic = 0.5 * dot(velocity, &self.scratch);
-        let structure = self.stored(displacement) - self.initial_stored;
-        let wall = self.wall(displacement) - self.initial_wall;
+        let [mut x, mut v] = std::mem::take(&mut self.motion);
+        displacement.copy_to_nodes(&mut x);
+        velocity.copy_to_nodes(&mut v);
+        self.mass.multiply_into(&v, &mut self.product);
+        let kinetic = 0.5 * dot(&v, &self.product);
+        let structure = self.stored(&x) - self.initial_stored;
+        let wall = self.wall(&x) - self.initial_wall;
+        self.motion = [x, v];
         let work = &self.work;
         let dissipated_contact = -work.normal_contact - wall;
         let dissipated_friction = work.rotation - work.friction;
@@ -261,9 +271,9 @@ impl<const D: usize> Ledger<D> {
 
     /// Sum of the terms of the stored energy, each taken as positive \[J\].
     fn size_of_terms(&mut self, x: &[[f64; D]]) -> f64 {
-        self.stiffness.multiply_into(x, &mut self.scratch);
+        self.stiffness.multiply_into(x, &mut self.product);
         let products =
-            x.as_flattened().iter().zip(self.scratch.as_flattened().iter().zip(self.load.as_flattened()));
+            x.as_flattened().iter().zip(self.product.as_flattened().iter().zip(self.load.as_flattened()));
         products.map(|(x, (elastic, load))| (x * elastic).abs() + (x * load).abs()).sum()
     }
 
@@ -279,8 +289,8 @@ impl<const D: usize> Ledger<D> {
 
     /// Energy of the conservative linear forces and constant loads.
     fn stored(&mut self, x: &[[f64; D]]) -> f64 {
-        self.stiffness.multiply_into(x, &mut self.scratch);
-        0.5 * dot(x, &self.scratch) - dot(x, &self.load)
+        self.stiffness.multiply_into(x, &mut self.product);
+        0.5 * dot(x, &self.product) - dot(x, &self.load)
     }
 
     /// Energy stored in the wall's springs.

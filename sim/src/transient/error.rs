@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::linalg::{Four, Lane, NodalField};
 use crate::scenario::Integrator;
 
 /// Estimated error of the run's lateral displacements.
@@ -44,24 +45,33 @@ fn calibration(integrator: Integrator) -> f64 {
 }
 
 impl ErrorSum {
-    /// Adds a step whose displacement error at (node, dof) is `error(node, dof)` \[m\].
+    /// Adds a step whose displacement errors of a group of nodes are `error(group, dof)` \[m\].
     #[inline(always)]
-    pub(super) fn add(&mut self, nodes: usize, error: impl Fn(usize, usize) -> f64) {
-        let mut sums = [0.0; 2];
-        for node in 0..nodes {
+    pub(super) fn add(&mut self, groups: usize, error: impl Fn(usize, usize) -> Four) {
+        let mut sums = [Four::splat(0.0); 2];
+        for group in 0..groups {
             for (dof, sum) in sums.iter_mut().enumerate() {
-                let error = error(node, dof);
+                let error = error(group, dof);
                 *sum = error.mul_add(error, *sum);
             }
         }
-        self.local += sums[0] + sums[1];
+        self.local += sums[0].sum() + sums[1].sum();
     }
 
     /// Takes in the motion at a row of the ledger.
-    pub(super) fn observe_motion<const D: usize>(&mut self, displacement: &[[f64; D]], start: &[[f64; D]]) {
-        let squares =
-            displacement.iter().zip(start).map(|(x, x0)| (x[0] - x0[0]).powi(2) + (x[1] - x0[1]).powi(2));
-        self.motion += squares.sum::<f64>();
+    pub(super) fn observe_motion<const D: usize>(
+        &mut self,
+        displacement: &NodalField<D>,
+        start: &NodalField<D>,
+    ) {
+        let mut sums = [Four::splat(0.0); 2];
+        for (x, x0) in displacement.groups().iter().zip(start.groups()) {
+            for (dof, sum) in sums.iter_mut().enumerate() {
+                let moved = x[dof] - x0[dof];
+                *sum = moved.mul_add(moved, *sum);
+            }
+        }
+        self.motion += sums[0].sum() + sums[1].sum();
         self.rows += 1;
     }
 

@@ -2,10 +2,10 @@
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
 use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut, multiply_add};
+use super::implicit::{StageCoefficients, StageSolver, multiply_add};
 use super::run::{Books, State};
-use crate::linalg::SingularBlock;
-use crate::model::{DynamicSystem, NodalVector};
+use crate::linalg::{Four, Lane, NodalField, SingularBlock};
+use crate::model::DynamicSystem;
 
 const STAGES: usize = 6;
 pub(super) const DIAGONAL: f64 = 0.25;
@@ -55,16 +55,16 @@ pub(super) struct Esdirk<const D: usize> {
     pub(super) solver: StageSolver<D>,
     /// Of the stages after the first, which is the state at the step's start.
     stages: [Stage<D>; STAGES - 1],
-    acceleration_offset: NodalVector<D>,
-    velocity_offset: NodalVector<D>,
+    acceleration_offset: NodalField<D>,
+    velocity_offset: NodalField<D>,
 }
 
 /// Motion at a stage.
 #[derive(Debug, Clone)]
 struct Stage<const D: usize> {
-    displacement: NodalVector<D>,
-    velocity: NodalVector<D>,
-    acceleration: NodalVector<D>,
+    displacement: NodalField<D>,
+    velocity: NodalField<D>,
+    acceleration: NodalField<D>,
 }
 
 impl<const D: usize> Esdirk<D> {
@@ -74,7 +74,7 @@ impl<const D: usize> Esdirk<D> {
         step: f64,
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
-        let zero = vec![[0.0; D]; initial.len()];
+        let zero = NodalField::zeros(initial.len());
         Ok(Self {
             step,
             solver: StageSolver::new(system, initial, stage_coefficients(step), sweeps)?,
@@ -116,12 +116,7 @@ impl<const D: usize> Esdirk<D> {
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
             std::mem::swap(velocity, &mut self.solver.velocity);
-            multiply_add(
-                flat(displacement),
-                per_displacement,
-                flat(&self.acceleration_offset),
-                flat_mut(acceleration),
-            );
+            multiply_add(displacement, per_displacement, &self.acceleration_offset, acceleration);
             self.solver.clear_held(acceleration);
         }
         let [_, s2, s3, s4, s5] = &self.stages;
@@ -133,11 +128,13 @@ impl<const D: usize> Esdirk<D> {
             (w4, &s4.velocity, &s4.displacement),
             (w5, &s5.velocity, &s5.displacement),
         ]);
-        let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| h * weight);
+        let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| Four::splat(h * weight));
         let v0 = &state.velocity;
         let [v2, v3, v4, v5] = [s2, s3, s4, s5].map(|stage| &stage.velocity);
-        errors.add(v0.len(), |n, d| {
-            w0 * v0[n][d] + w2 * v2[n][d] + w3 * v3[n][d] + w4 * v4[n][d] + w5 * v5[n][d]
+        let [v0, v2, v3, v4, v5] = [v0, v2, v3, v4, v5].map(|velocity| velocity.groups());
+        errors.add(v0.len(), |group, dof| {
+            let of = |velocity: &[[Four; D]]| velocity[group][dof];
+            w0 * of(v0) + w2 * of(v2) + w3 * of(v3) + w4 * of(v4) + w5 * of(v5)
         });
         // What the state held before is overwritten in the next step.
         let Stage { displacement, velocity, acceleration } = &mut self.stages[STAGES - 2];
@@ -160,65 +157,38 @@ impl<const D: usize> Esdirk<D> {
 
     /// With the earlier stages that count, and what their rates are multiplied with \[s\].
     fn predict_from<const K: usize>(&mut self, earlier: [(usize, f64); K], stage: usize, state: &State<D>) {
-        let (x0, v0, a0) = (flat(&state.displacement), flat(&state.velocity), flat(&state.acceleration));
-        let velocity = |j: usize| if j == 0 { v0 } else { flat(&self.stages[j - 1].velocity) };
-        let acceleration = |j: usize| if j == 0 { a0 } else { flat(&self.stages[j - 1].acceleration) };
-        let rates = Rates {
-            weights: earlier.map(|(_, weight)| weight),
-            velocities: earlier.map(|(j, _)| velocity(j)),
-            accelerations: earlier.map(|(j, _)| acceleration(j)),
-            last: acceleration(stage - 1),
-        };
-        offsets(
-            self.step,
-            (x0, v0),
-            &rates,
-            flat_mut(&mut self.velocity_offset),
-            flat_mut(&mut self.acceleration_offset),
-            flat_mut(&mut self.solver.displacement),
-            flat_mut(&mut self.solver.velocity),
-        );
-    }
-}
-
-/// Rates of the earlier stages that count, and the acceleration of the stage before.
-struct Rates<'a, const K: usize> {
-    weights: [f64; K],
-    velocities: [&'a [f64]; K],
-    accelerations: [&'a [f64]; K],
-    last: &'a [f64],
-}
-
-/// Offsets v^ and a^ of a stage from the step's start and the rates of earlier stages, and its predictor in `x` and `v`: the
-/// acceleration stays as it was. A function of its own: only where its slices are arguments does the compiler know that they do
-/// not overlap, and takes four values at a time.
-#[inline(never)]
-fn offsets<const K: usize>(
-    step: f64,
-    (x0, v0): (&[f64], &[f64]),
-    rates: &Rates<'_, K>,
-    velocity_offset: &mut [f64],
-    acceleration_offset: &mut [f64],
-    x: &mut [f64],
-    v: &mut [f64],
-) {
-    let n = x.len();
-    let Rates { weights, velocities, accelerations, last } = rates;
-    let (x0, v0, v, last) = (&x0[..n], &v0[..n], &mut v[..n], &last[..n]);
-    let (velocities, accelerations) =
-        (velocities.map(|rate| &rate[..n]), accelerations.map(|rate| &rate[..n]));
-    let (velocity_offset, acceleration_offset) = (&mut velocity_offset[..n], &mut acceleration_offset[..n]);
-    let (c, diagonal) = (1.0 / (DIAGONAL * step), DIAGONAL * step);
-    for i in 0..n {
-        let (mut x_base, mut v_base) = (x0[i], v0[i]);
-        for j in 0..K {
-            x_base = velocities[j][i].mul_add(weights[j], x_base);
-            v_base = accelerations[j][i].mul_add(weights[j], v_base);
+        let velocity = |j: usize| if j == 0 { &state.velocity } else { &self.stages[j - 1].velocity };
+        let acceleration =
+            |j: usize| if j == 0 { &state.acceleration } else { &self.stages[j - 1].acceleration };
+        let n = state.displacement.groups().len();
+        let groups = |field| &NodalField::groups(field)[..n];
+        let (x0, v0, last) =
+            (groups(&state.displacement), groups(&state.velocity), groups(acceleration(stage - 1)));
+        let (velocities, accelerations) =
+            (earlier.map(|(j, _)| groups(velocity(j))), earlier.map(|(j, _)| groups(acceleration(j))));
+        let weights = earlier.map(|(_, weight)| Four::splat(weight));
+        let velocity_offset = &mut self.velocity_offset.groups_mut()[..n];
+        let acceleration_offset = &mut self.acceleration_offset.groups_mut()[..n];
+        let x = &mut self.solver.displacement.groups_mut()[..n];
+        let v = &mut self.solver.velocity.groups_mut()[..n];
+        let c = Four::splat(1.0 / (DIAGONAL * self.step));
+        let diagonal = Four::splat(DIAGONAL * self.step);
+        for i in 0..n {
+            for dof in 0..D {
+                let (mut x_base, mut v_base) = (x0[i][dof], v0[i][dof]);
+                for j in 0..K {
+                    x_base = velocities[j][i][dof].mul_add(weights[j], x_base);
+                    v_base = accelerations[j][i][dof].mul_add(weights[j], v_base);
+                }
+                velocity_offset[i][dof] = -c * x_base;
+                acceleration_offset[i][dof] = c * (velocity_offset[i][dof] - v_base);
+                // The predictor is for the contacts alone, which ask for the lateral motion and the twist.
+                if dof < 2 || dof + 1 == D {
+                    v[i][dof] = diagonal.mul_add(last[i][dof], v_base);
+                    x[i][dof] = diagonal.mul_add(v[i][dof], x_base);
+                }
+            }
         }
-        velocity_offset[i] = -c * x_base;
-        acceleration_offset[i] = c * (velocity_offset[i] - v_base);
-        v[i] = diagonal.mul_add(last[i], v_base);
-        x[i] = diagonal.mul_add(v[i], x_base);
     }
 }
 

@@ -1,11 +1,11 @@
 //! The right-hand side of the equations of motion: constant loads, unbalance, contact.
 
 use crate::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
-use crate::linalg::{Four, Lane, Mask};
-use crate::model::{DynamicSystem, Model, NodalVector, UnbalanceForce};
+use crate::linalg::{Four, Lane, Mask, NodalField, by_node};
+use crate::model::{DynamicSystem, Model, UnbalanceForce};
 use crate::string::MeshNode;
 
-/// What the wall does to every node, as of one evaluation: four nodes side by side, from the second one on.
+/// What the wall does to every node, as of one evaluation: four nodes side by side.
 #[derive(Debug, Clone)]
 pub(super) struct ContactForces {
     groups: Vec<GroupContact>,
@@ -14,8 +14,6 @@ pub(super) struct ContactForces {
 /// What the wall does to four nodes; zero where one does not touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroupContact {
-    /// The first of the nodes, from 0; those beyond the bit never touch.
-    pub(super) first: usize,
     /// Penetrations \[m\] if any node touches.
     penetration: Option<Four>,
     /// Normal and friction force along u and v \[N\].
@@ -40,34 +38,32 @@ pub(super) struct NodeContact {
 impl ContactForces {
     /// No contact at any of so many nodes.
     pub(super) fn none(nodes: usize) -> Self {
-        Self { groups: (1..nodes).step_by(LANES).map(GroupContact::none).collect() }
+        Self { groups: vec![GroupContact::none(); nodes.div_ceil(LANES)] }
     }
 
-    /// The groups of which any node touches.
-    pub(super) fn touching(&self) -> impl Iterator<Item = &GroupContact> {
-        self.groups.iter().filter(|group| group.penetration.is_some())
+    /// The groups of which any node touches, with their numbers.
+    pub(super) fn touching(&self) -> impl Iterator<Item = (usize, &GroupContact)> {
+        self.groups.iter().enumerate().filter(|(_, group)| group.penetration.is_some())
     }
 
     /// Visits every node in turn with what the wall does to it.
     #[inline(always)]
     pub(super) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
-        visit(0, NodeContact::default());
-        for group in &self.groups {
+        for (first, group) in (0..).step_by(LANES).zip(&self.groups) {
             let penetration = group.penetration.map_or([0.0; LANES], Four::to_array);
             let normal_force = group.normal_force.to_array();
-            for lane in 0..LANES.min(nodes - group.first) {
+            for lane in 0..LANES.min(nodes - first) {
                 let touching = penetration[lane] > 0.0;
-                visit(group.first + lane, NodeContact { normal_force: normal_force[lane], touching });
+                visit(first + lane, NodeContact { normal_force: normal_force[lane], touching });
             }
         }
     }
 }
 
 impl GroupContact {
-    fn none(first: usize) -> Self {
+    fn none() -> Self {
         let zero = Four::splat(0.0);
         GroupContact {
-            first,
             penetration: None,
             force: [zero; 2],
             torque: zero,
@@ -80,11 +76,11 @@ impl GroupContact {
 /// Everything that pushes the string.
 #[derive(Debug, Clone)]
 pub(super) struct Forces<const D: usize> {
-    pub(super) load: NodalVector<D>,
+    pub(super) load: NodalField<D>,
     unbalance: Vec<TurningForce>,
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
-    /// Four nodes side by side, from the second one on; places beyond the bit can never touch.
+    /// Four nodes side by side; the clamped top node and places beyond the bit can never touch.
     sites: Vec<ContactNode<Four>>,
     contact: bool,
     /// Whether the last degree of freedom is the twist.
@@ -95,10 +91,12 @@ impl<const D: usize> Forces<D> {
     pub(super) fn new(model: &Model, system: &DynamicSystem<D>) -> Self {
         let effects = &model.effects;
         let parameters = ContactParameters::new(&model.scenario.contact, effects);
-        // The clamped top node never touches.
-        let sites = model.mesh.nodes[1..].chunks(LANES).map(|nodes| {
-            let lanes = |value: fn(&MeshNode) -> f64, beyond: f64| {
-                Four::new(std::array::from_fn(|lane| nodes.get(lane).map_or(beyond, value)))
+        let sites = (0..model.mesh.nodes.len()).step_by(LANES).map(|first| {
+            let lanes = |value: fn(&MeshNode) -> f64, never: f64| {
+                Four::new(std::array::from_fn(|lane| match first + lane {
+                    0 => never,
+                    node => model.mesh.nodes.get(node).map_or(never, value),
+                }))
             };
             ContactNode {
                 clearance: lanes(|node| node.clearance, f64::INFINITY),
@@ -107,7 +105,7 @@ impl<const D: usize> Forces<D> {
             }
         });
         Self {
-            load: system.load.clone(),
+            load: NodalField::from_nodes(&system.load),
             unbalance: system.unbalance.iter().map(TurningForce::new).collect(),
             rotation_speed: system.rotation_speed,
             parameters,
@@ -118,10 +116,10 @@ impl<const D: usize> Forces<D> {
     }
 
     /// Adds the unbalance at `time` \[s\] to nodal forces.
-    pub(super) fn add_unbalance(&self, time: f64, nodal: &mut [[f64; D]]) {
+    pub(super) fn add_unbalance(&self, time: f64, nodal: &mut NodalField<D>) {
         for (node, force) in self.unbalance_at(time) {
-            nodal[node][0] += force[0];
-            nodal[node][1] += force[1];
+            nodal[(node, 0)] += force[0];
+            nodal[(node, 1)] += force[1];
         }
     }
 
@@ -135,58 +133,72 @@ impl<const D: usize> Forces<D> {
         })
     }
 
-    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped top node
-    /// never touches. `rates` gives the rate of a degree of freedom of four nodes from the first one on.
+    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`, node by node. The
+    /// clamped top node never touches. `rates` gives the rate of a degree of freedom of a group.
     pub(super) fn contact_into(
         &self,
-        x: &[[f64; D]],
+        x: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
         out: &mut ContactForces,
-        others: &[[f64; D]],
+        others: &NodalField<D>,
         all: &mut [[f64; D]],
     ) {
-        all.copy_from_slice(others);
-        if !self.contact {
+        let n = self.sites.len();
+        let (x, others, out) = (&x.groups()[..n], &others.groups()[..n], &mut out.groups[..n]);
+        for group in 0..n {
+            let mut forces = others[group];
+            if self.contact {
+                self.push(group, &x[group], &rates, &mut out[group], &mut forces);
+            }
+            let (forces, first) = (by_node(&forces), LANES * group);
+            let nodes = &mut all[first..];
+            match nodes.first_chunk_mut() {
+                Some(nodes) => *nodes = forces,
+                None => nodes.copy_from_slice(&forces[..nodes.len()]),
+            }
+        }
+    }
+
+    /// What the wall does to four nodes, and in `forces` what that adds to the others.
+    #[inline(always)]
+    fn push(
+        &self,
+        group: usize,
+        x: &[Four; D],
+        rates: &impl Fn(usize, usize) -> Four,
+        out: &mut GroupContact,
+        forces: &mut [Four; D],
+    ) {
+        let (site, u, v) = (&self.sites[group], x[0], x[1]);
+        let radius_squared = u.mul_add(u, v * v);
+        // Most groups are far from the wall: their rates are not even looked at.
+        if !radius_squared.greater_than(site.clearance * site.clearance).any() {
+            if out.penetration.is_some() {
+                *out = GroupContact::none();
+            }
             return;
         }
-        let rotation_speed = Four::splat(self.rotation_speed);
-        for (site, out) in self.sites.iter().zip(&mut out.groups) {
-            let (u, v_along) = (side_by_side(x, out.first, 0), side_by_side(x, out.first, 1));
-            let radius_squared = u.mul_add(u, v_along * v_along);
-            // Most groups are far from the wall: their rates are not even looked at.
-            if !radius_squared.greater_than(site.clearance * site.clearance).any() {
-                if out.penetration.is_some() {
-                    *out = GroupContact::none(out.first);
-                }
-                continue;
-            }
-            let motion = LateralMotion {
-                u,
-                v: v_along,
-                u_rate: rates(out.first, 0),
-                v_rate: rates(out.first, 1),
-                theta_z_rate: if self.has_twist { rates(out.first, D - 1) } else { Four::splat(0.0) },
-            };
-            let contact = dynamic_contact(&self.parameters, site, &motion, rotation_speed);
-            let touches = contact.penetration.greater_than(Four::splat(0.0));
-            let radius = Four::select(touches, site.clearance + contact.penetration, Four::splat(1.0));
-            *out = GroupContact {
-                first: out.first,
-                penetration: touches.any().then_some(contact.penetration),
-                force: [contact.force_u, contact.force_v],
-                torque: contact.torque_z,
-                normal_force: contact.normal,
-                radius,
-            };
-            let (u, v, torque) =
-                (contact.force_u.to_array(), contact.force_v.to_array(), contact.torque_z.to_array());
-            for (lane, all) in all[out.first..].iter_mut().take(LANES).enumerate() {
-                all[0] += u[lane];
-                all[1] += v[lane];
-                if self.has_twist {
-                    all[D - 1] += torque[lane];
-                }
-            }
+        let motion = LateralMotion {
+            u,
+            v,
+            u_rate: rates(group, 0),
+            v_rate: rates(group, 1),
+            theta_z_rate: if self.has_twist { rates(group, D - 1) } else { Four::splat(0.0) },
+        };
+        let contact = dynamic_contact(&self.parameters, site, &motion, Four::splat(self.rotation_speed));
+        let touches = contact.penetration.greater_than(Four::splat(0.0));
+        let radius = Four::select(touches, site.clearance + contact.penetration, Four::splat(1.0));
+        *out = GroupContact {
+            penetration: touches.any().then_some(contact.penetration),
+            force: [contact.force_u, contact.force_v],
+            torque: contact.torque_z,
+            normal_force: contact.normal,
+            radius,
+        };
+        forces[0] = forces[0] + contact.force_u;
+        forces[1] = forces[1] + contact.force_v;
+        if self.has_twist {
+            forces[D - 1] = forces[D - 1] + contact.torque_z;
         }
     }
 }
@@ -206,12 +218,3 @@ impl TurningForce {
 }
 
 const LANES: usize = Four::LANES;
-
-/// A degree of freedom of four nodes from `first` on; zero beyond the bit.
-#[inline(always)]
-pub(super) fn side_by_side<const D: usize>(nodes: &[[f64; D]], first: usize, dof: usize) -> Four {
-    match &nodes[first..] {
-        [a, b, c, d, ..] => Four::new([a[dof], b[dof], c[dof], d[dof]]),
-        rest => Four::new(std::array::from_fn(|lane| rest.get(lane).map_or(0.0, |node| node[dof]))),
-    }
-}

@@ -1,7 +1,6 @@
 //! Work that the string's matrices do along its motion.
 
-use crate::linalg::{Block, BlockTridiagonal, SkewPart, WeightedPair};
-use crate::model::NodalVector;
+use crate::linalg::{Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after};
 
 /// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
 const GATHERED: usize = 4;
@@ -19,8 +18,8 @@ const CANCELLED: f64 = 1e-13;
 pub(super) struct Forms<const N: usize, const D: usize> {
     symmetric: [SymmetricPart<D>; N],
     skew: SkewPart<D>,
-    /// Sums of `w v v^T` and of `w v v_next^T`, of every node.
-    moments: Vec<[Block<f64, D>; 2]>,
+    /// Of every four nodes.
+    moments: Vec<Moments<D>>,
     skew_sum: f64,
     gathered: [GatheredStage<D>; GATHERED],
     count: usize,
@@ -32,8 +31,17 @@ pub(super) type BookedStage<'a, const D: usize> = WeightedPair<'a, D>;
 #[derive(Debug, Clone)]
 struct GatheredStage<const D: usize> {
     weight: f64,
-    velocity: NodalVector<D>,
-    displacement: NodalVector<D>,
+    velocity: NodalField<D>,
+    displacement: NodalField<D>,
+}
+
+/// Sums of products of velocities of four neighbouring nodes, weighted \[s\].
+#[derive(Debug, Clone, Copy)]
+struct Moments<const D: usize> {
+    /// `w v_i v_j`; i up to j.
+    own: [[Four; D]; D],
+    /// `w v_i v_j`, j of the next node.
+    next: [[Four; D]; D],
 }
 
 /// Integrals of the forms: the symmetric ones, then the skew one.
@@ -53,12 +61,13 @@ struct SymmetricPart<const D: usize> {
 
 impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn new(symmetric: [&BlockTridiagonal<f64, D>; N], skew: &BlockTridiagonal<f64, D>) -> Self {
-        let zero = vec![[0.0; D]; skew.rows()];
+        let zero = NodalField::zeros(skew.rows());
+        let moments = vec![Moments::zero(); zero.groups().len()];
         let stage = GatheredStage { weight: 0.0, velocity: zero.clone(), displacement: zero };
         Self {
             symmetric: symmetric.map(SymmetricPart::new),
             skew: SkewPart::new(skew, CANCELLED * largest(skew)),
-            moments: vec![[Block::zero(); 2]; skew.rows()],
+            moments,
             skew_sum: 0.0,
             gathered: std::array::from_fn(|_| stage.clone()),
             count: 0,
@@ -67,7 +76,7 @@ impl<const N: usize, const D: usize> Forms<N, D> {
 
     /// Adds stages.
     pub(super) fn add<const K: usize>(&mut self, stages: [BookedStage<'_, D>; K]) {
-        add_products(&mut self.moments, stages.map(|(weight, velocity, _)| (weight, velocity)));
+        add_products(&mut self.moments, &stages);
         self.skew_sum += self.skew.product(stages);
     }
 
@@ -75,8 +84,8 @@ impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn gather(
         &mut self,
         weight: f64,
-        velocity: &mut NodalVector<D>,
-        displacement: &mut NodalVector<D>,
+        velocity: &mut NodalField<D>,
+        displacement: &mut NodalField<D>,
     ) {
         if self.count == GATHERED {
             self.add_gathered();
@@ -92,18 +101,13 @@ impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn forget(&mut self) {
         self.count = 0;
         self.skew_sum = 0.0;
-        self.moments.fill([Block::zero(); 2]);
+        self.moments.fill(Moments::zero());
     }
 
     /// Integrals over the stages since the last take, which are forgotten.
     pub(super) fn take(&mut self) -> Integrals<N> {
         self.add_gathered();
-        let symmetric = self.symmetric.each_ref().map(|part| {
-            let diagonal = part.diagonal.iter().map(|(node, block)| block.dot(&self.moments[*node][0]));
-            // What stands above the diagonal is mirrored below.
-            let upper = part.upper.iter().map(|(node, block)| 2.0 * block.dot(&self.moments[*node][1]));
-            diagonal.sum::<f64>() + upper.sum::<f64>()
-        });
+        let symmetric = self.symmetric.each_ref().map(|part| part.integral(&self.moments));
         let skew = self.skew_sum;
         self.forget();
         Integrals { symmetric, skew }
@@ -116,31 +120,82 @@ impl<const N: usize, const D: usize> Forms<N, D> {
         // A stage that is not there counts nothing, and what a rejected step left in its place may not be finite.
         for stage in &mut self.gathered[self.count..] {
             stage.weight = 0.0;
-            stage.velocity.fill([0.0; D]);
-            stage.displacement.fill([0.0; D]);
+            stage.velocity.fill_zero();
+            stage.displacement.fill_zero();
         }
-        let stages = self.gathered.each_ref().map(|s| (s.weight, &*s.velocity, &*s.displacement));
-        add_products(&mut self.moments, stages.map(|(weight, velocity, _)| (weight, velocity)));
+        let stages = self.gathered.each_ref().map(|s| (s.weight, &s.velocity, &s.displacement));
+        add_products(&mut self.moments, &stages);
         self.skew_sum += self.skew.product(stages);
         self.count = 0;
     }
 }
 
+// Without closures over arrays: they are not inlined, and a call a node is a tenth of the work.
 fn add_products<const K: usize, const D: usize>(
-    moments: &mut [[Block<f64, D>; 2]],
-    stages: [(f64, &[[f64; D]]); K],
+    moments: &mut [Moments<D>],
+    stages: &[BookedStage<'_, D>; K],
 ) {
-    let rows = moments.len();
-    let stages = stages.map(|(weight, v)| (weight, &v[..rows], &v[..rows]));
-    for (node, [own, next]) in moments.iter_mut().enumerate() {
-        own.add_products(&stages, node, node);
-        if node + 1 < rows {
-            next.add_products(&stages, node, node + 1);
+    let zero = Four::splat(0.0);
+    for (group, Moments { own, next }) in moments.iter_mut().enumerate() {
+        let (mut velocities, mut velocities_next) = ([[zero; K]; D], [[zero; K]; D]);
+        for (k, (_, velocity, _)) in stages.iter().enumerate() {
+            let velocity = velocity.neighbourhood(group);
+            for dof in 0..D {
+                (velocities[dof][k], velocities_next[dof][k]) = (velocity[1][dof], after(velocity, dof));
+            }
+        }
+        for i in 0..D {
+            let mut weighted = [zero; K];
+            for (k, (weight, ..)) in stages.iter().enumerate() {
+                weighted[k] = velocities[i][k] * Four::splat(*weight);
+            }
+            for j in i..D {
+                for k in 0..K {
+                    own[i][j] = weighted[k].mul_add(velocities[j][k], own[i][j]);
+                }
+            }
+            for j in 0..D {
+                for k in 0..K {
+                    next[i][j] = weighted[k].mul_add(velocities_next[j][k], next[i][j]);
+                }
+            }
         }
     }
 }
 
+impl<const D: usize> Moments<D> {
+    fn zero() -> Self {
+        let zero = Four::splat(0.0);
+        Self { own: [[zero; D]; D], next: [[zero; D]; D] }
+    }
+}
+
 impl<const D: usize> SymmetricPart<D> {
+    /// The form of the moments.
+    fn integral(&self, moments: &[Moments<D>]) -> f64 {
+        let moment = |node: usize, of: fn(&Moments<D>) -> &[[Four; D]; D], i: usize, j: usize| {
+            of(&moments[node / Four::LANES])[i][j].lane(node % Four::LANES)
+        };
+        let mut sum = 0.0;
+        for (node, block) in &self.diagonal {
+            for i in 0..D {
+                sum += block[(i, i)] * moment(*node, |m| &m.own, i, i);
+                for j in i + 1..D {
+                    sum += 2.0 * block[(i, j)] * moment(*node, |m| &m.own, i, j);
+                }
+            }
+        }
+        // What stands above the diagonal is mirrored below.
+        for (node, block) in &self.upper {
+            for i in 0..D {
+                for j in 0..D {
+                    sum += 2.0 * block[(i, j)] * moment(*node, |m| &m.next, i, j);
+                }
+            }
+        }
+        sum
+    }
+
     fn new(m: &BlockTridiagonal<f64, D>) -> Self {
         let part = symmetric_part(m);
         let threshold = CANCELLED * largest(m);
@@ -184,6 +239,10 @@ mod tests {
     use super::*;
     use crate::linalg::DOFS;
 
+    fn field(nodes: &[[f64; DOFS]]) -> NodalField {
+        NodalField::from_nodes(nodes)
+    }
+
     /// `full` of every hundred rows carry blocks.
     fn matrix(rows: usize, full: usize) -> BlockTridiagonal<f64> {
         let mut m = BlockTridiagonal::zeros(rows);
@@ -221,12 +280,12 @@ mod tests {
             let (m, other) = (matrix(rows, full), matrix(rows, 100));
             let mut forms = Forms::new([&m, &other], &m);
             for _ in 0..2 * GATHERED {
-                forms.gather(7.0, &mut x.clone(), &mut v.clone());
+                forms.gather(7.0, &mut field(&x), &mut field(&v));
             }
             forms.forget();
-            forms.add([(0.5, &*v, &*x), (0.25, &*v, &*x)]);
+            forms.add([(0.5, &field(&v), &field(&x)), (0.25, &field(&v), &field(&x))]);
             for _ in 0..GATHERED + 1 {
-                forms.gather(0.4 / (GATHERED + 1) as f64, &mut v2.clone(), &mut x2.clone());
+                forms.gather(0.4 / (GATHERED + 1) as f64, &mut field(&v2), &mut field(&x2));
             }
             // v^T M v sees the symmetric part alone; (v^T M x - x^T M v) / 2 the skew one.
             let square = |m| 0.75 * product(&v, m, &v) + 0.4 * product(&v2, m, &v2);
@@ -246,10 +305,10 @@ mod tests {
             // A rejected step may have left anything.
             let not_finite = vec![[f64::NAN; DOFS]; rows];
             for _ in 0..GATHERED {
-                forms.gather(7.0, &mut not_finite.clone(), &mut not_finite.clone());
+                forms.gather(7.0, &mut field(&not_finite), &mut field(&not_finite));
             }
             forms.forget();
-            forms.gather(1.0, &mut v.clone(), &mut x.clone());
+            forms.gather(1.0, &mut field(&v), &mut field(&x));
             let wanted = product(&v, &m, &v);
             assert!((forms.take().symmetric[0] - wanted).abs() < tolerance);
         }

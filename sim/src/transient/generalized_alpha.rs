@@ -1,10 +1,10 @@
 //! The generalized-alpha method of Chung and Hulbert (1993), second order.
 
 use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver, flat, flat_mut};
+use super::implicit::{StageCoefficients, StageSolver};
 use super::run::{Books, State};
-use crate::linalg::SingularBlock;
-use crate::model::{DynamicSystem, NodalVector};
+use crate::linalg::{Four, Lane, NodalField, SingularBlock};
+use crate::model::DynamicSystem;
 
 /// Spectral radius at infinite frequency where none is asked for. One (the trapezium rule) must not be used with a fixed number of
 /// contact sweeps: it fails silently (performance.md section 3).
@@ -33,10 +33,10 @@ pub(super) struct GeneralizedAlpha<const D: usize> {
     step: f64,
     spectral_radius: f64,
     pub(super) solver: StageSolver<D>,
-    acceleration_offset: NodalVector<D>,
-    velocity_offset: NodalVector<D>,
-    mean_velocity: NodalVector<D>,
-    next_displacement: NodalVector<D>,
+    acceleration_offset: NodalField<D>,
+    velocity_offset: NodalField<D>,
+    mean_velocity: NodalField<D>,
+    next_displacement: NodalField<D>,
 }
 
 impl<const D: usize> GeneralizedAlpha<D> {
@@ -48,7 +48,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         spectral_radius: f64,
     ) -> Result<Self, SingularBlock> {
         let solver = StageSolver::new(system, initial, stage_coefficients(step, spectral_radius), sweeps)?;
-        let zero = vec![[0.0; D]; initial.len()];
+        let zero = NodalField::zeros(initial.len());
         Ok(Self {
             step,
             spectral_radius,
@@ -70,32 +70,29 @@ impl<const D: usize> GeneralizedAlpha<D> {
     ) {
         let (_, alpha_f, beta, _) = parameters(self.spectral_radius);
         let h = self.step;
+        self.predict(state);
         let solver = &mut self.solver;
-        level_offsets(
-            &LevelCoefficients::new(h, self.spectral_radius),
-            state,
-            flat_mut(&mut self.acceleration_offset),
-            flat_mut(&mut self.velocity_offset),
-            flat_mut(&mut solver.displacement),
-            flat_mut(&mut solver.velocity),
-        );
         let level_time = time + (1.0 - alpha_f) * h;
         solver.solve(forces, level_time, &self.acceleration_offset, &self.velocity_offset);
         step_end(
             &EndCoefficients::new(h, self.spectral_radius),
             state,
-            flat(&solver.displacement),
-            flat_mut(&mut self.next_displacement),
-            flat_mut(&mut self.velocity_offset),
-            flat_mut(&mut self.acceleration_offset),
-            flat_mut(&mut self.mean_velocity),
+            &solver.displacement,
+            [
+                &mut self.next_displacement,
+                &mut self.velocity_offset,
+                &mut self.acceleration_offset,
+                &mut self.mean_velocity,
+            ],
         );
         std::mem::swap(&mut state.displacement, &mut self.next_displacement);
         std::mem::swap(&mut state.velocity, &mut self.velocity_offset);
         std::mem::swap(&mut state.acceleration, &mut self.acceleration_offset);
         // The Taylor series of a step has h^2/6 where the method has h^2 beta before the change of acceleration.
         let (before, after) = (&self.acceleration_offset, &state.acceleration);
-        errors.add(before.len(), |n, d| h * h * (beta - 1.0 / 6.0) * (after[n][d] - before[n][d]));
+        let factor = Four::splat(h * h * (beta - 1.0 / 6.0));
+        let (before, after) = (before.groups(), after.groups());
+        errors.add(before.len(), |group, dof| factor * (after[group][dof] - before[group][dof]));
         ledger.book(
             h,
             &mut self.mean_velocity,
@@ -104,16 +101,41 @@ impl<const D: usize> GeneralizedAlpha<D> {
             forces.unbalance_at(level_time),
         );
     }
+
+    /// Offsets of the step's level, and what its solution starts from.
+    fn predict(&mut self, state: &State<D>) {
+        let c = LevelCoefficients::new(self.step, self.spectral_radius);
+        let n = state.displacement.groups().len();
+        let [x0, v0, a0] =
+            [&state.displacement, &state.velocity, &state.acceleration].map(|field| &field.groups()[..n]);
+        let acceleration_offset = &mut self.acceleration_offset.groups_mut()[..n];
+        let velocity_offset = &mut self.velocity_offset.groups_mut()[..n];
+        let x = &mut self.solver.displacement.groups_mut()[..n];
+        let v = &mut self.solver.velocity.groups_mut()[..n];
+        for i in 0..n {
+            for dof in 0..D {
+                let (x0, v0, a0) = (x0[i][dof], v0[i][dof], a0[i][dof]);
+                let sum = |[of_x, of_v, of_a]: [Four; 3]| of_a.mul_add(a0, of_v.mul_add(v0, of_x * x0));
+                acceleration_offset[i][dof] = sum(c.acceleration);
+                velocity_offset[i][dof] = sum(c.velocity);
+                // The predictor is for the contacts alone, which ask for the lateral motion and the twist.
+                if dof < 2 || dof + 1 == D {
+                    x[i][dof] = c.step_to_level.mul_add(c.half_step.mul_add(a0, v0), x0);
+                    v[i][dof] = c.step_to_level.mul_add(a0, v0);
+                }
+            }
+        }
+    }
 }
 
 /// What the offsets and the predictor of a step's level take from the state at its start.
 struct LevelCoefficients {
-    step_to_level: f64,
-    half_step: f64,
+    step_to_level: Four,
+    half_step: Four,
     /// Of displacement, velocity and acceleration in a^.
-    acceleration: [f64; 3],
+    acceleration: [Four; 3],
     /// The same in v^.
-    velocity: [f64; 3],
+    velocity: [Four; 3],
 }
 
 impl LevelCoefficients {
@@ -121,90 +143,69 @@ impl LevelCoefficients {
         let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
         let StageCoefficients { acceleration, velocity } = stage_coefficients(h, spectral_radius);
         Self {
-            step_to_level: (1.0 - alpha_f) * h,
-            half_step: 0.5 * h,
+            step_to_level: Four::splat((1.0 - alpha_f) * h),
+            half_step: Four::splat(0.5 * h),
             acceleration: [
                 -acceleration,
                 -(1.0 - alpha_m) / (beta * h),
                 alpha_m - (1.0 - alpha_m) * (0.5 - beta) / beta,
-            ],
+            ]
+            .map(Four::splat),
             velocity: [
                 -velocity,
                 1.0 - (1.0 - alpha_f) * gamma / beta,
                 (1.0 - alpha_f) * h * (1.0 - gamma - gamma * (0.5 - beta) / beta),
-            ],
+            ]
+            .map(Four::splat),
         }
-    }
-}
-
-/// Offsets a^ and v^ of a level, and its predictor in `x` and `v`: the acceleration stays as it is. As the function below, one
-/// of its own: only where its slices are arguments does the compiler know that they do not overlap, and takes four values at
-/// a time.
-#[inline(never)]
-fn level_offsets<const D: usize>(
-    c: &LevelCoefficients,
-    start: &State<D>,
-    acceleration_offset: &mut [f64],
-    velocity_offset: &mut [f64],
-    x: &mut [f64],
-    v: &mut [f64],
-) {
-    let n = x.len();
-    let [x0, v0, a0] = [&start.displacement, &start.velocity, &start.acceleration].map(|s| &flat(s)[..n]);
-    let (acceleration_offset, velocity_offset) = (&mut acceleration_offset[..n], &mut velocity_offset[..n]);
-    let v = &mut v[..n];
-    let sum = |c: &[f64; 3], i: usize| c[2].mul_add(a0[i], c[1].mul_add(v0[i], c[0] * x0[i]));
-    for i in 0..n {
-        acceleration_offset[i] = sum(&c.acceleration, i);
-        velocity_offset[i] = sum(&c.velocity, i);
-        x[i] = c.step_to_level.mul_add(c.half_step.mul_add(a0[i], v0[i]), x0[i]);
-        v[i] = c.step_to_level.mul_add(a0[i], v0[i]);
     }
 }
 
 /// What the step's end takes from its level and its start.
 struct EndCoefficients {
     /// 1 / (1 - alpha_f): draws the change up to the level out to the whole step.
-    drawn_out: f64,
-    per_step: f64,
+    drawn_out: Four,
+    per_step: Four,
     /// Of the mean velocity less that at the start, and of the acceleration at the start, in the acceleration at the end.
-    acceleration: [f64; 2],
+    acceleration: [Four; 2],
     /// Of the accelerations at the start and at the end in the velocity at the end.
-    velocity: [f64; 2],
+    velocity: [Four; 2],
 }
 
 impl EndCoefficients {
     fn new(h: f64, spectral_radius: f64) -> Self {
         let (_, alpha_f, beta, gamma) = parameters(spectral_radius);
         Self {
-            drawn_out: 1.0 / (1.0 - alpha_f),
-            per_step: 1.0 / h,
-            acceleration: [1.0 / (beta * h), -(0.5 - beta) / beta],
-            velocity: [h * (1.0 - gamma), h * gamma],
+            drawn_out: Four::splat(1.0 / (1.0 - alpha_f)),
+            per_step: Four::splat(1.0 / h),
+            acceleration: [1.0 / (beta * h), -(0.5 - beta) / beta].map(Four::splat),
+            velocity: [h * (1.0 - gamma), h * gamma].map(Four::splat),
         }
     }
 }
 
-/// The step's end, and its mean velocity, from the displacements `level`.
-#[inline(never)]
+/// The step's end - displacement, velocity, acceleration - and its mean velocity, from the displacements `level`.
 fn step_end<const D: usize>(
     c: &EndCoefficients,
     start: &State<D>,
-    level: &[f64],
-    x: &mut [f64],
-    v: &mut [f64],
-    a: &mut [f64],
-    mean_velocity: &mut [f64],
+    level: &NodalField<D>,
+    end: [&mut NodalField<D>; 4],
 ) {
-    let n = x.len();
-    let [x0, v0, a0] = [&start.displacement, &start.velocity, &start.acceleration].map(|s| &flat(s)[..n]);
-    let (level, v, a, mean_velocity) = (&level[..n], &mut v[..n], &mut a[..n], &mut mean_velocity[..n]);
+    let n = level.groups().len();
+    let [x0, v0, a0, level] =
+        [&start.displacement, &start.velocity, &start.acceleration, level].map(|field| &field.groups()[..n]);
+    let [x, v, a, mean_velocity] = end.map(|field| &mut field.groups_mut()[..n]);
     for i in 0..n {
-        let change = (level[i] - x0[i]) * c.drawn_out;
-        mean_velocity[i] = change * c.per_step;
-        a[i] = (mean_velocity[i] - v0[i]).mul_add(c.acceleration[0], c.acceleration[1] * a0[i]);
-        v[i] = c.velocity[1].mul_add(a[i], c.velocity[0].mul_add(a0[i], v0[i]));
-        x[i] = x0[i] + change;
+        for dof in 0..D {
+            let (x0, v0, a0) = (x0[i][dof], v0[i][dof], a0[i][dof]);
+            let change = (level[i][dof] - x0) * c.drawn_out;
+            let mean = change * c.per_step;
+            let after = (mean - v0).mul_add(c.acceleration[0], c.acceleration[1] * a0);
+            v[i][dof] = c.velocity[1].mul_add(after, c.velocity[0].mul_add(a0, v0));
+            x[i][dof] = x0 + change;
+            a[i][dof] = after;
+            mean_velocity[i][dof] = mean;
+        }
     }
 }
 

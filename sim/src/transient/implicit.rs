@@ -5,8 +5,8 @@
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix is factored once a run;
 //! contact stays on the right-hand side and is evaluated afresh in each sweep.
 
-use super::forces::{ContactForces, Forces, side_by_side};
-use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, SingularBlock};
+use super::forces::{ContactForces, Forces};
+use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric};
 use crate::model::{DynamicSystem, NodalVector};
 
 /// Change of a lateral displacement between two sweeps at which more sweeps are pointless \[m\]: 0.01 N of
@@ -17,17 +17,19 @@ const SWEEP_TOLERANCE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct StageSolver<const D: usize> {
     factor: Factor<f64, D>,
-    mass_and_damping: MatrixPair<f64, D>,
+    mass_and_damping: MatrixPair<Symmetric, D>,
     velocity_coefficient: f64,
     held: Vec<(usize, usize)>,
     held_values: Vec<f64>,
     sweeps: u32,
-    external: NodalVector<D>,
+    external: NodalField<D>,
     right: NodalVector<D>,
-    /// Displacements of the stage: the predictor before a solve, the solution after it.
-    pub(super) displacement: NodalVector<D>,
-    /// Velocities of the stage, likewise.
-    pub(super) velocity: NodalVector<D>,
+    /// Displacements of the stage: the predictor of the lateral ones before a solve, the solution after it.
+    pub(super) displacement: NodalField<D>,
+    /// Velocities of the stage, likewise; of the predictor also the twist's.
+    pub(super) velocity: NodalField<D>,
+    /// Displacements of the sweep before.
+    previous: NodalField<D>,
     /// Contact forces that went into the last sweep.
     pub(super) contact: ContactForces,
     pub(super) monitor: SweepMonitor,
@@ -94,8 +96,7 @@ impl<const D: usize> StageSolver<D> {
         let coefficients = StageCoefficients { acceleration, velocity: velocity_coefficient };
         let matrix = coefficients.matrix(system);
         let held = held_list(system);
-        let n = initial.len();
-        let zero = vec![[0.0; D]; n];
+        let zero = NodalField::zeros(initial.len());
         Ok(Self {
             factor: Factor::new(&matrix)?,
             mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
@@ -107,10 +108,11 @@ impl<const D: usize> StageSolver<D> {
             held,
             sweeps,
             external: zero.clone(),
-            right: zero.clone(),
-            displacement: initial.to_vec(),
-            velocity: zero,
-            contact: ContactForces::none(n),
+            right: vec![[0.0; D]; initial.len()],
+            displacement: zero.clone(),
+            velocity: zero.clone(),
+            previous: zero,
+            contact: ContactForces::none(initial.len()),
             monitor: SweepMonitor::default(),
         })
     }
@@ -121,8 +123,8 @@ impl<const D: usize> StageSolver<D> {
         &mut self,
         forces: &Forces<D>,
         time: f64,
-        acceleration_offset: &[[f64; D]],
-        velocity_offset: &[[f64; D]],
+        acceleration_offset: &NodalField<D>,
+        velocity_offset: &NodalField<D>,
     ) {
         self.mass_and_damping.subtract_products(
             &forces.load,
@@ -133,73 +135,72 @@ impl<const D: usize> StageSolver<D> {
         forces.add_unbalance(time, &mut self.external);
         // The wall does not push the top node, which alone is held here.
         for (&(node, dof), &value) in self.held.iter().zip(&self.held_values) {
-            self.external[node][dof] = value;
+            self.external[(node, dof)] = value;
         }
         let mut change = 0.0;
         for sweep in 1..=self.sweeps {
             let (x, c) = (&self.displacement, Four::splat(self.velocity_coefficient));
             if sweep == 1 {
-                let rates = |first, dof| side_by_side(&self.velocity, first, dof);
+                let rates = |group: usize, dof: usize| self.velocity.groups()[group][dof];
                 forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             } else {
                 // Few nodes touch: only their velocities are formed between the sweeps.
-                let rates = |first, dof| {
-                    side_by_side(x, first, dof).mul_add(c, side_by_side(velocity_offset, first, dof))
-                };
+                let (moved, offset) = (x.groups(), velocity_offset.groups());
+                let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
                 forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             }
             self.factor.solve_in_place(&mut self.right);
+            std::mem::swap(&mut self.displacement, &mut self.previous);
+            self.displacement.copy_from_nodes(&self.right);
             if sweep > 1 {
-                change = largest_change(&self.right, &self.displacement);
+                change = largest_change(&self.displacement, &self.previous);
             }
-            std::mem::swap(&mut self.displacement, &mut self.right);
             self.monitor.sweeps += 1;
             // Two sweeps are a fixed count; more are a cap on the way to standing still.
             if sweep >= 2 && self.sweeps > 2 && change <= SWEEP_TOLERANCE {
                 break;
             }
         }
-        multiply_add(
-            flat(&self.displacement),
-            self.velocity_coefficient,
-            flat(velocity_offset),
-            flat_mut(&mut self.velocity),
-        );
+        multiply_add(&self.displacement, self.velocity_coefficient, velocity_offset, &mut self.velocity);
         for &(node, dof) in &self.held {
-            self.velocity[node][dof] = 0.0;
+            self.velocity[(node, dof)] = 0.0;
         }
         self.monitor.largest_change = self.monitor.largest_change.max(change);
         self.monitor.loose_solves += u64::from(change > 1e-5);
     }
 
     /// Sets what is held to zero.
-    pub(super) fn clear_held(&self, rates: &mut [[f64; D]]) {
+    pub(super) fn clear_held(&self, rates: &mut NodalField<D>) {
         for &(node, dof) in &self.held {
-            rates[node][dof] = 0.0;
+            rates[(node, dof)] = 0.0;
         }
     }
 }
 
-/// `out = x factor + y`. Like its kind, a function of its own: only where its slices are arguments does the compiler know
-/// that they do not overlap, and takes four values at a time.
-#[inline(never)]
-pub(super) fn multiply_add(x: &[f64], factor: f64, y: &[f64], out: &mut [f64]) {
-    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
-        *out = x.mul_add(factor, *y);
+/// `out = x factor + y`.
+pub(super) fn multiply_add<const D: usize>(
+    x: &NodalField<D>,
+    factor: f64,
+    y: &NodalField<D>,
+    out: &mut NodalField<D>,
+) {
+    let factor = Four::splat(factor);
+    for ((out, x), y) in out.groups_mut().iter_mut().zip(x.groups()).zip(y.groups()) {
+        for dof in 0..D {
+            out[dof] = x[dof].mul_add(factor, y[dof]);
+        }
     }
 }
 
 /// The largest difference of a lateral displacement \[m\].
-fn largest_change<const D: usize>(new: &[[f64; D]], old: &[[f64; D]]) -> f64 {
-    // A node's first four values at a time, the last two for nothing; two chains that do not wait for each other.
-    let first = |x: &[f64; D]| Four::new([x[0], x[1], x[2], x[3]]);
+pub(super) fn largest_change<const D: usize>(new: &NodalField<D>, old: &NodalField<D>) -> f64 {
     let mut largest = [Four::splat(0.0); 2];
-    for (i, (new, old)) in new.iter().zip(old).enumerate() {
-        let largest = &mut largest[i % 2];
-        *largest = (first(new) - first(old)).abs().max(*largest);
+    for (new, old) in new.groups().iter().zip(old.groups()) {
+        for (dof, largest) in largest.iter_mut().enumerate() {
+            *largest = (new[dof] - old[dof]).abs().max(*largest);
+        }
     }
-    let [u, v, ..] = largest[0].max(largest[1]).to_array();
-    u.max(v)
+    largest[0].max(largest[1]).to_array().into_iter().fold(0.0, f64::max)
 }
 
 /// Held degrees of freedom as (node, dof).
@@ -210,12 +211,4 @@ pub(super) fn held_list<const D: usize>(system: &DynamicSystem<D>) -> Vec<(usize
         .enumerate()
         .flat_map(|(node, held)| (0..D).filter(|&dof| held[dof]).map(move |dof| (node, dof)))
         .collect()
-}
-
-pub(super) fn flat<const D: usize>(v: &[[f64; D]]) -> &[f64] {
-    v.as_flattened()
-}
-
-pub(super) fn flat_mut<const D: usize>(v: &mut [[f64; D]]) -> &mut [f64] {
-    v.as_flattened_mut()
 }

@@ -85,8 +85,8 @@ impl ContactStatistics {
     }
 
     /// Takes in one step of `duration` seconds.
-    pub(super) fn observe<const D: usize>(&mut self, x: &[f64; D], contact: &NodeContact, duration: f64) {
-        self.largest_radius_squared = self.largest_radius_squared.max(x[0] * x[0] + x[1] * x[1]);
+    pub(super) fn observe(&mut self, [u, v]: [f64; 2], contact: &NodeContact, duration: f64) {
+        self.largest_radius_squared = self.largest_radius_squared.max(u * u + v * v);
         if contact.touching {
             self.contact_count += u64::from(!self.in_contact);
             self.contact_time += duration;

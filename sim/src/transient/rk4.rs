@@ -4,10 +4,10 @@
 
 use super::energy::Ledger;
 use super::error::ErrorSum;
-use super::forces::{ContactForces, Forces, side_by_side};
-use super::implicit::{flat, flat_mut, held_list};
+use super::forces::{ContactForces, Forces};
+use super::implicit::{held_list, largest_change, multiply_add};
 use super::run::{Books, State, steps_per_interval};
-use crate::linalg::{Factor, MatrixPair, SingularBlock};
+use crate::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
 /// Shortest step relative to the first: below it the run counts as diverged.
@@ -17,15 +17,15 @@ const SMALLEST_STEP_RATIO: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(super) struct Rk4<const D: usize> {
     mass: Factor<f64, D>,
-    damping_and_stiffness: MatrixPair<f64, D>,
+    damping_and_stiffness: MatrixPair<General, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
     /// None means fixed steps.
     adaptive: Option<Adaptive<D>>,
-    rates: [(NodalVector<D>, NodalVector<D>); 4],
-    stage: (NodalVector<D>, NodalVector<D>),
+    rates: [(NodalField<D>, NodalField<D>); 4],
+    stage: (NodalField<D>, NodalField<D>),
     /// What moves the string but the contacts.
-    external: NodalVector<D>,
+    external: NodalField<D>,
     right: NodalVector<D>,
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
@@ -56,7 +56,7 @@ impl<const D: usize> Rk4<D> {
         hole_radius: f64,
     ) -> Result<Self, SingularBlock> {
         let n = system.load.len();
-        let zero = vec![[0.0; D]; n];
+        let zero = NodalField::zeros(n);
         let state = State::at_rest(&zero, largest_step);
         Ok(Self {
             mass: mass_factor(system)?,
@@ -71,8 +71,8 @@ impl<const D: usize> Rk4<D> {
             }),
             rates: std::array::from_fn(|_| (zero.clone(), zero.clone())),
             stage: (zero.clone(), zero.clone()),
-            external: zero.clone(),
-            right: zero,
+            external: zero,
+            right: vec![[0.0; D]; n],
             contact: ContactForces::none(n),
             rejected: 0,
             steps: 0,
@@ -126,16 +126,11 @@ impl<const D: usize> Rk4<D> {
                 self.step(forces, start + f64::from(half) * h, h, fine, Some(ledger));
             }
             // Two steps of h err by 1/15 of their distance from one step of 2h.
-            let error = fine
-                .displacement
-                .iter()
-                .zip(&coarse.displacement)
-                .fold(0.0_f64, |m, (a, b)| m.max((a[0] - b[0]).abs()).max((a[1] - b[1]).abs()))
-                / (15.0 * *hole_radius);
+            let error = largest_change(&fine.displacement, &coarse.displacement) / (15.0 * *hole_radius);
             if error <= *tolerance {
-                errors.add(fine.displacement.len(), |n, d| {
-                    (fine.displacement[n][d] - coarse.displacement[n][d]) / 15.0
-                });
+                let share = Four::splat(1.0 / 15.0);
+                let (end, other) = (fine.displacement.groups(), coarse.displacement.groups());
+                errors.add(end.len(), |group, dof| (end[group][dof] - other[group][dof]) * share);
                 std::mem::swap(state, fine);
                 elapsed += 2.0 * h;
                 let factor = 0.9 * (*tolerance / error.max(1e-300)).powf(0.2);
@@ -157,7 +152,8 @@ impl<const D: usize> Rk4<D> {
     /// velocity between the two.
     fn add_error(&self, h: f64, state: &State<D>, errors: &mut ErrorSum) {
         let (last, _) = &self.rates[3];
-        errors.add(last.len(), |n, d| h / 6.0 * (last[n][d] - state.velocity[n][d]));
+        let (last, velocity, sixth) = (last.groups(), state.velocity.groups(), Four::splat(h / 6.0));
+        errors.add(last.len(), |group, dof| sixth * (last[group][dof] - velocity[group][dof]));
     }
 
     /// One step of `h`, its work in the ledger if it is to be kept.
@@ -175,24 +171,24 @@ impl<const D: usize> Rk4<D> {
             let c = FRACTIONS[stage] * h;
             let (x, v) = (&mut self.stage.0, &mut self.stage.1);
             if stage == 0 {
-                x.copy_from_slice(&state.displacement);
-                v.copy_from_slice(&state.velocity);
+                x.copy_from(&state.displacement);
+                v.copy_from(&state.velocity);
             } else {
                 let (rate_x, rate_v) = &self.rates[stage - 1];
-                axpy_into(x, &state.displacement, c, rate_x);
-                axpy_into(v, &state.velocity, c, rate_v);
+                multiply_add(rate_x, c, &state.displacement, x);
+                multiply_add(rate_v, c, &state.velocity, v);
             }
             let stage_time = time + c;
             self.damping_and_stiffness.subtract_products(&forces.load, v, x, &mut self.external);
             forces.add_unbalance(stage_time, &mut self.external);
             for &(node, dof) in &self.held {
-                self.external[node][dof] = 0.0;
+                self.external[(node, dof)] = 0.0;
             }
-            let rates = |first, dof| side_by_side(v, first, dof);
+            let rates = |group: usize, dof: usize| v.groups()[group][dof];
             forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             self.mass.solve_in_place(&mut self.right);
-            self.rates[stage].0.copy_from_slice(v);
-            std::mem::swap(&mut self.rates[stage].1, &mut self.right);
+            self.rates[stage].0.copy_from(v);
+            self.rates[stage].1.copy_from_nodes(&self.right);
             if let Some(ledger) = &mut ledger {
                 ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
             }
@@ -217,14 +213,11 @@ pub(super) fn mass_factor<const D: usize>(
     Factor::new(&mass)
 }
 
-fn axpy<const D: usize>(y: &mut [[f64; D]], a: f64, x: &[[f64; D]]) {
-    for (y, x) in flat_mut(y).iter_mut().zip(flat(x)) {
-        *y = a.mul_add(*x, *y);
-    }
-}
-
-fn axpy_into<const D: usize>(out: &mut [[f64; D]], start: &[[f64; D]], a: f64, x: &[[f64; D]]) {
-    for ((out, start), x) in flat_mut(out).iter_mut().zip(flat(start)).zip(flat(x)) {
-        *out = a.mul_add(*x, *start);
+fn axpy<const D: usize>(y: &mut NodalField<D>, a: f64, x: &NodalField<D>) {
+    let a = Four::splat(a);
+    for (y, x) in y.groups_mut().iter_mut().zip(x.groups()) {
+        for dof in 0..D {
+            y[dof] = a.mul_add(x[dof], y[dof]);
+        }
     }
 }

@@ -7,13 +7,14 @@ use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
 use super::esdirk::Esdirk;
 use super::failure::{DivergenceReason, TransientError};
-use super::forces::{ContactForces, Forces, side_by_side};
+use super::forces::{ContactForces, Forces};
 use super::generalized_alpha::{self, GeneralizedAlpha};
 use super::implicit::SweepMonitor;
 use super::records::{ContactStatistics, NodeHistory};
 use super::rk4::{self, Rk4};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, stability};
 use crate::control::Control;
+use crate::linalg::NodalField;
 use crate::model::{DynamicSystem, Model, NodalVector};
 use crate::scenario::Integrator;
 
@@ -28,7 +29,7 @@ pub(super) struct Run<'m, const D: usize> {
     /// Displacements at the start, of all degrees of freedom.
     rest: NodalVector,
     /// Those that are solved for.
-    initial: NodalVector<D>,
+    initial: NodalField<D>,
     stepper: Stepper<D>,
     ledger: Ledger<D>,
     /// Samples of a whole run.
@@ -61,11 +62,11 @@ pub(super) struct Progress<const D: usize> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct State<const D: usize> {
     #[serde(with = "checkpoint::nodal")]
-    pub(super) displacement: NodalVector<D>,
+    pub(super) displacement: NodalField<D>,
     #[serde(with = "checkpoint::nodal")]
-    pub(super) velocity: NodalVector<D>,
+    pub(super) velocity: NodalField<D>,
     #[serde(with = "checkpoint::nodal")]
-    pub(super) acceleration: NodalVector<D>,
+    pub(super) acceleration: NodalField<D>,
     /// Powers at the step's end (the first stage of the next ESDIRK step).
     pub(super) stage_power: Work,
     /// Step of the adaptive method \[s\].
@@ -103,6 +104,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let system = system.reduced_to(places);
         let forces = Forces::new(model, &system);
         let initial: NodalVector<D> = rest.iter().map(|rest| places.map(|place| rest[place])).collect();
+        let start = NodalField::from_nodes(&initial);
         let initial = &initial;
         let ledger = Ledger::new(model, &system, initial);
         let interval = 1.0 / scenario.recording.rate_hz;
@@ -135,7 +137,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let mut run = Self {
             progress: Progress {
                 sample: 0,
-                state: State::at_rest(initial, stepping.step),
+                state: State::at_rest(&start, stepping.step),
                 work: Work::default(),
                 monitor: SweepMonitor::default(),
                 errors: ErrorSum::default(),
@@ -151,7 +153,7 @@ impl<'m, const D: usize> Run<'m, D> {
             model,
             system,
             forces,
-            initial: initial.clone(),
+            initial: start,
             rest,
             stepper,
             ledger,
@@ -223,22 +225,21 @@ impl<'m, const D: usize> Run<'m, D> {
     /// Acceleration and powers at t = 0, with the dynamic friction law: most of the static friction vanishes there.
     fn start(&mut self) -> Result<(), TransientError> {
         let state = &mut self.progress.state;
-        let n = state.displacement.len();
-        let mut right = self.forces.load.clone();
-        let mut linear = vec![[0.0; D]; n];
+        let n = state.displacement.nodes();
+        let (mut right, mut linear) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
         let mut contact = ContactForces::none(n);
-        self.forces.add_unbalance(0.0, &mut right);
-        let rates = |first, dof| side_by_side(&state.velocity, first, dof);
-        let others = right.clone();
-        self.forces.contact_into(&state.displacement, rates, &mut contact, &others, &mut right);
-        self.system.stiffness.multiply_into(&state.displacement, &mut linear);
+        let mut external = self.forces.load.clone();
+        self.forces.add_unbalance(0.0, &mut external);
+        let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
+        self.forces.contact_into(&state.displacement, rates, &mut contact, &external, &mut right);
+        self.system.stiffness.multiply_into(&state.displacement.to_nodes(), &mut linear);
         for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
             for dof in 0..D {
                 right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
             }
         }
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
-        state.acceleration = right;
+        state.acceleration.copy_from_nodes(&right);
         state.stage_power =
             self.ledger.power(&state.velocity, &state.displacement, &contact, self.forces.unbalance_at(0.0));
         observe(&mut self.progress.contacts, state, &contact, 0.0);
@@ -254,8 +255,10 @@ impl<'m, const D: usize> Run<'m, D> {
                     all
                 })
             };
-            history
-                .push(&all(state.displacement[node], self.rest[node]), &all(state.velocity[node], [0.0; 6]));
+            history.push(
+                &all(state.displacement.node(node), self.rest[node]),
+                &all(state.velocity.node(node), [0.0; 6]),
+            );
         }
         if self.progress.sample.is_multiple_of(self.ledger_every) {
             let time = self.time();
@@ -324,16 +327,17 @@ impl<'m, const D: usize> Run<'m, D> {
         // Without a wall the string may swing freely, but not out of the theory of small rotations.
         let bound = if self.model.effects.contact { 2.0 } else { 100.0 } * hole_radius;
         let (mut fastest, mut highest_speed) = (self.fastest, 0.0);
-        for (node, (x, v)) in state.displacement.iter().zip(&state.velocity).enumerate() {
-            // A solve spreads what is not finite over the whole string; it began where the motion was fastest.
-            if !x.iter().chain(v).all(|value| value.is_finite()) {
-                return Err(self.diverged(self.fastest, DivergenceReason::NotFinite));
-            }
-            let speed_squared = v[0] * v[0] + v[1] * v[1];
+        // A solve spreads what is not finite over the whole string; it began where the motion was fastest.
+        if !state.displacement.is_finite() || !state.velocity.is_finite() {
+            return Err(self.diverged(self.fastest, DivergenceReason::NotFinite));
+        }
+        let (x, v) = (&state.displacement, &state.velocity);
+        for node in 0..x.nodes() {
+            let speed_squared = v[(node, 0)] * v[(node, 0)] + v[(node, 1)] * v[(node, 1)];
             if speed_squared > highest_speed {
                 (fastest, highest_speed) = (node, speed_squared);
             }
-            let radius_squared = x[0] * x[0] + x[1] * x[1];
+            let radius_squared = x[(node, 0)] * x[(node, 0)] + x[(node, 1)] * x[(node, 1)];
             if radius_squared > bound * bound {
                 let radius = radius_squared.sqrt();
                 return Err(self.diverged(node, DivergenceReason::OutsideHole { radius, hole_radius }));
@@ -357,15 +361,15 @@ impl<const D: usize> State<D> {
     /// Takes over another state of the same string.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let Self { displacement, velocity, acceleration, stage_power, adaptive_step } = self;
-        displacement.copy_from_slice(&other.displacement);
-        velocity.copy_from_slice(&other.velocity);
-        acceleration.copy_from_slice(&other.acceleration);
+        displacement.copy_from(&other.displacement);
+        velocity.copy_from(&other.velocity);
+        acceleration.copy_from(&other.acceleration);
         *stage_power = other.stage_power;
         *adaptive_step = other.adaptive_step;
     }
 
-    pub(super) fn at_rest(displacement: &NodalVector<D>, adaptive_step: f64) -> Self {
-        let zero = vec![[0.0; D]; displacement.len()];
+    pub(super) fn at_rest(displacement: &NodalField<D>, adaptive_step: f64) -> Self {
+        let zero = NodalField::zeros(displacement.nodes());
         Self {
             displacement: displacement.clone(),
             velocity: zero.clone(),
@@ -393,6 +397,7 @@ fn observe<const D: usize>(
     duration: f64,
 ) {
     contact.each_node(statistics.len(), |node, contact| {
-        statistics[node].observe(&state.displacement[node], &contact, duration);
+        let x = &state.displacement;
+        statistics[node].observe([x[(node, 0)], x[(node, 1)]], &contact, duration);
     });
 }

@@ -1,6 +1,6 @@
 //! What limits a step before accuracy does.
 
-use super::implicit::{StageCoefficients, flat, flat_mut};
+use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
 use crate::beam::ElementVector;
@@ -148,7 +148,7 @@ fn sweep_factor(
         if factor == 0.0 {
             break;
         }
-        flat_mut(&mut x).iter_mut().for_each(|value| *value /= factor);
+        x.as_flattened_mut().iter_mut().for_each(|value| *value /= factor);
     }
     Ok((factor, node))
 }
@@ -190,11 +190,11 @@ fn largest_ratio(
         }
         largest = dot(&x, &product) / mass_norm(&system.mass, &x);
         mass.solve_in_place(&mut product);
-        let norm = flat(&product).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let norm = product.as_flattened().iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         if norm == 0.0 {
             return Ok(0.0);
         }
-        for (x, product) in flat_mut(&mut x).iter_mut().zip(flat(&product)) {
+        for (x, product) in x.as_flattened_mut().iter_mut().zip(product.as_flattened()) {
             *x = product / norm;
         }
     }
@@ -222,5 +222,5 @@ fn mass_norm(mass: &BlockTridiagonal<f64>, x: &[[f64; 6]]) -> f64 {
 }
 
 fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
-    flat(a).iter().zip(flat(b)).map(|(a, b)| a * b).sum()
+    a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| a * b).sum()
 }

@@ -8,6 +8,8 @@ mod gc;
 mod health;
 mod modes;
 mod plan;
+#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+mod processor;
 mod service;
 mod simulate;
 mod soak;
@@ -116,6 +118,12 @@ impl Command {
 }
 
 fn main() -> anyhow::Result<()> {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+    processor::check().map_err(anyhow::Error::msg)?;
+    run()
+}
+
+fn run() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let filter = EnvFilter::try_from_env("DRILLSWEEP_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
     let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).with_filter(filter);

@@ -2,6 +2,8 @@
 
 use wide::{f64x2, f64x4};
 
+use super::four::FUSED;
+
 /// Up to six rows of one `f64` each; rows that a block does not have are zeros.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Column {
@@ -19,10 +21,14 @@ impl Column {
     /// `self * factor + addend`, each row rounded once.
     #[inline(always)]
     pub(super) fn mul_add(self, factor: f64, addend: Self) -> Self {
-        Column {
-            head: self.head.mul_add(f64x4::splat(factor), addend.head),
-            tail: self.tail.mul_add(f64x2::splat(factor), addend.tail),
+        if FUSED {
+            return Column {
+                head: self.head.mul_add(f64x4::splat(factor), addend.head),
+                tail: self.tail.mul_add(f64x2::splat(factor), addend.tail),
+            };
         }
+        let (a, b) = (self.to_rows::<6>(), addend.to_rows::<6>());
+        Column::new::<6>(&std::array::from_fn(|row| a[row].mul_add(factor, b[row])))
     }
 
     #[inline(always)]

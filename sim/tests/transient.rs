@@ -388,3 +388,33 @@ fn falling_friction_drives_torsion_at_some_kilohertz_unless_something_damps_it()
     let without_torque = residual(&|scenario| scenario.effects.set(Effect::FrictionTorque, Switch::Off));
     assert!(driven > 1e3 * damped && driven > 1e3 * without_torque, "{driven} {damped} {without_torque}");
 }
+
+/// The implicit methods read only half of the mass matrix.
+#[test]
+fn mass_is_symmetric_to_rounding_with_and_without_held_motions() {
+    for held in [None, Some(Effect::Torsion), Some(Effect::AxialMotion)] {
+        let mut scenario = base(1.0, Integrator::Esdirk4, 1e-3);
+        if let Some(effect) = held {
+            scenario.effects.set(effect, Switch::Off);
+        }
+        let model = Model::new(&scenario).unwrap();
+        let mass = model.dynamic_system(&Equilibrium::find(&model).unwrap()).mass;
+        for row in 0..mass.rows() {
+            for i in 0..6 {
+                for j in 0..6 {
+                    let mut pairs = vec![(mass.diagonal[row][(i, j)], mass.diagonal[row][(j, i)])];
+                    if row + 1 < mass.rows() {
+                        pairs.push((mass.upper[row][(i, j)], mass.lower[row + 1][(j, i)]));
+                    }
+                    for (above, below) in pairs {
+                        // Rounding of sums of a few terms; the entries of a node's own mass are up to 77 kg.
+                        assert!(
+                            (above - below).abs() < 1e-12,
+                            "{held:?}: row {row}, ({i}, {j}): {above} {below}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -24,7 +24,7 @@ fn supports(leaf_1_ecx: u32, leaf_7_ebx: u32) -> Result<(), String> {
     }
     Err(format!(
         "this processor has no {}, which the program was built for; RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release makes \
-         one that does without, to the same results at a tenth of the speed",
+         one that does without, to the same results at a twelfth of the speed",
         missing.join(" and no ")
     ))
 }

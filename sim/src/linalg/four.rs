@@ -7,7 +7,7 @@ use wide::f64x4;
 use super::{Lane, Mask};
 
 /// Whether vectors multiply and add in one instruction. Without, they would round twice, and a lane alone once: then all goes lane by
-/// lane, at a tenth of the speed, to the same bits.
+/// lane, at a twelfth of the speed, to the same bits.
 pub(super) const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 /// Four values side by side; each lane has the bits of one `f64` alone.

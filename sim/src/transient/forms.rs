@@ -130,7 +130,7 @@ impl<const N: usize, const D: usize> Forms<N, D> {
     }
 }
 
-// Without closures over arrays: they are not inlined, and a call a node is a tenth of the work.
+// Without closures over arrays, which the compiler does not always inline.
 fn add_products<const K: usize, const D: usize>(
     moments: &mut [Moments<D>],
     stages: &[BookedStage<'_, D>; K],

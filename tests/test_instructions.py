@@ -14,28 +14,28 @@ STEPS = 10
 
 KERNELS = {
     "esdirk4": {
-        "linalg::factor::Factor": 269_500,
+        "linalg::factor::Factor": 399_000,
         "linalg::pair::MatrixPair": 167_000,
-        "transient::forces::Forces": 213_000,
-        "linalg::skew::SkewPart": 87_000,
-        "transient::forms::Forms": 68_000,
-        "": 941_000,
+        "transient::forces::Forces": 141_500,
+        "linalg::skew::SkewPart": 67_500,
+        "transient::forms::Forms": 79_000,
+        "": 957_500,
     },
     "generalized_alpha": {
-        "linalg::factor::Factor": 54_000,
+        "linalg::factor::Factor": 80_000,
         "linalg::pair::MatrixPair": 33_500,
-        "transient::forces::Forces": 42_500,
-        "linalg::skew::SkewPart": 17_500,
-        "transient::forms::Forms": 14_000,
-        "": 217_000,
+        "transient::forces::Forces": 28_500,
+        "linalg::skew::SkewPart": 11_000,
+        "transient::forms::Forms": 9_600,
+        "": 211_000,
     },
     "rk4": {
-        "linalg::factor::Factor": 108_000,
+        "linalg::factor::Factor": 160_000,
         "linalg::pair::MatrixPair": 100_000,
-        "transient::forces::Forces": 85_000,
-        "linalg::skew::SkewPart": 70_000,
-        "transient::forms::Forms": 56_000,
-        "": 496_000,
+        "transient::forces::Forces": 56_500,
+        "linalg::skew::SkewPart": 54_500,
+        "transient::forms::Forms": 48_000,
+        "": 482_500,
     },
 }
 """Instructions of one step of the paper's case (297 nodes, 150 in the wall) by method and kernel, with Rust 1.95; the

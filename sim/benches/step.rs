@@ -191,9 +191,11 @@ impl Matrices {
         let factor_size = 3 * BLOCK * self.rows();
         // The mass' half that is kept is multiplied twice, but for its blocks on the diagonal.
         let flops = 2 * (pair.size() / 8) + 2 * BLOCK / 8 * self.rows() + 2 * 2 * factor_size / 8;
-        let [products, solve, factor] = self.times::<f64>(|| {
-            pair.subtract_products(&load, black_box(&x), black_box(&y), &mut product);
-        });
+        let factor = Factor::new(&self.stage).expect("it is what a run solves");
+        let (mut between, mut solution) = (self.load.clone(), load.clone());
+        let products = || pair.subtract_products(&load, black_box(&x), black_box(&y), &mut product);
+        let solve = || factor.solve_field(black_box(&load), &mut between, &mut solution);
+        let [products, solve, factor] = shortest(products, solve, &self.stage);
         Kernels {
             lanes: 1,
             products,
@@ -211,10 +213,14 @@ impl Matrices {
         let x = self.in_lanes();
         let mut product = x.clone();
         let matrix_size = 3 * BLOCK * self.rows();
-        let times = self.times::<Four>(|| {
+        let stage = in_lanes::<Four>(&self.stage);
+        let factor = Factor::new(&stage).expect("it is what a run solves");
+        let mut solution = x.clone();
+        let products = || {
             mass.multiply_into(black_box(&x), &mut product);
             damping.multiply_add(black_box(&x), &mut product);
-        });
+        };
+        let times = shortest(products, || factor.solve_into(black_box(&x), &mut solution), &stage);
         let [products, solve, factor] = times.map(|time| time / 4.0);
         Kernels {
             lanes: 4,
@@ -227,32 +233,31 @@ impl Matrices {
         }
     }
 
-    /// Shortest times \[s\] of the products, a solve and a factorisation, all lanes together.
-    fn times<L: Lane>(&self, mut products: impl FnMut()) -> [f64; 3] {
-        let stage = in_lanes::<L>(&self.stage);
-        let factor = Factor::new(&stage).expect("it is what a run solves");
-        let load: Vec<[L; 6]> = self.in_lanes();
-        let mut solution = load.clone();
-        let mut shortest = [f64::INFINITY; 3];
-        // In turn, as in a stage: the matrices compete for the cache.
-        for _ in 0..400 {
-            let times = [timed(&mut products), timed(|| factor.solve_in_place(black_box(&mut solution)))];
-            for (shortest, time) in shortest.iter_mut().zip(times) {
-                *shortest = shortest.min(time);
-            }
-            solution.copy_from_slice(&load);
-        }
-        for _ in 0..20 {
-            shortest[2] = shortest[2].min(timed(|| {
-                black_box(Factor::new(black_box(&stage)).is_ok());
-            }));
-        }
-        shortest
-    }
-
     fn in_lanes<L: Lane>(&self) -> Vec<[L; 6]> {
         self.load.iter().map(|node| node.map(L::splat)).collect()
     }
+}
+
+/// Shortest times \[s\] of the products, a solve and a factorisation, all lanes together.
+fn shortest<L: Lane>(
+    mut products: impl FnMut(),
+    mut solve: impl FnMut(),
+    matrix: &BlockTridiagonal<L>,
+) -> [f64; 3] {
+    let mut shortest = [f64::INFINITY; 3];
+    // In turn, as in a stage: the matrices compete for the cache.
+    for _ in 0..400 {
+        let times = [timed(&mut products), timed(&mut solve)];
+        for (shortest, time) in shortest.iter_mut().zip(times) {
+            *shortest = shortest.min(time);
+        }
+    }
+    for _ in 0..20 {
+        shortest[2] = shortest[2].min(timed(|| {
+            black_box(Factor::new(black_box(matrix)).is_ok());
+        }));
+    }
+    shortest
 }
 
 /// The same matrix in every lane.

@@ -86,8 +86,13 @@ impl<L: Lane, const D: usize> Block<L, D> {
 
     /// `sum + self x`, not added up yet.
     #[inline(always)]
-    pub(super) fn add_product(&self, x: &[L; D], Sum(parts): Sum<L, D>) -> Sum<L, D> {
-        Sum(L::columns_mul_add(&self.columns, x, parts))
+    pub(super) fn add_product(&self, x: &[L; D], Sum(mut parts): Sum<L, D>) -> Sum<L, D> {
+        for (j, column) in self.columns.iter().enumerate() {
+            for (sum, entry) in parts[j % 2].iter_mut().zip(column) {
+                *sum = entry.mul_add(x[j], *sum);
+            }
+        }
+        Sum(parts)
     }
 
     /// `sum = sum + self other`.

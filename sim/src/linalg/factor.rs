@@ -1,7 +1,9 @@
 //! Block elimination from both ends to the middle.
 
-use super::block::{Block, DOFS, Sum};
+use super::block::{Block, DOFS};
+use super::field::NodalField;
 use super::lane::{Lane, Mask};
+use super::operator::Operator;
 use super::tridiagonal::BlockTridiagonal;
 
 /// A factored [`BlockTridiagonal`], ready to solve.
@@ -10,14 +12,14 @@ use super::tridiagonal::BlockTridiagonal;
 /// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
 /// matrix can be regular and still fail; [`Factor::growth`] tells how much was lost.
 #[derive(Debug, Clone)]
-pub struct Factor<L, const D: usize = DOFS> {
+pub struct Factor<L: Lane, const D: usize = DOFS> {
     /// From the top end, in the order of elimination.
     top: Chain<L, D>,
     /// From the bottom end, in the order of elimination.
     bottom: Chain<L, D>,
     middle: Elimination<L, D>,
     /// `-S^-1 U` of the middle row, S its pivot block.
-    middle_from_below: Block<L, D>,
+    middle_from_below: L::Operator<D>,
     growth: L,
 }
 
@@ -33,19 +35,19 @@ pub struct SingularBlock {
 
 /// Rows eliminated one after the other from one end.
 #[derive(Debug, Clone)]
-struct Chain<L, const D: usize = DOFS> {
+struct Chain<L: Lane, const D: usize = DOFS> {
     eliminations: Vec<Elimination<L, D>>,
     /// `-S^-1` times the coupling to the next row inwards.
-    inward: Vec<Block<L, D>>,
+    inward: Vec<L::Operator<D>>,
 }
 
 /// What eliminating a row leaves for the way inwards; S is its pivot block.
 #[derive(Debug, Clone, Copy)]
-struct Elimination<L, const D: usize = DOFS> {
+struct Elimination<L: Lane, const D: usize = DOFS> {
     /// `S^-1`.
-    inverse: Block<L, D>,
+    inverse: L::Operator<D>,
     /// `-S^-1` times the coupling to the row before.
-    outward: Block<L, D>,
+    outward: L::Operator<D>,
 }
 
 impl<L: Lane, const D: usize> Factor<L, D> {
@@ -83,8 +85,8 @@ impl<L: Lane, const D: usize> Factor<L, D> {
         let inverse = invert(&pivot, middle, &matrix.diagonal[middle], &mut growth)?;
         let negated = inverse.negated();
         Ok(Factor {
-            middle: Elimination { inverse, outward: negated.multiply_block(&matrix.lower[middle]) },
-            middle_from_below: negated.multiply_block(&matrix.upper[middle]),
+            middle: Elimination::new(&inverse, &negated.multiply_block(&matrix.lower[middle])),
+            middle_from_below: L::Operator::new(&negated.multiply_block(&matrix.upper[middle])),
             top,
             bottom,
             growth,
@@ -110,37 +112,63 @@ impl<L: Lane, const D: usize> Factor<L, D> {
 
     /// Replaces a right-hand side by the solution.
     pub fn solve_in_place(&self, x: &mut [[L; D]]) {
-        assert_eq!(x.len(), self.rows());
-        let (above, rest) = x.split_at_mut(self.top.inward.len());
+        self.solve_with(|_, x| *x, x, |_, value, x| *x = value);
+    }
+
+    /// Takes the rows of the right-hand side from `right`, their numbers given, and hands those of the solution to `put`. Both also get
+    /// the row's place in `between`, which holds what the way inwards leaves for the way outwards.
+    #[inline(always)]
+    fn solve_with(
+        &self,
+        right: impl Fn(usize, &[L; D]) -> [L; D],
+        between: &mut [[L; D]],
+        mut put: impl FnMut(usize, [L; D], &mut [L; D]),
+    ) {
+        let rows = self.rows();
+        assert_eq!(between.len(), rows);
+        let half = self.top.inward.len();
+        let (above, rest) = between.split_at_mut(half);
         let [middle, below @ ..] = rest else { unreachable!("the middle row exists") };
 
         let mut from_top = [L::splat(0.0); D];
         let mut from_bottom = [L::splat(0.0); D];
         let mut bottom_rows = self.bottom.eliminations.iter().zip(below.iter_mut().rev());
-        for (elimination, x) in self.top.eliminations.iter().zip(above.iter_mut()) {
-            from_top = elimination.apply(x, &from_top);
+        for (row, (elimination, x)) in self.top.eliminations.iter().zip(above.iter_mut()).enumerate() {
+            from_top = elimination.apply(&right(row, x), &from_top);
             *x = from_top;
             if let Some((elimination, x)) = bottom_rows.next() {
-                from_bottom = elimination.apply(x, &from_bottom);
+                from_bottom = elimination.apply(&right(rows - 1 - row, x), &from_bottom);
                 *x = from_bottom;
             }
         }
 
-        let centre = self.middle.apply(middle, &from_top);
-        let centre = self.middle_from_below.multiply_add(&from_bottom, centre);
-        *middle = centre;
+        let centre = self.middle.apply(&right(half, middle), &from_top);
+        let centre = self.middle_from_below.multiply_add(&from_bottom, &centre);
+        put(half, centre, middle);
 
         let mut to_top = centre;
         let mut to_bottom = centre;
         let mut bottom_rows = self.bottom.inward.iter().rev().zip(below.iter_mut());
-        for (inward, x) in self.top.inward.iter().rev().zip(above.iter_mut().rev()) {
-            to_top = inward.multiply_add(&to_top, *x);
-            *x = to_top;
+        let top_rows = self.top.inward.iter().rev().zip(above.iter_mut().rev());
+        for (distance, (inward, x)) in (1..).zip(top_rows) {
+            to_top = inward.multiply_add(&to_top, x);
+            put(half - distance, to_top, x);
             if let Some((inward, x)) = bottom_rows.next() {
-                to_bottom = inward.multiply_add(&to_bottom, *x);
-                *x = to_bottom;
+                to_bottom = inward.multiply_add(&to_bottom, x);
+                put(half + distance, to_bottom, x);
             }
         }
+    }
+}
+
+impl<const D: usize> Factor<f64, D> {
+    /// Solves `A x = b`; `between` is room for as many rows.
+    ///
+    /// # Panics
+    /// When anything has not as many rows as the matrix.
+    pub fn solve_field(&self, b: &NodalField<D>, between: &mut [[f64; D]], x: &mut NodalField<D>) {
+        assert!([b.nodes(), x.nodes()] == [self.rows(); 2]);
+        self.solve_with(|row, _| b.node(row), between, |row, value, _| x.set_node(row, value));
     }
 }
 
@@ -153,18 +181,21 @@ impl<L: Lane, const D: usize> Chain<L, D> {
     fn push(&mut self, inverse: Block<L, D>, outward: &Block<L, D>, inward: &Block<L, D>) -> Block<L, D> {
         let negated = inverse.negated();
         let inward = negated.multiply_block(inward);
-        self.eliminations.push(Elimination { inverse, outward: negated.multiply_block(outward) });
-        self.inward.push(inward);
+        self.eliminations.push(Elimination::new(&inverse, &negated.multiply_block(outward)));
+        self.inward.push(L::Operator::new(&inward));
         inward
     }
 }
 
 impl<L: Lane, const D: usize> Elimination<L, D> {
+    fn new(inverse: &Block<L, D>, outward: &Block<L, D>) -> Self {
+        Self { inverse: L::Operator::new(inverse), outward: L::Operator::new(outward) }
+    }
+
     /// `S^-1 b - S^-1 (coupling) previous`.
     #[inline(always)]
     fn apply(&self, b: &[L; D], previous: &[L; D]) -> [L; D] {
-        let sum = self.inverse.add_product(b, Sum::zero());
-        self.outward.add_product(previous, sum).total()
+        self.inverse.sum_of_products(b, &self.outward, previous)
     }
 }
 

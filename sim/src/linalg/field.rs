@@ -53,8 +53,19 @@ impl<const D: usize> NodalField<D> {
     }
 
     /// All values of a node.
+    #[inline(always)]
     pub fn node(&self, node: usize) -> [f64; D] {
-        std::array::from_fn(|dof| self[(node, dof)])
+        let (group, lane) = (&self.groups[1 + node / LANES], node % LANES);
+        std::array::from_fn(|dof| *group[dof].lane_ref(lane))
+    }
+
+    /// Sets all values of a node.
+    #[inline(always)]
+    pub fn set_node(&mut self, node: usize, values: [f64; D]) {
+        let (group, lane) = (&mut self.groups[1 + node / LANES], node % LANES);
+        for dof in 0..D {
+            *group[dof].lane_mut(lane) = values[dof];
+        }
     }
 
     /// Takes over the values of each node in turn.
@@ -176,7 +187,7 @@ fn by_freedom<const D: usize>(nodes: &[[f64; D]; LANES]) -> [Four; D] {
 
 /// From degree of freedom by degree of freedom to node by node.
 #[inline(always)]
-pub fn by_node<const D: usize>(freedoms: &[Four; D]) -> [[f64; D]; LANES] {
+fn by_node<const D: usize>(freedoms: &[Four; D]) -> [[f64; D]; LANES] {
     let first = |dof: usize| if dof < D { freedoms[dof] } else { Four::splat(0.0) };
     let [a, b, c, d] = Four::transpose([first(0), first(1), first(2), first(3)]);
     let node = |lane: usize, head: Four| {

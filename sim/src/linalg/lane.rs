@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::column::Column;
+use super::operator::{Operator, SplitBlock};
 
 /// One value for each of [`Lane::LANES`] sweep points.
 ///
@@ -27,6 +27,9 @@ pub trait Lane:
 
     /// One truth value for each lane.
     type Mask: Mask;
+
+    /// How a block is kept that is multiplied over and over.
+    type Operator<const D: usize>: Operator<Self, D>;
 
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
@@ -71,23 +74,6 @@ pub trait Lane:
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(other.less_than(self), self, other)
-    }
-
-    /// Adds `columns_j x_j` to two sums, the even columns to the first, the odd ones to the second: chains of additions that do not
-    /// wait for each other.
-    #[inline(always)]
-    fn columns_mul_add<const D: usize>(
-        columns: &[[Self; D]; D],
-        x: &[Self; D],
-        sums: [[Self; D]; 2],
-    ) -> [[Self; D]; 2] {
-        let mut sums = sums;
-        for (j, column) in columns.iter().enumerate() {
-            for (sum, entry) in sums[j % 2].iter_mut().zip(column) {
-                *sum = entry.mul_add(x[j], *sum);
-            }
-        }
-        sums
     }
 
     /// Arctangent \[rad\] without branches: the rational approximation of Moshier's Cephes library
@@ -160,6 +146,7 @@ const ATAN_Q: [f64; 5] = [
 impl Lane for f64 {
     const LANES: usize = 1;
     type Mask = bool;
+    type Operator<const D: usize> = SplitBlock<D>;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -204,19 +191,6 @@ impl Lane for f64 {
     #[inline(always)]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
-    }
-
-    #[inline(always)]
-    fn columns_mul_add<const D: usize>(
-        columns: &[[Self; D]; D],
-        x: &[Self; D],
-        [even, odd]: [[Self; D]; 2],
-    ) -> [[Self; D]; 2] {
-        let mut sums = [Column::new(&even), Column::new(&odd)];
-        for (j, x) in x.iter().enumerate() {
-            sums[j % 2] = Column::new(&columns[j]).mul_add(*x, sums[j % 2]);
-        }
-        [sums[0].to_rows(), sums[1].to_rows()]
     }
 }
 

@@ -5,14 +5,14 @@
 //! over a [`Lane`]: one `f64`, or several matrices side by side, with the same operations in the same order.
 //!
 //! A time step holds four neighbouring nodes of one string side by side in a [`NodalField`], and multiplies by a [`MatrixPair`] or takes
-//! the form of a [`SkewPart`]. Only [`Factor::solve_in_place`], a recurrence along the string, goes node by node.
+//! the form of a [`SkewPart`]. Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
 
 mod block;
-mod column;
 mod factor;
 mod field;
 mod four;
 mod lane;
+mod operator;
 mod pair;
 mod skew;
 mod tridiagonal;
@@ -22,9 +22,10 @@ mod tests;
 
 pub use block::{Block, DOFS};
 pub use factor::{Factor, SingularBlock};
-pub use field::{Neighbourhood, NodalField, after, by_node};
+pub use field::{Neighbourhood, NodalField, after};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
+pub use operator::{Operator, SplitBlock};
 pub use pair::{General, MatrixPair, Storage, Symmetric};
 pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::BlockTridiagonal;

@@ -1,7 +1,7 @@
 //! The right-hand side of the equations of motion: constant loads, unbalance, contact.
 
 use crate::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
-use crate::linalg::{Four, Lane, Mask, NodalField, by_node};
+use crate::linalg::{Four, Lane, Mask, NodalField};
 use crate::model::{DynamicSystem, Model, UnbalanceForce};
 use crate::string::MeshNode;
 
@@ -133,29 +133,25 @@ impl<const D: usize> Forces<D> {
         })
     }
 
-    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`, node by node. The
-    /// clamped top node never touches. `rates` gives the rate of a degree of freedom of a group.
+    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped
+    /// top node never touches. `rates` gives the rate of a degree of freedom of a group.
     pub(super) fn contact_into(
         &self,
         x: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
         out: &mut ContactForces,
         others: &NodalField<D>,
-        all: &mut [[f64; D]],
+        all: &mut NodalField<D>,
     ) {
         let n = self.sites.len();
         let (x, others, out) = (&x.groups()[..n], &others.groups()[..n], &mut out.groups[..n]);
+        let all = &mut all.groups_mut()[..n];
         for group in 0..n {
             let mut forces = others[group];
             if self.contact {
                 self.push(group, &x[group], &rates, &mut out[group], &mut forces);
             }
-            let (forces, first) = (by_node(&forces), LANES * group);
-            let nodes = &mut all[first..];
-            match nodes.first_chunk_mut() {
-                Some(nodes) => *nodes = forces,
-                None => nodes.copy_from_slice(&forces[..nodes.len()]),
-            }
+            all[group] = forces;
         }
     }
 

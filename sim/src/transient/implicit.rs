@@ -23,7 +23,9 @@ pub(super) struct StageSolver<const D: usize> {
     held_values: Vec<f64>,
     sweeps: u32,
     external: NodalField<D>,
-    right: NodalVector<D>,
+    right: NodalField<D>,
+    /// What the way inwards leaves for the way outwards.
+    between: NodalVector<D>,
     /// Displacements of the stage: the predictor of the lateral ones before a solve, the solution after it.
     pub(super) displacement: NodalField<D>,
     /// Velocities of the stage, likewise; of the predictor also the twist's.
@@ -108,7 +110,8 @@ impl<const D: usize> StageSolver<D> {
             held,
             sweeps,
             external: zero.clone(),
-            right: vec![[0.0; D]; initial.len()],
+            right: zero.clone(),
+            between: vec![[0.0; D]; initial.len()],
             displacement: zero.clone(),
             velocity: zero.clone(),
             previous: zero,
@@ -149,9 +152,8 @@ impl<const D: usize> StageSolver<D> {
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
                 forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
             }
-            self.factor.solve_in_place(&mut self.right);
             std::mem::swap(&mut self.displacement, &mut self.previous);
-            self.displacement.copy_from_nodes(&self.right);
+            self.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
             if sweep > 1 {
                 change = largest_change(&self.displacement, &self.previous);
             }

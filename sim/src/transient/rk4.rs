@@ -26,7 +26,8 @@ pub(super) struct Rk4<const D: usize> {
     stage: (NodalField<D>, NodalField<D>),
     /// What moves the string but the contacts.
     external: NodalField<D>,
-    right: NodalVector<D>,
+    right: NodalField<D>,
+    between: NodalVector<D>,
     pub(super) contact: ContactForces,
     pub(super) rejected: u64,
     pub(super) steps: u64,
@@ -72,7 +73,8 @@ impl<const D: usize> Rk4<D> {
             rates: std::array::from_fn(|_| (zero.clone(), zero.clone())),
             stage: (zero.clone(), zero.clone()),
             external: zero,
-            right: vec![[0.0; D]; n],
+            right: NodalField::zeros(n),
+            between: vec![[0.0; D]; n],
             contact: ContactForces::none(n),
             rejected: 0,
             steps: 0,
@@ -186,9 +188,8 @@ impl<const D: usize> Rk4<D> {
             }
             let rates = |group: usize, dof: usize| v.groups()[group][dof];
             forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
-            self.mass.solve_in_place(&mut self.right);
+            self.mass.solve_field(&self.right, &mut self.between, &mut self.rates[stage].1);
             self.rates[stage].0.copy_from(v);
-            self.rates[stage].1.copy_from_nodes(&self.right);
             if let Some(ledger) = &mut ledger {
                 ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
             }

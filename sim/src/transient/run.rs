@@ -226,12 +226,13 @@ impl<'m, const D: usize> Run<'m, D> {
     fn start(&mut self) -> Result<(), TransientError> {
         let state = &mut self.progress.state;
         let n = state.displacement.nodes();
-        let (mut right, mut linear) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
+        let (mut forces, mut linear) = (NodalField::zeros(n), vec![[0.0; D]; n]);
         let mut contact = ContactForces::none(n);
         let mut external = self.forces.load.clone();
         self.forces.add_unbalance(0.0, &mut external);
         let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
-        self.forces.contact_into(&state.displacement, rates, &mut contact, &external, &mut right);
+        self.forces.contact_into(&state.displacement, rates, &mut contact, &external, &mut forces);
+        let mut right = forces.to_nodes();
         self.system.stiffness.multiply_into(&state.displacement.to_nodes(), &mut linear);
         for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
             for dof in 0..D {

@@ -7,6 +7,19 @@
 //! A time step holds four neighbouring nodes of one string side by side in a [`NodalField`], and multiplies by a [`MatrixPair`] or takes
 //! the form of a [`SkewPart`]. Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
 
+/// The body for every degree of freedom in turn, written out: left to itself, the compiler keeps a loop and counts entries in it.
+macro_rules! each_dof {
+    ($count:expr, $dof:ident, $body:block) => {
+        each_dof!($count, $dof, $body, 0 1 2 3 4 5)
+    };
+    ($count:expr, $dof:ident, $body:block, $($value:literal)*) => {
+        $(
+            let $dof: usize = $value;
+            if $dof < $count $body
+        )*
+    };
+}
+
 mod block;
 mod factor;
 mod field;
@@ -28,7 +41,7 @@ pub use lane::{Lane, Mask};
 pub use operator::{Operator, SplitBlock};
 pub use pair::{General, MatrixPair, Storage, Symmetric};
 pub use skew::{SkewPart, WeightedPair};
-pub use tridiagonal::BlockTridiagonal;
+pub use tridiagonal::{BlockTridiagonal, can_couple};
 
 /// One row of values for every node.
 pub type BlockVector<L, const D: usize = DOFS> = Vec<[L; D]>;

@@ -6,22 +6,9 @@ use super::block::{Block, DOFS};
 use super::field::{Neighbourhood, NodalField, after, before};
 use super::four::Four;
 use super::lane::Lane;
-use super::tridiagonal::BlockTridiagonal;
+use super::tridiagonal::{BlockTridiagonal, can_couple};
 
 const LANES: usize = Four::LANES;
-
-/// The body for every degree of freedom in turn, written out: left to itself, the compiler keeps a loop and counts entries in it.
-macro_rules! each_dof {
-    ($count:expr, $dof:ident, $body:block) => {
-        each_dof!($count, $dof, $body, 0 1 2 3 4 5)
-    };
-    ($count:expr, $dof:ident, $body:block, $($value:literal)*) => {
-        $(
-            let $dof: usize = $value;
-            if $dof < $count $body
-        )*
-    };
-}
 
 /// Two block-tridiagonal matrices A and B of the same size, copied so that the entries of four neighbouring rows lie side by side
 /// and both pass through the processor in one stream: reading them is what a product costs. So of a [`Symmetric`] A only half is
@@ -65,7 +52,7 @@ impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     /// When they differ in size.
     pub fn new(a: &BlockTridiagonal<f64, D>, b: &BlockTridiagonal<f64, D>) -> Self {
         assert_eq!(a.rows(), b.rows());
-        let last_couples = [a, b].into_iter().any(last_couples);
+        let last_couples = [a, b].into_iter().any(BlockTridiagonal::last_couples);
         let mut entries = Vec::new();
         for first in (0..a.rows()).step_by(LANES) {
             A::store(a, first, last_couples, &mut entries);
@@ -136,8 +123,8 @@ impl<const D: usize> Storage<D> for General {
 
     fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
         for column in 0..D {
-            for (blocks, rows) in blocks(matrix) {
-                for row in (0..D).filter(|&row| is_kept::<D>(row, column, last_couples)) {
+            for (blocks, rows) in matrix.blocks() {
+                for row in (0..D).filter(|&row| can_couple::<D>(row, column, last_couples)) {
                     entries.push(side_by_side(&blocks[..rows.end], rows.start, first, (row, column)));
                 }
             }
@@ -152,7 +139,7 @@ impl<const D: usize> Storage<D> for General {
         each_dof!(D, column, {
             for x in [before(x, column), x[1][column], after(x, column)] {
                 for (row, sum) in sums.iter_mut().enumerate() {
-                    if is_kept::<D>(row, column, LAST) {
+                    if can_couple::<D>(row, column, LAST) {
                         *sum = entries[next].mul_add(x, *sum);
                         next += 1;
                     }
@@ -178,8 +165,8 @@ impl<const D: usize> Storage<D> for Symmetric {
 
     fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
         for column in 0..D {
-            for (blocks, rows) in blocks(matrix).into_iter().skip(1) {
-                for row in (0..D).filter(|&row| is_kept::<D>(row, column, last_couples)) {
+            for (blocks, rows) in matrix.blocks().into_iter().skip(1) {
+                for row in (0..D).filter(|&row| can_couple::<D>(row, column, last_couples)) {
                     entries.push(side_by_side(&blocks[..rows.end], rows.start, first, (row, column)));
                 }
             }
@@ -198,14 +185,14 @@ impl<const D: usize> Storage<D> for Symmetric {
         let mut next = 0;
         each_dof!(D, column, {
             for (row, sum) in sums.iter_mut().enumerate() {
-                if is_kept::<D>(row, column, LAST) {
+                if can_couple::<D>(row, column, LAST) {
                     *sum = entries[next].mul_add(own[column], *sum);
                     next += 1;
                 }
             }
             let after = after(x, column);
             for (row, sum) in sums.iter_mut().enumerate() {
-                if is_kept::<D>(row, column, LAST) {
+                if can_couple::<D>(row, column, LAST) {
                     *sum = entries[next].mul_add(after, *sum);
                     onwards[column] = entries[next].mul_add(own[row], onwards[column]);
                     next += 1;
@@ -221,34 +208,10 @@ impl<const D: usize> Storage<D> for Symmetric {
     }
 }
 
-/// Whether an entry of a block is kept.
-#[inline(always)]
-const fn is_kept<const D: usize>(row: usize, column: usize, last_couples: bool) -> bool {
-    let (lower, higher) = if row < column { (row, column) } else { (column, row) };
-    last_couples || higher + 1 < D || lower + 3 >= D
-}
-
 /// Entries of a block that are kept.
 #[inline(always)]
 const fn block_count<const D: usize>(last_couples: bool) -> usize {
     if last_couples { D * D } else { D * D - 2 * (D - 3) }
-}
-
-/// Whether there is anything that need not be kept.
-fn last_couples<const D: usize>(matrix: &BlockTridiagonal<f64, D>) -> bool {
-    blocks(matrix).into_iter().any(|(blocks, rows)| {
-        blocks[rows]
-            .iter()
-            .any(|block| (0..D).any(|i| (0..D).any(|j| !is_kept::<D>(i, j, false) && block[(i, j)] != 0.0)))
-    })
-}
-
-/// The blocks below, on and above the diagonal, with the rows that have one.
-fn blocks<const D: usize>(
-    matrix: &BlockTridiagonal<f64, D>,
-) -> [(&[Block<f64, D>], std::ops::Range<usize>); 3] {
-    let rows = matrix.rows();
-    [(&matrix.lower, 1..rows), (&matrix.diagonal, 0..rows), (&matrix.upper, 0..rows - 1)]
 }
 
 /// One entry of four blocks from `first` on; zeros where there is no block.

@@ -11,18 +11,21 @@ const LANES: usize = Four::LANES;
 /// `(m - m^T) / 2`, four rows side by side, where there is any.
 #[derive(Debug, Clone)]
 pub struct SkewPart<const D: usize = DOFS> {
-    groups: Vec<Rows<D>>,
+    groups: Vec<Rows>,
+    /// Of every group in turn, row by row: the entries of the blocks above the diagonal, then those right of the diagonal of the blocks
+    /// on it. Below stands minus the transposed.
+    entries: Vec<Four>,
     /// Whether the last degree of freedom takes part: a follower torque does not couple the twist with anything.
     last_couples: bool,
 }
 
-/// Blocks of a group of four rows, row by row: on the diagonal (only what is right of it counts) and above it; below stand minus
-/// the transposed ones.
+/// Four rows.
 #[derive(Debug, Clone)]
-struct Rows<const D: usize> {
+struct Rows {
     group: usize,
-    own: [[Four; D]; D],
-    next: [[Four; D]; D],
+    /// Whether displacements couple with rotations, and these with each other at the same node, but nothing else: a torque works
+    /// on bending.
+    only_bending: bool,
 }
 
 /// A weight, and the vectors to its left and right.
@@ -36,24 +39,34 @@ impl<const D: usize> SkewPart<D> {
             let half = 0.5 * (a[(i, j)] - b[(j, i)]);
             if half.abs() > threshold { half } else { 0.0 }
         };
-        let own = |row: usize, i: usize, j: usize| {
-            if row < rows { half_difference(&m.diagonal[row], &m.diagonal[row], i, j) } else { 0.0 }
+        let entry = |same_node: bool, row: usize, i: usize, j: usize| match same_node {
+            true if row < rows => half_difference(&m.diagonal[row], &m.diagonal[row], i, j),
+            false if row + 1 < rows => half_difference(&m.upper[row], &m.lower[row + 1], i, j),
+            _ => 0.0,
         };
-        let next = |row: usize, i: usize, j: usize| {
-            if row + 1 < rows { half_difference(&m.upper[row], &m.lower[row + 1], i, j) } else { 0.0 }
+        let side_by_side = |group: usize, same_node: bool, i: usize, j: usize| {
+            Four::new(std::array::from_fn(|lane| entry(same_node, LANES * group + lane, i, j)))
         };
-        let side_by_side = |first: usize, entry: &dyn Fn(usize, usize, usize) -> f64| {
-            std::array::from_fn(|i| {
-                std::array::from_fn(|j| Four::new(std::array::from_fn(|lane| entry(first + lane, i, j))))
+        let is_present = |group: usize, chosen: &dyn Fn(bool, usize, usize) -> bool| {
+            places(D).any(|(same_node, i, j)| {
+                chosen(same_node, i, j) && side_by_side(group, same_node, i, j).to_array() != [0.0; LANES]
             })
         };
-        let groups = (0..rows).step_by(LANES).map(|first| Rows {
-            group: first / LANES,
-            own: side_by_side(first, &own),
-            next: side_by_side(first, &next),
-        });
-        let groups: Vec<_> = groups.filter(|rows: &Rows<D>| rows.couples(0)).collect();
-        Self { last_couples: groups.iter().any(|rows| rows.couples(D - 1)), groups }
+        let present: Vec<_> =
+            (0..rows.div_ceil(LANES)).filter(|&group| is_present(group, &|_, _, _| true)).collect();
+        let last_couples = present.iter().any(|&group| is_present(group, &|_, i, j| i.max(j) == D - 1));
+        let mut part = Self { groups: Vec::new(), entries: Vec::new(), last_couples };
+        for group in present {
+            let only_bending =
+                !is_present(group, &|same_node, i, j| !is_bending::<D>(same_node, i, j, last_couples));
+            for (same_node, i, j) in places(if last_couples { D } else { D - 1 }) {
+                if !only_bending || is_bending::<D>(same_node, i, j, last_couples) {
+                    part.entries.push(side_by_side(group, same_node, i, j));
+                }
+            }
+            part.groups.push(Rows { group, only_bending });
+        }
+        part
     }
 
     /// `sum_k weight_k v_k^T A x_k`, the matrix read once for all of them.
@@ -72,54 +85,109 @@ impl<const D: usize> SkewPart<D> {
 
     fn sums<const K: usize, const LAST: bool>(&self, pairs: &[WeightedPair<'_, D>; K]) -> [Four; K] {
         let mut sums = [Four::ZERO; K];
+        let mut rest = &self.entries[..];
         for rows in &self.groups {
-            for (sum, (_, v, x)) in sums.iter_mut().zip(pairs) {
-                let (v, x) = (v.neighbourhood(rows.group), x.neighbourhood(rows.group));
-                *sum = *sum + rows.product::<LAST>(v, x);
+            let entries;
+            if rows.only_bending {
+                (entries, rest) = rest.split_at(count::<D>(LAST, true));
+                add_products::<K, D, LAST, true>(rows.group, entries, pairs, &mut sums);
+            } else {
+                (entries, rest) = rest.split_at(count::<D>(LAST, false));
+                add_products::<K, D, LAST, false>(rows.group, entries, pairs, &mut sums);
             }
         }
         sums
     }
 }
 
-impl<const D: usize> Rows<D> {
-    /// Whether any entry of a degree of freedom from `first` on is not zero.
-    fn couples(&self, first: usize) -> bool {
-        let present = |block: &[[Four; D]; D], i: usize, j: usize| block[i][j].to_array() != [0.0; LANES];
-        (0..D).any(|i| {
-            (0..D).any(|j| i.max(j) >= first && (present(&self.own, i, j) || present(&self.next, i, j)))
-        })
+#[inline(always)]
+fn add_products<const K: usize, const D: usize, const LAST: bool, const BENDING: bool>(
+    group: usize,
+    entries: &[Four],
+    pairs: &[WeightedPair<'_, D>; K],
+    sums: &mut [Four; K],
+) {
+    for (sum, (_, v, x)) in sums.iter_mut().zip(pairs) {
+        let (v, x) = (v.neighbourhood(group), x.neighbourhood(group));
+        *sum = *sum + product::<D, LAST, BENDING>(entries, v, x);
     }
+}
 
-    /// `v^T A x` of these rows: `sum_ij a_ij (v_i x_j - x_i v_j)` over the entries above the diagonal, those of the last degree of
-    /// freedom only if it couples.
-    #[inline(always)]
-    fn product<const LAST: bool>(&self, v: Neighbourhood<'_, D>, x: Neighbourhood<'_, D>) -> Four {
-        let count = if LAST { D } else { D - 1 };
-        let (mut v_next, mut x_next) = ([Four::ZERO; D], [Four::ZERO; D]);
-        for dof in 0..count {
-            (v_next[dof], x_next[dof]) = (after(v, dof), after(x, dof));
-        }
-        let ([_, v, _], [_, x, _]) = (v, x);
-        let (mut gained, mut lost) = (Four::ZERO, Four::ZERO);
-        for i in 0..count {
-            let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
-            for j in 0..count {
-                of_x = self.next[i][j].mul_add(x_next[j], of_x);
-                of_v = self.next[i][j].mul_add(v_next[j], of_v);
-            }
-            gained = v[i].mul_add(of_x, gained);
-            lost = x[i].mul_add(of_v, lost);
-        }
-        for i in 0..count {
-            let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
-            for j in i + 1..count {
-                of_x = self.own[i][j].mul_add(x[j], of_x);
-                of_v = self.own[i][j].mul_add(v[j], of_v);
-            }
-            gained = v[i].mul_add(of_x, gained);
-            lost = x[i].mul_add(of_v, lost);
-        }
-        gained - lost
+/// `v^T A x` of four rows: `sum_ij a_ij (v_i x_j - x_i v_j)` over the entries above the diagonal, those of the last degree of
+/// freedom only if it couples.
+#[inline(always)]
+fn product<const D: usize, const LAST: bool, const BENDING: bool>(
+    entries: &[Four],
+    v: Neighbourhood<'_, D>,
+    x: Neighbourhood<'_, D>,
+) -> Four {
+    assert!(entries.len() == count::<D>(LAST, BENDING));
+    let degrees = if LAST { D } else { D - 1 };
+    let (mut v_next, mut x_next) = ([Four::ZERO; D], [Four::ZERO; D]);
+    for dof in 0..degrees {
+        (v_next[dof], x_next[dof]) = (after(v, dof), after(x, dof));
     }
+    let ([_, v, _], [_, x, _]) = (v, x);
+    let (mut gained, mut lost) = (Four::ZERO, Four::ZERO);
+    let mut place = 0;
+    each_dof!(degrees, i, {
+        let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
+        for j in 0..degrees {
+            if !BENDING || is_bending::<D>(false, i, j, LAST) {
+                of_x = entries[place].mul_add(x_next[j], of_x);
+                of_v = entries[place].mul_add(v_next[j], of_v);
+                place += 1;
+            }
+        }
+        gained = v[i].mul_add(of_x, gained);
+        lost = x[i].mul_add(of_v, lost);
+    });
+    each_dof!(degrees, i, {
+        let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
+        for j in i + 1..degrees {
+            if !BENDING || is_bending::<D>(true, i, j, LAST) {
+                of_x = entries[place].mul_add(x[j], of_x);
+                of_v = entries[place].mul_add(v[j], of_v);
+                place += 1;
+            }
+        }
+        gained = v[i].mul_add(of_x, gained);
+        lost = x[i].mul_add(of_v, lost);
+    });
+    gained - lost
+}
+
+/// Places of entries, whether of the same node or the next one, row and column: in the order in which they are kept.
+fn places(degrees: usize) -> impl Iterator<Item = (bool, usize, usize)> {
+    let next = (0..degrees).flat_map(move |i| (0..degrees).map(move |j| (false, i, j)));
+    let own = (0..degrees).flat_map(move |i| (i + 1..degrees).map(move |j| (true, i, j)));
+    next.chain(own)
+}
+
+/// Number of entries of four rows.
+#[inline(always)]
+const fn count<const D: usize>(last_couples: bool, only_bending: bool) -> usize {
+    let degrees = if last_couples { D } else { D - 1 };
+    let displacements = displacements::<D>(last_couples);
+    let rotations = degrees - displacements;
+    if only_bending {
+        3 * displacements * rotations + rotations * (rotations - 1) / 2
+    } else {
+        degrees * degrees + degrees * (degrees - 1) / 2
+    }
+}
+
+/// Whether an entry, of the same node or of the next one, couples a displacement with a rotation, or two rotations of a node.
+#[inline(always)]
+const fn is_bending<const D: usize>(same_node: bool, i: usize, j: usize, last_couples: bool) -> bool {
+    let displacements = displacements::<D>(last_couples);
+    let (of_i, of_j) = (i < displacements, j < displacements);
+    of_i != of_j || (same_node && !of_i)
+}
+
+/// Number of displacements among the degrees of freedom: the last of these is the twist, or the second rotation of a string that does not
+/// twist.
+#[inline(always)]
+const fn displacements<const D: usize>(last_couples: bool) -> usize {
+    if last_couples { D - 2 } else { D - 3 }
 }

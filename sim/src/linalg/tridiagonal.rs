@@ -1,5 +1,7 @@
 //! Matrices that couple each node to its two neighbours.
 
+use std::ops::Range;
+
 use super::block::{Block, DOFS, Sum};
 use super::lane::Lane;
 
@@ -92,4 +94,29 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
         }
         sum.total()
     }
+}
+
+impl<const D: usize> BlockTridiagonal<f64, D> {
+    /// Whether the last degree of freedom couples with others than the two before it.
+    pub fn last_couples(&self) -> bool {
+        self.blocks().into_iter().any(|(blocks, rows)| {
+            blocks[rows].iter().any(|block| {
+                (0..D).any(|i| (0..D).any(|j| !can_couple::<D>(i, j, false) && block[(i, j)] != 0.0))
+            })
+        })
+    }
+
+    /// The blocks below, on and above the diagonal, with the rows that have one.
+    pub(super) fn blocks(&self) -> [(&[Block<f64, D>], Range<usize>); 3] {
+        let rows = self.rows();
+        [(&self.lower, 1..rows), (&self.diagonal, 0..rows), (&self.upper, 0..rows - 1)]
+    }
+}
+
+/// Whether an entry of a block can be other than zero in a matrix of which it is known if its
+/// [last degree of freedom couples](BlockTridiagonal::last_couples).
+#[inline(always)]
+pub const fn can_couple<const D: usize>(row: usize, column: usize, last_couples: bool) -> bool {
+    let (lower, higher) = if row < column { (row, column) } else { (column, row) };
+    last_couples || higher + 1 < D || lower + 3 >= D
 }

@@ -1,6 +1,8 @@
 //! Work that the string's matrices do along its motion.
 
-use crate::linalg::{Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after};
+use crate::linalg::{
+    Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after, can_couple,
+};
 
 /// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
 const GATHERED: usize = 4;
@@ -18,8 +20,11 @@ const CANCELLED: f64 = 1e-13;
 pub(super) struct Forms<const N: usize, const D: usize> {
     symmetric: [SymmetricPart<D>; N],
     skew: SkewPart<D>,
-    /// Of every four nodes.
-    moments: Vec<Moments<D>>,
+    /// Sums of products `w v_i v_j` of velocities of neighbouring nodes, weighted \[s\]: of every four nodes in turn, of each with itself
+    /// and with the next one, in [`Places`].
+    moments: Vec<Four>,
+    /// Whether any of the symmetric matrices couples the last degree of freedom with others than the two before it.
+    last_couples: bool,
     skew_sum: f64,
     gathered: [GatheredStage<D>; GATHERED],
     count: usize,
@@ -33,15 +38,6 @@ struct GatheredStage<const D: usize> {
     weight: f64,
     velocity: NodalField<D>,
     displacement: NodalField<D>,
-}
-
-/// Sums of products of velocities of four neighbouring nodes, weighted \[s\].
-#[derive(Debug, Clone, Copy)]
-struct Moments<const D: usize> {
-    /// `w v_i v_j`; i up to j.
-    own: [[Four; D]; D],
-    /// `w v_i v_j`, j of the next node.
-    next: [[Four; D]; D],
 }
 
 /// Integrals of the forms: the symmetric ones, then the skew one.
@@ -62,12 +58,14 @@ struct SymmetricPart<const D: usize> {
 impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn new(symmetric: [&BlockTridiagonal<f64, D>; N], skew: &BlockTridiagonal<f64, D>) -> Self {
         let zero = NodalField::zeros(skew.rows());
-        let moments = vec![Moments::zero(); zero.groups().len()];
+        let last_couples = symmetric.iter().any(|matrix| matrix.last_couples());
+        let moments = vec![Four::ZERO; zero.groups().len() * count::<D>(last_couples)];
         let stage = GatheredStage { weight: 0.0, velocity: zero.clone(), displacement: zero };
         Self {
             symmetric: symmetric.map(SymmetricPart::new),
             skew: SkewPart::new(skew, CANCELLED * largest(skew)),
             moments,
+            last_couples,
             skew_sum: 0.0,
             gathered: std::array::from_fn(|_| stage.clone()),
             count: 0,
@@ -76,7 +74,7 @@ impl<const N: usize, const D: usize> Forms<N, D> {
 
     /// Adds stages.
     pub(super) fn add<const K: usize>(&mut self, stages: [BookedStage<'_, D>; K]) {
-        add_products(&mut self.moments, &stages);
+        add_products(self.last_couples, &mut self.moments, &stages);
         self.skew_sum += self.skew.product(stages);
     }
 
@@ -101,13 +99,13 @@ impl<const N: usize, const D: usize> Forms<N, D> {
     pub(super) fn forget(&mut self) {
         self.count = 0;
         self.skew_sum = 0.0;
-        self.moments.fill(Moments::zero());
+        self.moments.fill(Four::ZERO);
     }
 
     /// Integrals over the stages since the last take, which are forgotten.
     pub(super) fn take(&mut self) -> Integrals<N> {
         self.add_gathered();
-        let symmetric = self.symmetric.each_ref().map(|part| part.integral(&self.moments));
+        let symmetric = self.symmetric.each_ref().map(|part| part.integral(&self.moments, self.last_couples));
         let skew = self.skew_sum;
         self.forget();
         Integrals { symmetric, skew }
@@ -124,19 +122,31 @@ impl<const N: usize, const D: usize> Forms<N, D> {
             stage.displacement.fill_zero();
         }
         let stages = self.gathered.each_ref().map(|s| (s.weight, &s.velocity, &s.displacement));
-        add_products(&mut self.moments, &stages);
+        add_products(self.last_couples, &mut self.moments, &stages);
         self.skew_sum += self.skew.product(stages);
         self.count = 0;
     }
 }
 
-// Without closures over arrays, which the compiler does not always inline.
 fn add_products<const K: usize, const D: usize>(
-    moments: &mut [Moments<D>],
+    last_couples: bool,
+    moments: &mut [Four],
+    stages: &[BookedStage<'_, D>; K],
+) {
+    if last_couples {
+        add_products_where_coupled::<K, D, true>(moments, stages);
+    } else {
+        add_products_where_coupled::<K, D, false>(moments, stages);
+    }
+}
+
+// Without closures over arrays, which the compiler does not always inline.
+fn add_products_where_coupled<const K: usize, const D: usize, const LAST: bool>(
+    moments: &mut [Four],
     stages: &[BookedStage<'_, D>; K],
 ) {
     let zero = Four::splat(0.0);
-    for (group, Moments { own, next }) in moments.iter_mut().enumerate() {
+    for (group, moments) in moments.chunks_exact_mut(Places::<D, LAST>::COUNT).enumerate() {
         let (mut velocities, mut velocities_next) = ([[zero; K]; D], [[zero; K]; D]);
         for (k, (_, velocity, _)) in stages.iter().enumerate() {
             let velocity = velocity.neighbourhood(group);
@@ -149,47 +159,100 @@ fn add_products<const K: usize, const D: usize>(
             for (k, (weight, ..)) in stages.iter().enumerate() {
                 weighted[k] = velocities[i][k] * Four::splat(*weight);
             }
-            for j in i..D {
-                for k in 0..K {
-                    own[i][j] = weighted[k].mul_add(velocities[j][k], own[i][j]);
-                }
-            }
             for j in 0..D {
+                if !can_couple::<D>(i, j, LAST) {
+                    continue;
+                }
+                if j >= i {
+                    let own = &mut moments[Places::<D, LAST>::OWN[i][j]];
+                    for k in 0..K {
+                        *own = weighted[k].mul_add(velocities[j][k], *own);
+                    }
+                }
+                let next = &mut moments[Places::<D, LAST>::NEXT[i][j]];
                 for k in 0..K {
-                    next[i][j] = weighted[k].mul_add(velocities_next[j][k], next[i][j]);
+                    *next = weighted[k].mul_add(velocities_next[j][k], *next);
                 }
             }
         }
     }
 }
 
-impl<const D: usize> Moments<D> {
-    fn zero() -> Self {
-        let zero = Four::splat(0.0);
-        Self { own: [[zero; D]; D], next: [[zero; D]; D] }
+/// Where the moments of four nodes lie, found when the program is built: of each degree of freedom in turn those with the later ones of the same
+/// node, then those with all of the next node. Where `LAST` is false, the last degree of freedom counts with the two before it alone.
+struct Places<const D: usize, const LAST: bool>;
+
+/// A place that is not there.
+const NOWHERE: usize = usize::MAX;
+
+impl<const D: usize, const LAST: bool> Places<D, LAST> {
+    /// With the same node, in either order.
+    const OWN: [[usize; D]; D] = Self::all().0;
+    /// With the next node.
+    const NEXT: [[usize; D]; D] = Self::all().1;
+    const COUNT: usize = Self::all().2;
+
+    const fn all() -> ([[usize; D]; D], [[usize; D]; D], usize) {
+        let (mut own, mut next, mut count) = ([[NOWHERE; D]; D], [[NOWHERE; D]; D], 0);
+        let mut i = 0;
+        while i < D {
+            let mut j = i;
+            while j < D {
+                if can_couple::<D>(i, j, LAST) {
+                    own[i][j] = count;
+                    own[j][i] = count;
+                    count += 1;
+                }
+                j += 1;
+            }
+            let mut j = 0;
+            while j < D {
+                if can_couple::<D>(i, j, LAST) {
+                    next[i][j] = count;
+                    count += 1;
+                }
+                j += 1;
+            }
+            i += 1;
+        }
+        (own, next, count)
     }
+}
+
+/// Number of moments of four nodes.
+const fn count<const D: usize>(last_couples: bool) -> usize {
+    if last_couples { Places::<D, true>::COUNT } else { Places::<D, false>::COUNT }
 }
 
 impl<const D: usize> SymmetricPart<D> {
     /// The form of the moments.
-    fn integral(&self, moments: &[Moments<D>]) -> f64 {
-        let moment = |node: usize, of: fn(&Moments<D>) -> &[[Four; D]; D], i: usize, j: usize| {
-            of(&moments[node / Four::LANES])[i][j].lane(node % Four::LANES)
+    fn integral(&self, moments: &[Four], last_couples: bool) -> f64 {
+        if last_couples {
+            self.integral_where_coupled::<true>(moments)
+        } else {
+            self.integral_where_coupled::<false>(moments)
+        }
+    }
+
+    fn integral_where_coupled<const LAST: bool>(&self, moments: &[Four]) -> f64 {
+        let moment = |node: usize, place: usize| {
+            moments[node / Four::LANES * Places::<D, LAST>::COUNT + place].lane(node % Four::LANES)
         };
         let mut sum = 0.0;
         for (node, block) in &self.diagonal {
+            let own = |i: usize, j: usize| moment(*node, Places::<D, LAST>::OWN[i][j]);
             for i in 0..D {
-                sum += block[(i, i)] * moment(*node, |m| &m.own, i, i);
-                for j in i + 1..D {
-                    sum += 2.0 * block[(i, j)] * moment(*node, |m| &m.own, i, j);
+                sum += block[(i, i)] * own(i, i);
+                for j in (i + 1..D).filter(|&j| can_couple::<D>(i, j, LAST)) {
+                    sum += 2.0 * block[(i, j)] * own(i, j);
                 }
             }
         }
         // What stands above the diagonal is mirrored below.
         for (node, block) in &self.upper {
             for i in 0..D {
-                for j in 0..D {
-                    sum += 2.0 * block[(i, j)] * moment(*node, |m| &m.next, i, j);
+                for j in (0..D).filter(|&j| can_couple::<D>(i, j, LAST)) {
+                    sum += 2.0 * block[(i, j)] * moment(*node, Places::<D, LAST>::NEXT[i][j]);
                 }
             }
         }
@@ -243,12 +306,15 @@ mod tests {
         NodalField::from_nodes(nodes)
     }
 
-    /// `full` of every hundred rows carry blocks.
-    fn matrix(rows: usize, full: usize) -> BlockTridiagonal<f64> {
+    /// `full` of every hundred rows carry blocks, whose last degree of freedom couples with all others or with the two before it.
+    fn matrix(rows: usize, full: usize, last_couples: bool) -> BlockTridiagonal<f64> {
         let mut m = BlockTridiagonal::zeros(rows);
         for row in (0..rows).filter(|row| row % 100 < full) {
             let block = |shift: usize| {
-                Block::from_fn(|i, j| ((shift + 1) as f64 * (row * 36 + i * 6 + j) as f64).sin())
+                Block::from_fn(|i, j| match can_couple::<6>(i, j, last_couples) {
+                    true => ((shift + 1) as f64 * (row * 36 + i * 6 + j) as f64).sin(),
+                    false => 0.0,
+                })
             };
             m.diagonal[row] = block(0);
             if row + 1 < rows {
@@ -276,8 +342,8 @@ mod tests {
         let (v2, x2) = (vector(rows, 2.3), vector(rows, 0.1));
         // The last place is a rounding of 20,000 terms of order one.
         let tolerance = 1e-10;
-        for full in [0, 3, 100] {
-            let (m, other) = (matrix(rows, full), matrix(rows, 100));
+        for (full, last_couples) in [(0, true), (3, true), (100, true), (100, false)] {
+            let (m, other) = (matrix(rows, full, last_couples), matrix(rows, 100, last_couples));
             let mut forms = Forms::new([&m, &other], &m);
             for _ in 0..2 * GATHERED {
                 forms.gather(7.0, &mut field(&x), &mut field(&v));

@@ -18,8 +18,8 @@ KERNELS = {
         "linalg::pair::MatrixPair": 167_000,
         "transient::forces::Forces": 141_500,
         "linalg::skew::SkewPart": 67_500,
-        "transient::forms::Forms": 79_000,
-        "": 957_500,
+        "transient::forms::Forms": 58_000,
+        "": 936_500,
     },
     "generalized_alpha": {
         "linalg::factor::Factor": 80_000,
@@ -27,7 +27,7 @@ KERNELS = {
         "transient::forces::Forces": 28_500,
         "linalg::skew::SkewPart": 11_000,
         "transient::forms::Forms": 9_600,
-        "": 211_000,
+        "": 209_500,
     },
     "rk4": {
         "linalg::factor::Factor": 160_000,

@@ -19,6 +19,7 @@ macro_rules! each_dof {
         )*
     };
 }
+pub(crate) use each_dof;
 
 mod block;
 mod factor;

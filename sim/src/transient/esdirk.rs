@@ -2,7 +2,7 @@
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
 use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver, multiply_add};
+use super::implicit::{StageCoefficients, StageSolver};
 use super::run::{Books, State};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::model::DynamicSystem;
@@ -97,27 +97,20 @@ impl<const D: usize> Esdirk<D> {
         Books { ledger, errors }: Books<'_, D>,
     ) {
         let h = self.step;
-        let StageCoefficients { acceleration: per_displacement, .. } = stage_coefficients(h);
         ledger.book_power(WEIGHTS[0] * h, &state.stage_power);
         for stage in 1..STAGES {
             self.predict(stage, state);
             let stage_time = time + NODES[stage] * h;
             self.solver.solve(forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
-            if WEIGHTS[stage] != 0.0 {
-                state.stage_power = ledger.power(
-                    &self.solver.velocity,
-                    &self.solver.displacement,
-                    &self.solver.contact,
-                    forces.unbalance_at(stage_time),
-                );
-                ledger.book_power(WEIGHTS[stage] * h, &state.stage_power);
-            }
             let Stage { displacement, velocity, acceleration } = &mut self.stages[stage - 1];
+            self.solver.rates([&self.acceleration_offset, &self.velocity_offset], [acceleration, velocity]);
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
-            std::mem::swap(velocity, &mut self.solver.velocity);
-            multiply_add(displacement, per_displacement, &self.acceleration_offset, acceleration);
-            self.solver.clear_held(acceleration);
+            if WEIGHTS[stage] != 0.0 {
+                let unbalance = forces.unbalance_at(stage_time);
+                state.stage_power = ledger.power(velocity, displacement, &self.solver.contact, unbalance);
+                ledger.book_power(WEIGHTS[stage] * h, &state.stage_power);
+            }
         }
         let [_, s2, s3, s4, s5] = &self.stages;
         let [w0, _, w2, w3, w4, w5] = WEIGHTS.map(|weight| h * weight);

@@ -1,7 +1,7 @@
 //! Work that the string's matrices do along its motion.
 
 use crate::linalg::{
-    Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after, can_couple,
+    Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after, can_couple, each_dof,
 };
 
 /// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
@@ -154,7 +154,7 @@ fn add_products_where_coupled<const K: usize, const D: usize, const LAST: bool>(
                 (velocities[dof][k], velocities_next[dof][k]) = (velocity[1][dof], after(velocity, dof));
             }
         }
-        for i in 0..D {
+        each_dof!(D, i, {
             let mut weighted = [zero; K];
             for (k, (weight, ..)) in stages.iter().enumerate() {
                 weighted[k] = velocities[i][k] * Four::splat(*weight);
@@ -174,7 +174,7 @@ fn add_products_where_coupled<const K: usize, const D: usize, const LAST: bool>(
                     *next = weighted[k].mul_add(velocities_next[j][k], *next);
                 }
             }
-        }
+        });
     }
 }
 

@@ -18,7 +18,7 @@ const SWEEP_TOLERANCE: f64 = 1e-9;
 pub(super) struct StageSolver<const D: usize> {
     factor: Factor<f64, D>,
     mass_and_damping: MatrixPair<Symmetric, D>,
-    velocity_coefficient: f64,
+    coefficients: StageCoefficients,
     held: Vec<(usize, usize)>,
     held_values: Vec<f64>,
     sweeps: u32,
@@ -28,7 +28,7 @@ pub(super) struct StageSolver<const D: usize> {
     between: NodalVector<D>,
     /// Displacements of the stage: the predictor of the lateral ones before a solve, the solution after it.
     pub(super) displacement: NodalField<D>,
-    /// Velocities of the stage, likewise; of the predictor also the twist's.
+    /// The predictor of the lateral velocities and the twist's.
     pub(super) velocity: NodalField<D>,
     /// Displacements of the sweep before.
     previous: NodalField<D>,
@@ -92,17 +92,16 @@ impl<const D: usize> StageSolver<D> {
     pub(super) fn new(
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
-        StageCoefficients { acceleration, velocity: velocity_coefficient }: StageCoefficients,
+        coefficients: StageCoefficients,
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
-        let coefficients = StageCoefficients { acceleration, velocity: velocity_coefficient };
         let matrix = coefficients.matrix(system);
         let held = held_list(system);
         let zero = NodalField::zeros(initial.len());
         Ok(Self {
             factor: Factor::new(&matrix)?,
             mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
-            velocity_coefficient,
+            coefficients,
             held_values: held
                 .iter()
                 .map(|&(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
@@ -142,7 +141,7 @@ impl<const D: usize> StageSolver<D> {
         }
         let mut change = 0.0;
         for sweep in 1..=self.sweeps {
-            let (x, c) = (&self.displacement, Four::splat(self.velocity_coefficient));
+            let (x, c) = (&self.displacement, Four::splat(self.coefficients.velocity));
             if sweep == 1 {
                 let rates = |group: usize, dof: usize| self.velocity.groups()[group][dof];
                 forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
@@ -163,18 +162,28 @@ impl<const D: usize> StageSolver<D> {
                 break;
             }
         }
-        multiply_add(&self.displacement, self.velocity_coefficient, velocity_offset, &mut self.velocity);
-        for &(node, dof) in &self.held {
-            self.velocity[(node, dof)] = 0.0;
-        }
         self.monitor.largest_change = self.monitor.largest_change.max(change);
         self.monitor.loose_solves += u64::from(change > 1e-5);
     }
 
-    /// Sets what is held to zero.
-    pub(super) fn clear_held(&self, rates: &mut NodalField<D>) {
+    /// Accelerations and velocities of the stage that was solved, from their offsets a^ and v^.
+    pub(super) fn rates(&self, offsets: [&NodalField<D>; 2], rates: [&mut NodalField<D>; 2]) {
+        let n = self.displacement.groups().len();
+        let x = &self.displacement.groups()[..n];
+        let [a0, v0] = offsets.map(|field| &field.groups()[..n]);
+        let [acceleration, velocity] = rates;
+        let (a, v) = (&mut acceleration.groups_mut()[..n], &mut velocity.groups_mut()[..n]);
+        let c_a = Four::splat(self.coefficients.acceleration);
+        let c_v = Four::splat(self.coefficients.velocity);
+        for i in 0..n {
+            for dof in 0..D {
+                a[i][dof] = x[i][dof].mul_add(c_a, a0[i][dof]);
+                v[i][dof] = x[i][dof].mul_add(c_v, v0[i][dof]);
+            }
+        }
         for &(node, dof) in &self.held {
-            rates[(node, dof)] = 0.0;
+            acceleration[(node, dof)] = 0.0;
+            velocity[(node, dof)] = 0.0;
         }
     }
 }

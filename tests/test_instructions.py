@@ -17,9 +17,9 @@ KERNELS = {
         "linalg::factor::Factor": 399_000,
         "linalg::pair::MatrixPair": 167_000,
         "transient::forces::Forces": 141_500,
-        "linalg::skew::SkewPart": 67_500,
+        "linalg::skew::SkewPart": 70_000,
         "transient::forms::Forms": 58_000,
-        "": 936_500,
+        "": 939_000,
     },
     "generalized_alpha": {
         "linalg::factor::Factor": 80_000,

@@ -37,8 +37,8 @@ impl<L: Lane, const D: usize> Operator<L, D> for Block<L, D> {
     }
 }
 
-/// A block of one matrix. Columns of six rows fill a register and a half, and every third would lie across two cache lines; so the rows from
-/// the fifth on lie apart, those of two columns in one register.
+/// A block of one matrix. Columns of six rows fill a register and a half, and some would lie across two cache lines; so the rows from the
+/// fifth on lie apart, those of two columns in one register.
 #[derive(Debug, Clone, Copy)]
 pub struct SplitBlock<const D: usize> {
     /// The first four rows of each column.

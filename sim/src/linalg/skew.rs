@@ -48,7 +48,7 @@ impl<const D: usize> SkewPart<D> {
             Four::new(std::array::from_fn(|lane| entry(same_node, LANES * group + lane, i, j)))
         };
         let is_present = |group: usize, chosen: &dyn Fn(bool, usize, usize) -> bool| {
-            places(D).any(|(same_node, i, j)| {
+            places::<D>(true, false).any(|(same_node, i, j)| {
                 chosen(same_node, i, j) && side_by_side(group, same_node, i, j).to_array() != [0.0; LANES]
             })
         };
@@ -58,12 +58,9 @@ impl<const D: usize> SkewPart<D> {
         let mut part = Self { groups: Vec::new(), entries: Vec::new(), last_couples };
         for group in present {
             let only_bending =
-                !is_present(group, &|same_node, i, j| !is_bending::<D>(same_node, i, j, last_couples));
-            for (same_node, i, j) in places(if last_couples { D } else { D - 1 }) {
-                if !only_bending || is_bending::<D>(same_node, i, j, last_couples) {
-                    part.entries.push(side_by_side(group, same_node, i, j));
-                }
-            }
+                !is_present(group, &|same_node, i, j| !is_kept::<D>(same_node, i, j, last_couples, true));
+            let kept = places::<D>(last_couples, only_bending);
+            part.entries.extend(kept.map(|(same_node, i, j)| side_by_side(group, same_node, i, j)));
             part.groups.push(Rows { group, only_bending });
         }
         part
@@ -89,10 +86,10 @@ impl<const D: usize> SkewPart<D> {
         for rows in &self.groups {
             let entries;
             if rows.only_bending {
-                (entries, rest) = rest.split_at(count::<D>(LAST, true));
+                (entries, rest) = rest.split_at(const { count::<D>(LAST, true) });
                 add_products::<K, D, LAST, true>(rows.group, entries, pairs, &mut sums);
             } else {
-                (entries, rest) = rest.split_at(count::<D>(LAST, false));
+                (entries, rest) = rest.split_at(const { count::<D>(LAST, false) });
                 add_products::<K, D, LAST, false>(rows.group, entries, pairs, &mut sums);
             }
         }
@@ -121,73 +118,85 @@ fn product<const D: usize, const LAST: bool, const BENDING: bool>(
     v: Neighbourhood<'_, D>,
     x: Neighbourhood<'_, D>,
 ) -> Four {
-    assert!(entries.len() == count::<D>(LAST, BENDING));
-    let degrees = if LAST { D } else { D - 1 };
+    assert!(entries.len() == const { count::<D>(LAST, BENDING) });
     let (mut v_next, mut x_next) = ([Four::ZERO; D], [Four::ZERO; D]);
-    for dof in 0..degrees {
+    for dof in 0..D {
         (v_next[dof], x_next[dof]) = (after(v, dof), after(x, dof));
     }
-    let ([_, v, _], [_, x, _]) = (v, x);
-    let (mut gained, mut lost) = (Four::ZERO, Four::ZERO);
-    let mut place = 0;
-    each_dof!(degrees, i, {
-        let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
-        for j in 0..degrees {
-            if !BENDING || is_bending::<D>(false, i, j, LAST) {
-                of_x = entries[place].mul_add(x_next[j], of_x);
-                of_v = entries[place].mul_add(v_next[j], of_v);
-                place += 1;
-            }
-        }
-        gained = v[i].mul_add(of_x, gained);
-        lost = x[i].mul_add(of_v, lost);
-    });
-    each_dof!(degrees, i, {
-        let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
-        for j in i + 1..degrees {
-            if !BENDING || is_bending::<D>(true, i, j, LAST) {
-                of_x = entries[place].mul_add(x[j], of_x);
-                of_v = entries[place].mul_add(v[j], of_v);
-                place += 1;
-            }
-        }
-        gained = v[i].mul_add(of_x, gained);
-        lost = x[i].mul_add(of_v, lost);
-    });
+    let (next, own) = entries.split_at(const { count_in_block::<D>(false, LAST, BENDING) });
+    let mut sums = [Four::ZERO; 2];
+    add_block::<D, LAST, BENDING, false>(next, [v[1], x[1]], [v_next, x_next], &mut sums);
+    add_block::<D, LAST, BENDING, true>(own, [v[1], x[1]], [v[1], x[1]], &mut sums);
+    let [gained, lost] = sums;
     gained - lost
 }
 
-/// Places of entries, whether of the same node or the next one, row and column: in the order in which they are kept.
-fn places(degrees: usize) -> impl Iterator<Item = (bool, usize, usize)> {
-    let next = (0..degrees).flat_map(move |i| (0..degrees).map(move |j| (false, i, j)));
-    let own = (0..degrees).flat_map(move |i| (i + 1..degrees).map(move |j| (true, i, j)));
-    next.chain(own)
+/// Adds what the blocks of the same nodes or those of the next ones gain and lose: to the left `v` and `x` of the nodes, to the right those of
+/// the nodes coupled with them.
+#[inline(always)]
+fn add_block<const D: usize, const LAST: bool, const BENDING: bool, const SAME: bool>(
+    entries: &[Four],
+    [v, x]: [[Four; D]; 2],
+    [v_coupled, x_coupled]: [[Four; D]; 2],
+    [gained, lost]: &mut [Four; 2],
+) {
+    let mut place = 0;
+    each_dof!(if LAST { D } else { D - 1 }, i, {
+        let (mut of_x, mut of_v) = (Four::ZERO, Four::ZERO);
+        for j in 0..D {
+            if is_kept::<D>(SAME, i, j, LAST, BENDING) {
+                of_x = entries[place].mul_add(x_coupled[j], of_x);
+                of_v = entries[place].mul_add(v_coupled[j], of_v);
+                place += 1;
+            }
+        }
+        *gained = v[i].mul_add(of_x, *gained);
+        *lost = x[i].mul_add(of_v, *lost);
+    });
+}
+
+/// Places of the entries that are kept, whether of the same node or the next one, row and column: in the order in which they are kept.
+fn places<const D: usize>(
+    last_couples: bool,
+    only_bending: bool,
+) -> impl Iterator<Item = (bool, usize, usize)> {
+    let all = [false, true]
+        .into_iter()
+        .flat_map(|same_node| (0..D).flat_map(move |i| (0..D).map(move |j| (same_node, i, j))));
+    all.filter(move |&(same_node, i, j)| is_kept::<D>(same_node, i, j, last_couples, only_bending))
 }
 
 /// Number of entries of four rows.
-#[inline(always)]
 const fn count<const D: usize>(last_couples: bool, only_bending: bool) -> usize {
-    let degrees = if last_couples { D } else { D - 1 };
-    let displacements = displacements::<D>(last_couples);
-    let rotations = degrees - displacements;
-    if only_bending {
-        3 * displacements * rotations + rotations * (rotations - 1) / 2
-    } else {
-        degrees * degrees + degrees * (degrees - 1) / 2
+    count_in_block::<D>(false, last_couples, only_bending)
+        + count_in_block::<D>(true, last_couples, only_bending)
+}
+
+/// Number of those that are of the same node, or of the next one.
+const fn count_in_block<const D: usize>(same_node: bool, last_couples: bool, only_bending: bool) -> usize {
+    let (mut count, mut place) = (0, 0);
+    while place < D * D {
+        count += is_kept::<D>(same_node, place / D, place % D, last_couples, only_bending) as usize;
+        place += 1;
     }
+    count
 }
 
-/// Whether an entry, of the same node or of the next one, couples a displacement with a rotation, or two rotations of a node.
+/// Whether an entry, of the same node or of the next one, is kept: right of the diagonal; of the last degree of freedom only if it couples;
+/// where only bending couples, between a displacement and a rotation, or two rotations of a node.
 #[inline(always)]
-const fn is_bending<const D: usize>(same_node: bool, i: usize, j: usize, last_couples: bool) -> bool {
-    let displacements = displacements::<D>(last_couples);
+const fn is_kept<const D: usize>(
+    same_node: bool,
+    i: usize,
+    j: usize,
+    last_couples: bool,
+    only_bending: bool,
+) -> bool {
+    if (same_node && j <= i) || (!last_couples && (i + 1 == D || j + 1 == D)) {
+        return false;
+    }
+    // The last degree of freedom is the twist, or the second rotation of a string that does not twist.
+    let displacements = if last_couples { D - 2 } else { D - 3 };
     let (of_i, of_j) = (i < displacements, j < displacements);
-    of_i != of_j || (same_node && !of_i)
-}
-
-/// Number of displacements among the degrees of freedom: the last of these is the twist, or the second rotation of a string that does not
-/// twist.
-#[inline(always)]
-const fn displacements<const D: usize>(last_couples: bool) -> usize {
-    if last_couples { D - 2 } else { D - 3 }
+    !only_bending || of_i != of_j || (same_node && !of_i)
 }

@@ -35,16 +35,16 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PlannedAccuracy {
-    /// `draft`, `standard`, `reference`, or `explicit` where integrator and step were given in full.
+    /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
     pub name: String,
     /// Method.
     pub integrator: Integrator,
-    /// Step \[s\].
+    /// Step \[s\]; the longest one where the step adapts itself.
     pub step: f64,
-    /// Steps of all runs of the point together; absent where the step adapts itself.
+    /// Steps of all runs of the point together; an estimate where the step adapts itself, and absent for `rk4` with a tolerance.
     pub steps: Option<u64>,
     /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included; absent where the
-    /// machine's speed is not known or the step adapts itself.
+    /// machine's speed is not known or steps are.
     pub cpu_time: Option<f64>,
 }
 
@@ -68,6 +68,9 @@ const LARGE_MESH: f64 = 5.0;
 
 /// Nodes of the 200 m case.
 const BASE_NODES: f64 = 297.0;
+
+/// Contact sweeps that are enough for convergence.
+const CONVERGED_SWEEPS: u32 = 20;
 
 /// Methods whose steps differ in cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,6 +155,7 @@ fn accuracies(scenario: &Scenario) -> Vec<(&'static str, TimeStepping)> {
         Accuracy::Preset(own) => {
             named.iter().find(|(_, preset)| *preset == own).map_or("explicit", |(name, _)| name)
         }
+        Accuracy::Target(_) => "tolerance",
         Accuracy::Explicit(_) => "explicit",
     };
     let others = named.into_iter().filter(|(name, _)| *name != own);
@@ -174,11 +178,13 @@ impl MethodKind {
 
     /// Stepping and simulated time \[s\] of a run long enough to be timed: some 10 ms.
     fn sample(self) -> (TimeStepping, f64) {
-        let preset = |preset| Accuracy::Preset(preset).time_stepping();
         match self {
-            MethodKind::GeneralizedAlpha => (preset(AccuracyPreset::Draft), 0.05),
-            MethodKind::Esdirk4 => (preset(AccuracyPreset::Standard), 0.03),
-            MethodKind::Esdirk4Converged => (preset(AccuracyPreset::Reference), 0.01),
+            MethodKind::GeneralizedAlpha => (TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4), 0.05),
+            MethodKind::Esdirk4 => (TimeStepping::fixed(Integrator::Esdirk4, 1e-3), 0.03),
+            MethodKind::Esdirk4Converged => {
+                let stepping = TimeStepping::fixed(Integrator::Esdirk4, 2.5e-4);
+                (TimeStepping { contact_sweeps: CONVERGED_SWEEPS, ..stepping }, 0.01)
+            }
             MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.005),
         }
     }
@@ -295,6 +301,7 @@ mod tests {
         for change in scenes {
             let mut scenario = paper();
             scenario.duration = 0.02;
+            scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
             scenario.recording.spectrum_windows.clear();
             scenario.recording.orbit_window = None;
             change(&mut scenario);
@@ -317,7 +324,7 @@ mod tests {
             large_mesh_factor: 2.0,
         };
         let mut scenario = paper();
-        scenario.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
+        scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4));
         scenario.ensemble = 2;
         let plan = Plan::new(&scenario, Some(&speed)).unwrap();
         let statics = 297.0 * 1e-4;
@@ -325,7 +332,7 @@ mod tests {
         let (start, steps) = (2.0 * 297.0 * 2e-5, 297.0 * 240_000.0 * 3e-7);
         assert!((plan.cpu_time().unwrap() - (statics + start + steps)).abs() < 1e-9);
         let names: Vec<_> = plan.accuracies.iter().map(|accuracy| accuracy.name.as_str()).collect();
-        assert_eq!(names, ["draft", "standard", "reference"]);
+        assert_eq!(names, ["explicit", "draft", "standard", "reference"]);
 
         scenario.recording.nodes.clear();
         scenario.recording.spectrum_windows.clear();

@@ -282,10 +282,14 @@ pub fn compute_from(
         let effort = &records.effort;
         provenance.insert("integrator".into(), json!(effort.stepping.integrator));
         provenance.insert("step".into(), json!(effort.stepping.step));
+        provenance.insert("tolerance".into(), json!(effort.stepping.tolerance));
         provenance.insert("contact_sweeps".into(), json!(effort.stepping.contact_sweeps));
         provenance.insert("step_subdivisions".into(), json!(effort.subdivisions));
         provenance.insert("steps".into(), json!(effort.steps));
         provenance.insert("rejected_steps".into(), json!(effort.rejected_steps));
+        provenance.insert("unresolved_steps".into(), json!(effort.unresolved_steps));
+        provenance.insert("shortest_step".into(), json!(effort.step_range[0]));
+        provenance.insert("longest_step".into(), json!(effort.step_range[1]));
         provenance.insert("sweeps".into(), json!(effort.sweeps.sweeps));
         provenance.insert("sweep_largest_change".into(), json!(effort.sweeps.largest_change));
         provenance.insert("loose_solves".into(), json!(effort.sweeps.loose_solves));

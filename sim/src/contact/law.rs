@@ -84,7 +84,20 @@ impl<L: Lane> ContactParameters<L> {
     /// `elastic` is its part K_c P.
     #[inline(always)]
     pub fn normal_force(&self, penetration: L, penetration_rate: L, elastic: L) -> L {
-        self.damping(penetration).mul_add(penetration_rate, elastic).max(self.least_normal_force)
+        self.limited(self.damping(penetration).mul_add(penetration_rate, elastic))
+    }
+
+    /// A normal force \[N\] that does not pull where the law has no adhesion.
+    #[inline(always)]
+    pub(super) fn limited(&self, normal_force: L) -> L {
+        normal_force.max(self.least_normal_force)
+    }
+
+    /// The sliding speed \[m/s\] from which on friction hardly changes with it: the curve's slope is below a hundredth of that at
+    /// rest, whatever mu_d / mu_s.
+    #[inline(always)]
+    pub(super) fn fast_sliding(&self) -> L {
+        L::splat(FAST_SLIDING) / self.decay
     }
 
     /// Friction coefficient mu(v_g) of (14), odd in the sliding speed \[m/s\]: slope 1 / v_ref at rest, mu_s
@@ -98,6 +111,7 @@ impl<L: Lane> ContactParameters<L> {
     }
 
     /// d(mu)/d(v_g) of (14) \[s/m\]: 1 / v_ref at rest, negative where the curve falls.
+    #[inline(always)]
     pub fn friction_slope(&self, sliding_speed: L) -> L {
         let one = L::splat(1.0);
         let run = self.decay * sliding_speed.abs();
@@ -105,6 +119,26 @@ impl<L: Lane> ContactParameters<L> {
         let twice = (one + self.xi) * fade;
         let shape = (twice + (one - self.xi)) * fade;
         self.half_slope * (shape - run * fade * fade * (twice + twice + (one - self.xi)))
+    }
+
+    /// The sliding speed s \[m/s\] at which `s + response mu(s) = unopposed`: what friction on a node leaves of its sliding when the
+    /// sliding speed gives way by `response` for a friction coefficient of one, 0 or more \[m/s\]. Of several, that nearest to rest.
+    ///
+    /// Newton's method from rest, where the curve is concave and iterations rise towards the solution without passing it; beyond the
+    /// inflection of (14) they are held between rest and the unopposed speed.
+    #[inline(always)]
+    pub fn opposed_sliding_speed(&self, unopposed: L, response: L) -> L {
+        let (one, zero) = (L::splat(1.0), L::splat(0.0));
+        let target = unopposed.abs();
+        let mut speed = zero;
+        for _ in 0..OPPOSED_ITERATIONS {
+            let (friction, slope) = (self.friction_coefficient(speed), self.friction_slope(speed));
+            let rise = response.mul_add(slope, one).max(L::splat(SMALLEST_RISE));
+            let excess = response.mul_add(friction, speed) - target;
+            let next = (speed - excess / rise).max(zero);
+            speed = L::select(next.less_than(target), next, target);
+        }
+        L::select(unopposed.less_than(zero), -speed, speed)
     }
 
     /// Static friction coefficient mu_s.
@@ -160,6 +194,15 @@ impl<L: Lane> Saturating<L> {
         penetration * penetration * self.limit_over_pi.mul_add(bend, L::splat(0.5) * self.half_limit)
     }
 }
+
+/// Sliding speed of fast sliding in multiples of 1/a of (14).
+const FAST_SLIDING: f64 = 16.0;
+
+/// Newton iterations for an opposed sliding speed.
+const OPPOSED_ITERATIONS: usize = 6;
+
+/// Where friction falls faster than the sliding speed gives way, no iteration goes further than this allows.
+const SMALLEST_RISE: f64 = 0.1;
 
 /// Below this y the series is summed; what 9 terms leave out is below y^18.
 const SERIES_LIMIT: f64 = 0.1;

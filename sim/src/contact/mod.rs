@@ -2,7 +2,7 @@
 //!
 //! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
 //! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
-//! force in motion is [`dynamic_contact`], at rest [`static_contact`]; its
+//! force in motion is [`dynamic_contact`], inside an implicit solve [`implicit_contact`], at rest [`static_contact`]; its
 //! linearisation about steady sliding is [`sliding_tangent`].
 
 mod law;
@@ -14,7 +14,7 @@ mod sliding;
 mod tests;
 
 pub use law::ContactParameters;
-pub use motion::{ContactForce, LateralMotion, dynamic_contact};
+pub use motion::{ContactForce, LateralMotion, Yielding, dynamic_contact, implicit_contact};
 pub use rest::{StaticContactForce, static_contact};
 pub use sliding::{SlidingTangent, sliding_tangent};
 

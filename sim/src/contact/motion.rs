@@ -32,12 +32,29 @@ pub struct ContactForce<L> {
     pub normal: L,
     /// Elastic part K_c P of the normal force \[N\]; the rest, times the penetration rate, is dissipated.
     pub elastic: L,
+    /// Friction mu |F_n| \[N\], of the sign of the sliding speed.
+    pub friction: L,
     /// Sliding speed v_g of the string's surface \[m/s\], (12).
     pub sliding_speed: L,
     /// Penetration P \[m\].
     pub penetration: L,
     /// dP/dt \[m/s\].
     pub penetration_rate: L,
+}
+
+/// How a node's motion at the end of a solve gives way to its own contact force: what makes the force implicit at the node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Yielding<L> {
+    /// Lateral displacement by a lateral force \[m/N\].
+    pub lateral: L,
+    /// Displacement of the surface at the contact radius by a friction force there, twist included \[m/N\].
+    pub surface: L,
+    /// Speed by displacement \[1/s\].
+    pub speed: L,
+    /// Normal force that the motion was found with \[N\].
+    pub normal: L,
+    /// Friction that the motion was found with \[N\], of the sign of the sliding speed.
+    pub friction: L,
 }
 
 /// The force of the wall on a node in motion, (10) to (14), at rotation speed Omega \[rad/s\].
@@ -47,6 +64,46 @@ pub fn dynamic_contact<L: Lane>(
     node: &ContactNode<L>,
     motion: &LateralMotion<L>,
     rotation_speed: L,
+) -> ContactForce<L> {
+    contact_force(law, node, motion, rotation_speed, |normal, _| normal, |sliding_speed, _| sliding_speed)
+}
+
+/// The force of the same law that agrees with the motion which it leads to, as far as the node's own force moves it: in the
+/// normal direction by one step of Newton's method, along the surface by a solution of the whole friction curve. Where the motion
+/// agrees with the force that it was found with, it is that of [`dynamic_contact`].
+#[inline(always)]
+pub fn implicit_contact<L: Lane>(
+    law: &ContactParameters<L>,
+    node: &ContactNode<L>,
+    motion: &LateralMotion<L>,
+    rotation_speed: L,
+    yielding: &Yielding<L>,
+) -> ContactForce<L> {
+    let Yielding { lateral, surface, speed, normal: normal_before, friction: friction_before } = *yielding;
+    let normal = |normal: L, penetration: L| {
+        let slope =
+            law.damping(penetration).mul_add(speed, law.stiffness(penetration)) * node.share * lateral;
+        law.limited(slope.mul_add(normal_before, normal) / (slope + L::splat(1.0)))
+    };
+    let friction_speed = |sliding_speed: L, normal: L| {
+        if !sliding_speed.abs().less_than(law.fast_sliding()).any() {
+            return sliding_speed;
+        }
+        let response = surface * speed;
+        law.opposed_sliding_speed(response.mul_add(friction_before, sliding_speed), response * normal)
+    };
+    contact_force(law, node, motion, rotation_speed, normal, friction_speed)
+}
+
+/// The force with a normal force `normal_force(F_n, P)` and friction at the sliding speed `friction_speed(v_g, |F_n|)`.
+#[inline(always)]
+fn contact_force<L: Lane>(
+    law: &ContactParameters<L>,
+    node: &ContactNode<L>,
+    motion: &LateralMotion<L>,
+    rotation_speed: L,
+    normal_force: impl FnOnce(L, L) -> L,
+    friction_speed: impl FnOnce(L, L) -> L,
 ) -> ContactForce<L> {
     let LateralMotion { u, v, u_rate, v_rate, theta_z_rate } = *motion;
     let zero = L::splat(0.0);
@@ -68,8 +125,12 @@ pub fn dynamic_contact<L: Lane>(
     let whole = law.stiffness(penetration) * penetration;
     let elastic = whole * node.share;
     let normal = law.normal_force(penetration, penetration_rate, whole) * node.share;
-    let friction =
-        if law.has_friction { law.friction_coefficient(sliding_speed) * normal.abs() } else { zero };
+    let normal = normal_force(normal, penetration);
+    let friction = if law.has_friction {
+        law.friction_coefficient(friction_speed(sliding_speed, normal.abs())) * normal.abs()
+    } else {
+        zero
+    };
     let tangential = friction * law.tangential_share;
     let torque = friction * law.torque_share * node.contact_radius;
 
@@ -80,6 +141,7 @@ pub fn dynamic_contact<L: Lane>(
         torque_z: where_touching(-torque),
         normal: where_touching(normal),
         elastic: where_touching(elastic),
+        friction: where_touching(friction),
         sliding_speed: where_touching(sliding_speed),
         penetration: where_touching(penetration),
         penetration_rate: where_touching(penetration_rate),
@@ -96,6 +158,7 @@ impl<L: Lane> ContactForce<L> {
             torque_z: zero,
             normal: zero,
             elastic: zero,
+            friction: zero,
             sliding_speed: zero,
             penetration: zero,
             penetration_rate: zero,

@@ -419,3 +419,62 @@ fn a_lane_has_the_bits_of_a_node_alone() {
         assert_eq!(together.sliding_speed.lane(lane), alone.sliding_speed);
     }
 }
+
+#[test]
+fn a_sliding_speed_that_gives_way_solves_its_equation() {
+    for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3), (2.0, 1.0)] {
+        let law = ContactLaw { static_friction, dynamic_friction, ..SOFT };
+        let parameters = parameters(&law);
+        // Up to where friction falls faster than the speed gives way, the solution is the only one.
+        for response in [0.0, 1e-4, 1e-3, 1e-2, 0.05] {
+            for unopposed in [0.0, 1e-4, 3e-3, 0.03, 0.1, 0.5, -0.02, -2.0] {
+                let speed: f64 = parameters.opposed_sliding_speed(unopposed, response);
+                let left = speed + response * parameters.friction_coefficient(speed) - unopposed;
+                assert!(left.abs() < 1e-9, "{law:?}, {response}, {unopposed}: {left:e}");
+                assert!(speed * unopposed >= 0.0 && speed.abs() <= unopposed.abs());
+            }
+        }
+        // A stiff node is held: its speed is what the slope at rest allows.
+        let speed: f64 = parameters.opposed_sliding_speed(0.1, 100.0);
+        assert!((speed / (0.1 / (1.0 + 100.0 * parameters.friction_slope(0.0))) - 1.0).abs() < 0.1);
+    }
+}
+
+#[test]
+fn fast_sliding_is_where_friction_hardly_changes() {
+    for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.299), (1.0, 0.5)] {
+        let parameters = parameters(&ContactLaw { static_friction, dynamic_friction, ..SOFT });
+        let fast: f64 = parameters.fast_sliding();
+        assert!(parameters.friction_slope(fast).abs() < 0.01 * parameters.friction_slope(0.0));
+    }
+}
+
+/// One node on a spring and a damper of the wall, in one step of the implicit Euler method: the implicit force is the one that the solved
+/// motion leads to, in one evaluation from any guess.
+#[test]
+fn an_implicit_force_agrees_with_the_motion_that_it_leads_to() {
+    let law = ContactLaw { stiffness_sharpness: 1e12, damping_sharpness: 1e12, ..SOFT };
+    let parameters = parameters(&law);
+    let (compliance, rate) = (2e-8, 4e3);
+    let r0 = NODE.clearance + 1e-4;
+    // The node along u: displacement r0 + compliance * force, velocities from rest by the rate.
+    let motion = |force: [f64; 2]| LateralMotion {
+        u: r0 + compliance * force[0],
+        v: 0.0,
+        u_rate: rate * compliance * force[0],
+        v_rate: 0.03 + rate * compliance * force[1],
+        theta_z_rate: 0.0,
+    };
+    let mut force = [0.0; 2];
+    let mut yielding =
+        Yielding { lateral: compliance, surface: compliance, speed: rate, normal: 0.0, friction: 0.0 };
+    for _ in 0..2 {
+        let contact = implicit_contact(&parameters, &NODE, &motion(force), 0.0, &yielding);
+        force = [contact.force_u, contact.force_v];
+        (yielding.normal, yielding.friction) = (contact.normal, contact.friction);
+    }
+    let exact = dynamic_contact(&parameters, &NODE, &motion(force), 0.0);
+    assert!(exact.normal > 100.0 && exact.friction > 1.0, "{exact:?}");
+    assert!((exact.force_u / force[0] - 1.0).abs() < 1e-6, "{exact:?} against {force:?}");
+    assert!((exact.force_v / force[1] - 1.0).abs() < 1e-6, "{exact:?} against {force:?}");
+}

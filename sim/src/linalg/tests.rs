@@ -234,6 +234,29 @@ fn field_solution<const D: usize>(factor: &Factor<f64, D>, b: &[[f64; D]]) -> Bl
     x.to_nodes()
 }
 
+#[test]
+fn diagonal_blocks_of_an_inverse_equal_the_dense_ones() {
+    let mut numbers = Numbers(17);
+    for rows in ROW_COUNTS {
+        let matrix = numbers.matrix(rows, 20.0);
+        let blocks = matrix.inverse_diagonal().expect("diagonally dominant");
+        let inverse = dense(&matrix).try_inverse().expect("diagonally dominant");
+        assert_eq!(blocks.len(), rows);
+        for (row, block) in blocks.iter().enumerate() {
+            for i in 0..DOFS {
+                for j in 0..DOFS {
+                    let wanted = inverse[(DOFS * row + i, DOFS * row + j)];
+                    assert!((block[(i, j)] - wanted).abs() < 1e-14, "row {row} of {rows}");
+                }
+            }
+        }
+    }
+    let mut singular = numbers.matrix(3, 20.0);
+    singular.diagonal[1] = Block::zero();
+    (singular.lower[1], singular.upper[1]) = (Block::zero(), Block::zero());
+    assert_eq!(singular.inverse_diagonal().expect_err("a row of zeros").row, 1);
+}
+
 /// Blocks of four, five and six rows are kept in different ways.
 #[test]
 fn solutions_of_nodes_with_fewer_degrees_of_freedom_give_their_right_hand_side() {

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::block::{Block, DOFS, Sum};
+use super::factor::SingularBlock;
 use super::lane::Lane;
 
 /// A square matrix of n x n blocks, zero but on three diagonals.
@@ -97,6 +98,40 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
 }
 
 impl<const D: usize> BlockTridiagonal<f64, D> {
+    /// The blocks on the diagonal of the inverse.
+    ///
+    /// Eliminating all rows above and below row i leaves the pivot `S_i + T_i - A_ii` there, S being the pivots of an elimination from
+    /// the top and T those of one from the bottom; its inverse is the block.
+    ///
+    /// # Errors
+    /// When a pivot block is singular.
+    pub fn inverse_diagonal(&self) -> Result<Vec<Block<f64, D>>, SingularBlock> {
+        let rows = self.rows();
+        let inverse = |pivot: &Block<f64, D>, row: usize| {
+            let (inverse, smallest) = pivot.inverse();
+            if smallest > 0.0 && inverse.is_finite() {
+                Ok(inverse)
+            } else {
+                Err(SingularBlock { row, lane: 0 })
+            }
+        };
+        let mut pivots = self.diagonal.clone();
+        for row in 1..rows {
+            let above = inverse(&pivots[row - 1], row - 1)?.negated().multiply_block(&self.upper[row - 1]);
+            self.lower[row].multiply_block_add(&above, &mut pivots[row]);
+        }
+        let mut from_below = Block::zero();
+        for row in (0..rows).rev() {
+            let mut below = self.diagonal[row];
+            self.upper[row].multiply_block_add(&from_below, &mut below);
+            pivots[row].add(&below);
+            pivots[row].add(&self.diagonal[row].negated());
+            pivots[row] = inverse(&pivots[row], row)?;
+            from_below = inverse(&below, row)?.negated().multiply_block(&self.lower[row]);
+        }
+        Ok(pivots)
+    }
+
     /// Whether the last degree of freedom couples with others than the two before it.
     pub fn last_couples(&self) -> bool {
         self.blocks().into_iter().any(|(blocks, rows)| {

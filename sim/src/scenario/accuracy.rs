@@ -6,16 +6,39 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// How finely time is resolved: a preset, or integrator and step in full.
+/// How finely time is resolved: a preset, a tolerance, or integrator and step in full.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum Accuracy {
     /// A named preset.
     Preset(AccuracyPreset),
+    /// What error is allowed.
+    Target(AccuracyTarget),
     /// Integrator and step in full.
     Explicit(TimeStepping),
 }
+
+/// The relative error that time integration may make.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum AccuracyTarget {
+    /// Of statistics over the windows that are read, such as the size of an orbit: 0.0001 to 0.1.
+    Statistics(f64),
+    /// Of the history itself, relative to the motion, as long as histories of neighbouring starts stay together: 0.0001 to 0.1.
+    Trajectory(f64),
+}
+
+/// Tolerances that can be asked for.
+pub(in crate::scenario) const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
+
+/// The tolerance that the longest step below belongs to.
+const LONGEST_STEP_TOLERANCE: f64 = 0.08;
+
+/// Longest step of the adaptive method \[s\] at that tolerance. Between contacts' changes the error of a step of this method falls with
+/// the square of the step or faster, so the longest step goes with the root of the tolerance.
+const LONGEST_STEP: f64 = 8e-3;
 
 impl Default for Accuracy {
     fn default() -> Self {
@@ -24,15 +47,29 @@ impl Default for Accuracy {
 }
 
 impl Accuracy {
-    /// The integrator and step that the choice stands for (performance.md section 7).
+    /// The integrator and step that the choice stands for.
     pub fn time_stepping(&self) -> TimeStepping {
-        let (integrator, step, contact_sweeps) = match self {
-            Accuracy::Explicit(explicit) => return *explicit,
-            Accuracy::Preset(AccuracyPreset::Draft) => (Integrator::GeneralizedAlpha, 5e-4, 2),
-            Accuracy::Preset(AccuracyPreset::Standard) => (Integrator::Esdirk4, 1e-3, 2),
-            Accuracy::Preset(AccuracyPreset::Reference) => (Integrator::Esdirk4, 2.5e-4, 20),
-        };
-        TimeStepping { contact_sweeps, ..TimeStepping::fixed(integrator, step) }
+        match *self {
+            Accuracy::Explicit(explicit) => explicit,
+            Accuracy::Preset(preset) => TimeStepping::adaptive(preset.tolerance()),
+            Accuracy::Target(AccuracyTarget::Statistics(tolerance)) => TimeStepping::adaptive(tolerance),
+            // A history's error is up to twice that of the sizes of its orbits in the runs that the tolerances are from.
+            Accuracy::Target(AccuracyTarget::Trajectory(tolerance)) => {
+                TimeStepping::adaptive(0.5 * tolerance)
+            }
+        }
+    }
+
+    /// The relative error of the size of an orbit that the choice allows; absent where integrator and step are given, which
+    /// promise nothing.
+    pub fn statistics_tolerance(&self) -> Option<f64> {
+        match *self {
+            Accuracy::Preset(preset) => Some(preset.tolerance()),
+            Accuracy::Target(
+                AccuracyTarget::Statistics(tolerance) | AccuracyTarget::Trajectory(tolerance),
+            ) => Some(tolerance),
+            Accuracy::Explicit(_) => None,
+        }
     }
 }
 
@@ -49,7 +86,9 @@ impl<'de> Visitor<'de> for AccuracyVisitor {
     type Value = Accuracy;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("\"draft\", \"standard\", \"reference\" or an object with integrator and step")
+        formatter.write_str(
+            "\"draft\", \"standard\", \"reference\", an object with a tolerance (statistics or trajectory), or one with integrator and step",
+        )
     }
 
     fn visit_str<E: de::Error>(self, name: &str) -> Result<Accuracy, E> {
@@ -57,8 +96,40 @@ impl<'de> Visitor<'de> for AccuracyVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Accuracy, A::Error> {
-        TimeStepping::deserialize(MapAccessDeserializer::new(map)).map(Accuracy::Explicit)
+        let fields = Fields::deserialize(MapAccessDeserializer::new(map))?;
+        let Fields { statistics, trajectory, integrator, step, contact_sweeps, tolerance, spectral_radius } =
+            fields;
+        let explicit = integrator.is_some()
+            || step.is_some()
+            || contact_sweeps.is_some()
+            || tolerance.is_some()
+            || spectral_radius.is_some();
+        match (statistics, trajectory, explicit) {
+            (Some(tolerance), None, false) => Ok(Accuracy::Target(AccuracyTarget::Statistics(tolerance))),
+            (None, Some(tolerance), false) => Ok(Accuracy::Target(AccuracyTarget::Trajectory(tolerance))),
+            (None, None, _) => Ok(Accuracy::Explicit(TimeStepping {
+                integrator: integrator.ok_or_else(|| de::Error::missing_field("integrator"))?,
+                step: step.ok_or_else(|| de::Error::missing_field("step"))?,
+                contact_sweeps: contact_sweeps.unwrap_or_else(two),
+                tolerance,
+                spectral_radius,
+            })),
+            _ => Err(de::Error::custom("statistics, trajectory, or integrator with step: one of them alone")),
+        }
     }
+}
+
+/// The fields of all forms that are objects.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    statistics: Option<f64>,
+    trajectory: Option<f64>,
+    integrator: Option<Integrator>,
+    step: Option<f64>,
+    contact_sweeps: Option<u32>,
+    tolerance: Option<f64>,
+    spectral_radius: Option<f64>,
 }
 
 /// Named accuracies.
@@ -66,12 +137,23 @@ impl<'de> Visitor<'de> for AccuracyVisitor {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyPreset {
-    /// Generalized-alpha, 0.5 ms, two contact sweeps.
+    /// 8 % of the size of an orbit, 15 % of the standard deviation of its radius.
     Draft,
-    /// ESDIRK4(3)6L, 1 ms, two contact sweeps a stage.
+    /// 2 % and 5 %.
     Standard,
-    /// ESDIRK4(3)6L, 0.25 ms, contact sweeps to convergence.
+    /// 0.3 % and 1 %.
     Reference,
+}
+
+impl AccuracyPreset {
+    /// The relative error of the size of an orbit that it allows.
+    pub fn tolerance(self) -> f64 {
+        match self {
+            AccuracyPreset::Draft => 0.08,
+            AccuracyPreset::Standard => 0.02,
+            AccuracyPreset::Reference => 0.003,
+        }
+    }
 }
 
 /// An integrator and its step.
@@ -81,12 +163,14 @@ pub enum AccuracyPreset {
 pub struct TimeStepping {
     /// The method.
     pub integrator: Integrator,
-    /// Step \[s\]; for `rk4` the largest step.
+    /// Step \[s\]; with a tolerance the longest one. A part of the recording interval, or for `esdirk4` the recording interval times a
+    /// power of two.
     pub step: f64,
     /// Contact sweeps a solve, 2 or more (implicit methods).
     #[serde(default = "two")]
     pub contact_sweeps: u32,
-    /// Relative error tolerance of the adaptive step (`rk4`); absent means a fixed step.
+    /// Adapts the step; absent means a fixed step. For `esdirk4` the relative error that statistics may have, for `rk4` the local error
+    /// of a lateral displacement in hole radii.
     #[serde(default)]
     pub tolerance: Option<f64>,
     /// Spectral radius at infinite frequency (`generalized_alpha`), 0 to 0.95; absent means 0.8. One, the trapezium rule,
@@ -96,6 +180,12 @@ pub struct TimeStepping {
 }
 
 impl TimeStepping {
+    /// The adaptive method for a relative tolerance on statistics.
+    pub fn adaptive(tolerance: f64) -> Self {
+        let step = LONGEST_STEP * (tolerance / LONGEST_STEP_TOLERANCE).sqrt();
+        Self { tolerance: Some(tolerance), ..Self::fixed(Integrator::Esdirk4, step) }
+    }
+
     /// A method with a fixed step \[s\] and two contact sweeps.
     pub fn fixed(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, contact_sweeps: two(), tolerance: None, spectral_radius: None }
@@ -113,7 +203,7 @@ fn two() -> u32 {
 pub enum Integrator {
     /// Generalized-alpha (Chung and Hulbert 1993) with spectral radius 0.8 at infinity, order 2.
     GeneralizedAlpha,
-    /// ESDIRK4(3)6L (Kennedy and Carpenter 2003), order 4, L-stable.
+    /// ESDIRK4(3)6L (Kennedy and Carpenter 2003), order 4, L-stable, with steps that adapt themselves when a tolerance is given.
     Esdirk4,
     /// Classical Runge-Kutta of order 4 (the paper's), with step doubling when a tolerance is given.
     Rk4,

@@ -5,9 +5,9 @@
 
 use super::set::{Step, parse};
 use super::{
-    Accuracy, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud, NodeChoice,
-    Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, Scenario, Section, SurveyStation,
-    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud,
+    NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, Scenario, Section,
+    SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -141,15 +141,28 @@ impl Numbers for NodeChoice {
 
 impl Numbers for Accuracy {
     fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
-        match self {
-            Accuracy::Explicit(stepping) => stepping.find(steps),
-            Accuracy::Preset(_) => None,
+        match (self, steps) {
+            (Accuracy::Explicit(stepping), _) => stepping.find(steps),
+            (
+                Accuracy::Target(AccuracyTarget::Statistics(tolerance)),
+                [Step::Field("statistics"), rest @ ..],
+            )
+            | (
+                Accuracy::Target(AccuracyTarget::Trajectory(tolerance)),
+                [Step::Field("trajectory"), rest @ ..],
+            ) => tolerance.find(rest),
+            (Accuracy::Target(_) | Accuracy::Preset(_), _) => None,
         }
     }
 
     fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         match self {
             Accuracy::Explicit(stepping) => stepping.each(visit),
+            Accuracy::Target(
+                AccuracyTarget::Statistics(tolerance) | AccuracyTarget::Trajectory(tolerance),
+            ) => {
+                tolerance.each(visit);
+            }
             Accuracy::Preset(_) => {}
         }
     }
@@ -210,6 +223,18 @@ mod tests {
         let mut visited = 0;
         scenario.clone().each_number(&mut |_| visited += 1);
         assert_eq!(visited, written.len());
+    }
+
+    #[test]
+    fn a_tolerance_in_place_of_a_method_is_found() {
+        for path in ["accuracy.statistics", "accuracy.trajectory"] {
+            let mut scenario = preset("paper-200m").unwrap().with(path, json!(0.01)).unwrap();
+            *scenario.number_mut(path).unwrap() = 0.02;
+            assert_eq!(scenario, preset("paper-200m").unwrap().with(path, json!(0.02)).unwrap());
+            let mut visited = Vec::new();
+            scenario.each_number(&mut |number| visited.push(*number));
+            assert!(visited.contains(&0.02));
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Changing a scenario by the path of a field.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::format::from_value;
 use super::{Problem, Scenario};
@@ -9,21 +9,30 @@ impl Scenario {
     /// The scenario with one field changed. `path` names it with dots and indices: `mud.flow_rate`,
     /// `string.sections[1].count`, `recording.nodes`. An object given for an object changes the fields it
     /// names and leaves the others; `null` removes what is optional (`mud`). A field of a named accuracy may
-    /// be set: the accuracy is written out first.
+    /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance.
     ///
     /// # Errors
     /// A path that names no field (with the fields there are), or a value of the wrong type.
     pub fn with(&self, path: &str, value: Value) -> Result<Self, Problem> {
         let steps = parse(path)?;
         let mut tree = serde_json::to_value(self).expect("a scenario has only string keys");
-        if matches!(steps.as_slice(), [Step::Field("accuracy"), _, ..]) {
-            tree["accuracy"] = serde_json::to_value(self.accuracy.time_stepping())
-                .expect("an accuracy has only string keys");
+        match steps.as_slice() {
+            [Step::Field("accuracy"), Step::Field(target)] if TARGETS.contains(target) => {
+                tree["accuracy"] = json!({ *target: null });
+            }
+            [Step::Field("accuracy"), _, ..] => {
+                tree["accuracy"] = serde_json::to_value(self.accuracy.time_stepping())
+                    .expect("an accuracy has only string keys");
+            }
+            _ => {}
         }
         put(find(&mut tree, &steps)?, value);
         from_value(tree)
     }
 }
+
+/// Fields of an accuracy that take the place of a method and its step.
+const TARGETS: [&str; 2] = ["statistics", "trajectory"];
 
 /// One step down the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -45,9 +45,14 @@ fn calibration(integrator: Integrator) -> f64 {
 }
 
 impl ErrorSum {
+    /// Adds a step: the sum of the squares of its lateral displacements' local errors \[m2\].
+    pub(super) fn add(&mut self, squares: f64) {
+        self.local += squares;
+    }
+
     /// Adds a step whose displacement errors of a group of nodes are `error(group, dof)` \[m\].
     #[inline(always)]
-    pub(super) fn add(&mut self, groups: usize, error: impl Fn(usize, usize) -> Four) {
+    pub(super) fn add_groups(&mut self, groups: usize, error: impl Fn(usize, usize) -> Four) {
         let mut sums = [Four::splat(0.0); 2];
         for group in 0..groups {
             for (dof, sum) in sums.iter_mut().enumerate() {
@@ -73,6 +78,11 @@ impl ErrorSum {
         }
         self.motion += sums[0].sum() + sums[1].sum();
         self.rows += 1;
+    }
+
+    /// Root mean square lateral motion away from the start so far \[m\].
+    pub(super) fn motion(&self, nodes: usize) -> f64 {
+        (self.motion / (2.0 * nodes as f64 * self.rows.max(1) as f64)).sqrt()
     }
 
     /// The estimate for a string of `nodes` nodes.

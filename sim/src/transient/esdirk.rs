@@ -1,8 +1,11 @@
 //! ESDIRK4(3)6L\[2\]SA, the implicit part of ARK4(3)6L\[2\]SA of Kennedy and Carpenter (2003): order 4, L-stable,
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
-use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver};
+use super::adaptive::StepError;
+use super::energy::{Ledger, Work};
+use super::forces::{ContactForces, Forces};
+use super::grid::Grid;
+use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::model::DynamicSystem;
@@ -51,10 +54,15 @@ pub(super) fn stage_coefficients(step: f64) -> StageCoefficients {
 /// Stages of one step; the last one is the first of the next step.
 #[derive(Debug, Clone)]
 pub(super) struct Esdirk<const D: usize> {
-    step: f64,
+    /// Steps \[s\] that can be made, the shortest first, with the matrices of their stages.
+    levels: Vec<(f64, StageMatrix<D>)>,
     pub(super) solver: StageSolver<D>,
     /// Of the stages after the first, which is the state at the step's start.
     stages: [Stage<D>; STAGES - 1],
+    /// Powers at all stages.
+    powers: [Work; STAGES],
+    /// Of the attempted step: sum of the squares of the lateral displacements' local errors \[m2\].
+    local_error: f64,
     acceleration_offset: NodalField<D>,
     velocity_offset: NodalField<D>,
 }
@@ -68,50 +76,78 @@ struct Stage<const D: usize> {
 }
 
 impl<const D: usize> Esdirk<D> {
+    /// For the steps of all levels of `grid`.
     pub(super) fn new(
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
-        step: f64,
+        forces: &Forces<D>,
+        grid: &Grid,
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
         let zero = NodalField::zeros(initial.len());
+        let level = |level| {
+            let step = grid.step(level);
+            Ok((step, StageMatrix::new(system, initial, stage_coefficients(step), forces)?))
+        };
         Ok(Self {
-            step,
-            solver: StageSolver::new(system, initial, stage_coefficients(step), sweeps)?,
+            levels: (0..=grid.top()).map(level).collect::<Result<_, SingularBlock>>()?,
+            solver: StageSolver::new(system, initial, sweeps),
             stages: std::array::from_fn(|_| Stage {
                 displacement: zero.clone(),
                 velocity: zero.clone(),
                 acceleration: zero.clone(),
             }),
+            powers: [Work::default(); STAGES],
+            local_error: 0.0,
             acceleration_offset: zero.clone(),
             velocity_offset: zero,
         })
     }
 
-    /// Advances `state` by one step from `time`. `state.stage_power` holds the powers of the step's first stage.
-    pub(super) fn advance(
+    /// Solves the stages of a step of `level` from `state` at `time`, where the wall pushes with `contact`; neither the state nor any book
+    /// changes.
+    pub(super) fn attempt(
         &mut self,
+        level: u32,
         forces: &Forces<D>,
         time: f64,
-        state: &mut State<D>,
-        Books { ledger, errors }: Books<'_, D>,
+        state: &State<D>,
+        contact: &ContactForces,
+        ledger: &Ledger<D>,
     ) {
-        let h = self.step;
-        ledger.book_power(WEIGHTS[0] * h, &state.stage_power);
+        let h = self.levels[level as usize].0;
+        self.solver.begin_step(contact);
         for stage in 1..STAGES {
-            self.predict(stage, state);
+            self.predict(h, stage, state);
             let stage_time = time + NODES[stage] * h;
-            self.solver.solve(forces, stage_time, &self.acceleration_offset, &self.velocity_offset);
+            let matrix = &self.levels[level as usize].1;
+            let offsets = [&self.acceleration_offset, &self.velocity_offset];
+            self.solver.solve(matrix, forces, stage_time, offsets);
             let Stage { displacement, velocity, acceleration } = &mut self.stages[stage - 1];
-            self.solver.rates([&self.acceleration_offset, &self.velocity_offset], [acceleration, velocity]);
+            self.solver.rates(matrix, offsets, [acceleration, velocity]);
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
             if WEIGHTS[stage] != 0.0 {
                 let unbalance = forces.unbalance_at(stage_time);
-                state.stage_power = ledger.power(velocity, displacement, &self.solver.contact, unbalance);
-                ledger.book_power(WEIGHTS[stage] * h, &state.stage_power);
+                self.powers[stage] = ledger.power(velocity, displacement, &self.solver.contact, unbalance);
             }
         }
+        self.local_error = self.displacement_error(h, state);
+    }
+
+    /// Takes the attempted step of `level` into `state` and the books.
+    pub(super) fn accept(
+        &mut self,
+        level: u32,
+        state: &mut State<D>,
+        Books { ledger, errors }: Books<'_, D>,
+    ) {
+        let h = self.levels[level as usize].0;
+        self.powers[0] = state.stage_power;
+        for (weight, power) in WEIGHTS.iter().zip(&self.powers).filter(|(weight, _)| **weight != 0.0) {
+            ledger.book_power(weight * h, power);
+        }
+        state.stage_power = self.powers[STAGES - 1];
         let [_, s2, s3, s4, s5] = &self.stages;
         let [w0, _, w2, w3, w4, w5] = WEIGHTS.map(|weight| h * weight);
         ledger.book_matrices([
@@ -121,14 +157,7 @@ impl<const D: usize> Esdirk<D> {
             (w4, &s4.velocity, &s4.displacement),
             (w5, &s5.velocity, &s5.displacement),
         ]);
-        let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| Four::splat(h * weight));
-        let v0 = &state.velocity;
-        let [v2, v3, v4, v5] = [s2, s3, s4, s5].map(|stage| &stage.velocity);
-        let [v0, v2, v3, v4, v5] = [v0, v2, v3, v4, v5].map(|velocity| velocity.groups());
-        errors.add(v0.len(), |group, dof| {
-            let of = |velocity: &[[Four; D]]| velocity[group][dof];
-            w0 * of(v0) + w2 * of(v2) + w3 * of(v3) + w4 * of(v4) + w5 * of(v5)
-        });
+        errors.add(self.local_error);
         // What the state held before is overwritten in the next step.
         let Stage { displacement, velocity, acceleration } = &mut self.stages[STAGES - 2];
         std::mem::swap(&mut state.displacement, displacement);
@@ -136,20 +165,84 @@ impl<const D: usize> Esdirk<D> {
         std::mem::swap(&mut state.acceleration, acceleration);
     }
 
+    /// What the attempted step of `level` from `state` leaves.
+    pub(super) fn error(&self, level: u32, forces: &Forces<D>, state: &State<D>) -> StepError {
+        let h = self.levels[level as usize].0;
+        let end = &self.stages[STAGES - 2];
+        let values = 2.0 * end.displacement.nodes() as f64;
+        let velocity_error = self.velocity_error(h, state);
+        let mut friction = Four::splat(0.0);
+        for (group, _) in self.solver.contact.touching() {
+            let (x, v) = (&end.displacement.groups()[group], &end.velocity.groups()[group]);
+            let error = std::array::from_fn(|dof| velocity_error(group, dof));
+            friction = forces.friction_change(group, x, v, &error).max(friction);
+        }
+        StepError {
+            displacement: (self.local_error / values).sqrt(),
+            friction: friction.to_array().into_iter().fold(0.0, f64::max),
+            sweep: self.solver.change(),
+        }
+    }
+
+    /// Sum of the squares of the lateral displacements' local errors \[m2\], as the embedded method of order 3 gives them.
+    fn displacement_error(&self, h: f64, state: &State<D>) -> f64 {
+        let error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
+        let mut sums = [Four::splat(0.0); 2];
+        for group in 0..state.velocity.groups().len() {
+            for (dof, sum) in sums.iter_mut().enumerate() {
+                let error = error(group, dof);
+                *sum = error.mul_add(error, *sum);
+            }
+        }
+        sums[0].sum() + sums[1].sum()
+    }
+
+    /// Local errors of the velocities, by group and degree of freedom.
+    fn velocity_error<'a>(&'a self, h: f64, state: &'a State<D>) -> impl Fn(usize, usize) -> Four + 'a {
+        self.embedded_error(h, &state.acceleration, |stage| &stage.acceleration)
+    }
+
+    fn embedded_error<'a>(
+        &'a self,
+        h: f64,
+        start: &'a NodalField<D>,
+        rates: fn(&Stage<D>) -> &NodalField<D>,
+    ) -> impl Fn(usize, usize) -> Four + 'a {
+        let [w0, _, w2, w3, w4, w5] = ERROR_WEIGHTS.map(|weight| Four::splat(h * weight));
+        let [_, r2, r3, r4, r5] = self.stages.each_ref().map(|stage| rates(stage).groups());
+        let r0 = start.groups();
+        move |group, dof| {
+            let of = |rates: &[[Four; D]]| rates[group][dof];
+            w0 * of(r0) + w2 * of(r2) + w3 * of(r3) + w4 * of(r4) + w5 * of(r5)
+        }
+    }
+
+    /// Displacements, velocities and accelerations at the start of the step that was accepted last.
+    pub(super) fn start(&self) -> [&NodalField<D>; 3] {
+        let Stage { displacement, velocity, acceleration } = &self.stages[STAGES - 2];
+        [displacement, velocity, acceleration]
+    }
+
     /// Offsets of a stage from those before it, and what its solution starts from.
-    fn predict(&mut self, stage: usize, state: &State<D>) {
-        let c = STRICTLY_LOWER[stage].map(|a| self.step * a);
+    fn predict(&mut self, h: f64, stage: usize, state: &State<D>) {
+        let c = STRICTLY_LOWER[stage].map(|a| h * a);
         match stage {
-            1 => self.predict_from([(0, c[0])], stage, state),
-            2 => self.predict_from([(0, c[0]), (1, c[1])], stage, state),
-            3 => self.predict_from([(0, c[0]), (1, c[1]), (2, c[2])], stage, state),
-            4 => self.predict_from([(0, c[0]), (1, c[1]), (2, c[2]), (3, c[3])], stage, state),
-            _ => self.predict_from([(0, c[0]), (2, c[2]), (3, c[3]), (4, c[4])], stage, state),
+            1 => self.predict_from(h, [(0, c[0])], stage, state),
+            2 => self.predict_from(h, [(0, c[0]), (1, c[1])], stage, state),
+            3 => self.predict_from(h, [(0, c[0]), (1, c[1]), (2, c[2])], stage, state),
+            4 => self.predict_from(h, [(0, c[0]), (1, c[1]), (2, c[2]), (3, c[3])], stage, state),
+            _ => self.predict_from(h, [(0, c[0]), (2, c[2]), (3, c[3]), (4, c[4])], stage, state),
         }
     }
 
     /// With the earlier stages that count, and what their rates are multiplied with \[s\].
-    fn predict_from<const K: usize>(&mut self, earlier: [(usize, f64); K], stage: usize, state: &State<D>) {
+    fn predict_from<const K: usize>(
+        &mut self,
+        h: f64,
+        earlier: [(usize, f64); K],
+        stage: usize,
+        state: &State<D>,
+    ) {
         let velocity = |j: usize| if j == 0 { &state.velocity } else { &self.stages[j - 1].velocity };
         let acceleration =
             |j: usize| if j == 0 { &state.acceleration } else { &self.stages[j - 1].acceleration };
@@ -164,8 +257,8 @@ impl<const D: usize> Esdirk<D> {
         let acceleration_offset = &mut self.acceleration_offset.groups_mut()[..n];
         let x = &mut self.solver.displacement.groups_mut()[..n];
         let v = &mut self.solver.velocity.groups_mut()[..n];
-        let c = Four::splat(1.0 / (DIAGONAL * self.step));
-        let diagonal = Four::splat(DIAGONAL * self.step);
+        let c = Four::splat(1.0 / (DIAGONAL * h));
+        let diagonal = Four::splat(DIAGONAL * h);
         for i in 0..n {
             for dof in 0..D {
                 let (mut x_base, mut v_base) = (x0[i][dof], v0[i][dof]);

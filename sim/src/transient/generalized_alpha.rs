@@ -1,7 +1,7 @@
 //! The generalized-alpha method of Chung and Hulbert (1993), second order.
 
-use super::forces::Forces;
-use super::implicit::{StageCoefficients, StageSolver};
+use super::forces::{ContactForces, Forces};
+use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::model::DynamicSystem;
@@ -32,6 +32,7 @@ pub(super) fn stage_coefficients(step: f64, spectral_radius: f64) -> StageCoeffi
 pub(super) struct GeneralizedAlpha<const D: usize> {
     step: f64,
     spectral_radius: f64,
+    matrix: StageMatrix<D>,
     pub(super) solver: StageSolver<D>,
     acceleration_offset: NodalField<D>,
     velocity_offset: NodalField<D>,
@@ -43,16 +44,18 @@ impl<const D: usize> GeneralizedAlpha<D> {
     pub(super) fn new(
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
+        forces: &Forces<D>,
         step: f64,
         sweeps: u32,
         spectral_radius: f64,
     ) -> Result<Self, SingularBlock> {
-        let solver = StageSolver::new(system, initial, stage_coefficients(step, spectral_radius), sweeps)?;
+        let matrix = StageMatrix::new(system, initial, stage_coefficients(step, spectral_radius), forces)?;
         let zero = NodalField::zeros(initial.len());
         Ok(Self {
             step,
             spectral_radius,
-            solver,
+            matrix,
+            solver: StageSolver::new(system, initial, sweeps),
             acceleration_offset: zero.clone(),
             velocity_offset: zero.clone(),
             mean_velocity: zero.clone(),
@@ -60,20 +63,22 @@ impl<const D: usize> GeneralizedAlpha<D> {
         })
     }
 
-    /// Advances `state` by one step from `time`.
+    /// Advances `state` by one step from `time`, where the wall pushes with `contact`.
     pub(super) fn advance(
         &mut self,
         forces: &Forces<D>,
         time: f64,
         state: &mut State<D>,
+        contact: &ContactForces,
         Books { ledger, errors }: Books<'_, D>,
     ) {
         let (_, alpha_f, beta, _) = parameters(self.spectral_radius);
         let h = self.step;
         self.predict(state);
         let solver = &mut self.solver;
+        solver.begin_step(contact);
         let level_time = time + (1.0 - alpha_f) * h;
-        solver.solve(forces, level_time, &self.acceleration_offset, &self.velocity_offset);
+        solver.solve(&self.matrix, forces, level_time, [&self.acceleration_offset, &self.velocity_offset]);
         step_end(
             &EndCoefficients::new(h, self.spectral_radius),
             state,
@@ -92,7 +97,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         let (before, after) = (&self.acceleration_offset, &state.acceleration);
         let factor = Four::splat(h * h * (beta - 1.0 / 6.0));
         let (before, after) = (before.groups(), after.groups());
-        errors.add(before.len(), |group, dof| factor * (after[group][dof] - before[group][dof]));
+        errors.add_groups(before.len(), |group, dof| factor * (after[group][dof] - before[group][dof]));
         ledger.book(
             h,
             &mut self.mean_velocity,

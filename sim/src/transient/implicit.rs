@@ -2,25 +2,39 @@
 //!
 //! At a stage the velocities and accelerations are linear in the unknown displacements,
 //! `v = v^ + c_v x` and `a = a^ + c_a x`, so that the equations of motion become
-//! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix is factored once a run;
-//! contact stays on the right-hand side and is evaluated afresh in each sweep.
+//! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix A0 is factored once for each step length.
+//! Contact stays on the right-hand side and is evaluated afresh in each sweep, implicitly at each node: the blocks on the diagonal
+//! of A0^-1 tell how a node gives way to its own contact force, and the force is the one that agrees with that. So a node that sticks,
+//! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is held in the first sweep; what sweeps still
+//! have to settle is what nodes do to each other.
 
-use super::forces::{ContactForces, Forces};
+use super::forces::{Compliance, ContactForces, Forces, SweepChange};
 use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric};
 use crate::model::{DynamicSystem, NodalVector};
 
-/// Change of a lateral displacement between two sweeps at which more sweeps are pointless \[m\]: 0.01 N of
-/// contact force at 1e7 N/m.
-const SWEEP_TOLERANCE: f64 = 1e-9;
+/// Changes between two sweeps at which more sweeps are pointless: of a lateral displacement \[m\], which is 0.01 N of contact force at
+/// 1e7 N/m, and of a friction coefficient.
+const CONVERGED: SweepChange = SweepChange { lateral: 1e-9, friction: 1e-6 };
 
-/// The stage's matrix, factored, with the vectors that a solve works in.
+/// Changes of the last sweep beyond which a solve counts as loose.
+const LOOSE: SweepChange = SweepChange { lateral: 1e-5, friction: 0.05 };
+
+/// The matrix of the stages of one step length, factored.
+#[derive(Debug, Clone)]
+pub(super) struct StageMatrix<const D: usize> {
+    factor: Factor<f64, D>,
+    coefficients: StageCoefficients,
+    /// What the right-hand side has at the held degrees of freedom.
+    held_values: Vec<f64>,
+    /// How nodes give way to their own contact forces.
+    compliance: Compliance,
+}
+
+/// The vectors that the solve of a stage works in, and what all step lengths share.
 #[derive(Debug, Clone)]
 pub(super) struct StageSolver<const D: usize> {
-    factor: Factor<f64, D>,
     mass_and_damping: MatrixPair<Symmetric, D>,
-    coefficients: StageCoefficients,
     held: Vec<(usize, usize)>,
-    held_values: Vec<f64>,
     sweeps: u32,
     external: NodalField<D>,
     right: NodalField<D>,
@@ -35,14 +49,19 @@ pub(super) struct StageSolver<const D: usize> {
     /// Contact forces that went into the last sweep.
     pub(super) contact: ContactForces,
     pub(super) monitor: SweepMonitor,
+    /// What the last sweeps of the solves of a step changed.
+    change: SweepChange,
+    /// Largest normal forces in the solves of a step.
+    peaks: Vec<Four>,
 }
 
-/// How far the contact sweeps of a run were from standing still.
+/// How far the contact sweeps of a run were from convergence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SweepMonitor {
-    /// Largest change of a lateral displacement in the last sweep of any solve \[m\].
+    /// Largest change of a touching node's lateral displacement in the last sweep of any solve \[m\].
     pub largest_change: f64,
-    /// Solves whose last sweep still changed a displacement by more than 1e-5 m.
+    /// Solves whose last sweep still changed a touching node's displacement by more than 1e-5 m or its friction coefficient by more
+    /// than 0.05.
     pub loose_solves: u64,
     /// Sweeps made.
     pub sweeps: u64,
@@ -88,25 +107,32 @@ impl StageCoefficients {
     }
 }
 
-impl<const D: usize> StageSolver<D> {
+impl<const D: usize> StageMatrix<D> {
     pub(super) fn new(
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
         coefficients: StageCoefficients,
-        sweeps: u32,
+        forces: &Forces<D>,
     ) -> Result<Self, SingularBlock> {
         let matrix = coefficients.matrix(system);
-        let held = held_list(system);
-        let zero = NodalField::zeros(initial.len());
+        let held = held_list(system).into_iter();
         Ok(Self {
             factor: Factor::new(&matrix)?,
-            mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
             coefficients,
+            compliance: forces.compliance(&matrix.inverse_diagonal()?),
             held_values: held
-                .iter()
-                .map(|&(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
+                .map(|(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
                 .collect(),
-            held,
+        })
+    }
+}
+
+impl<const D: usize> StageSolver<D> {
+    pub(super) fn new(system: &DynamicSystem<D>, initial: &[[f64; D]], sweeps: u32) -> Self {
+        let zero = NodalField::zeros(initial.len());
+        Self {
+            mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
+            held: held_list(system),
             sweeps,
             external: zero.clone(),
             right: zero.clone(),
@@ -116,17 +142,36 @@ impl<const D: usize> StageSolver<D> {
             previous: zero,
             contact: ContactForces::none(initial.len()),
             monitor: SweepMonitor::default(),
-        })
+            change: SweepChange::default(),
+            peaks: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
+        }
+    }
+
+    /// Begins a step from where the wall pushes with `contact`.
+    pub(super) fn begin_step(&mut self, contact: &ContactForces) {
+        self.contact.copy_from(contact);
+        self.change = SweepChange::default();
+        self.peaks.fill(Four::ZERO);
+    }
+
+    /// What the last sweeps of the solves of this step changed.
+    pub(super) fn change(&self) -> SweepChange {
+        self.change
+    }
+
+    /// Largest normal force of each node in the solves of this step \[N\], four nodes side by side.
+    pub(super) fn peaks(&self) -> &[Four] {
+        &self.peaks
     }
 
     /// Solves the stage at `time` from the predictor in `displacement` and `velocity`; `acceleration_offset` is
     /// a^ and `velocity_offset` is v^.
     pub(super) fn solve(
         &mut self,
+        matrix: &StageMatrix<D>,
         forces: &Forces<D>,
         time: f64,
-        acceleration_offset: &NodalField<D>,
-        velocity_offset: &NodalField<D>,
+        [acceleration_offset, velocity_offset]: [&NodalField<D>; 2],
     ) {
         self.mass_and_damping.subtract_products(
             &forces.load,
@@ -136,45 +181,59 @@ impl<const D: usize> StageSolver<D> {
         );
         forces.add_unbalance(time, &mut self.external);
         // The wall does not push the top node, which alone is held here.
-        for (&(node, dof), &value) in self.held.iter().zip(&self.held_values) {
+        for (&(node, dof), &value) in self.held.iter().zip(&matrix.held_values) {
             self.external[(node, dof)] = value;
         }
-        let mut change = 0.0;
+        let speed = matrix.coefficients.velocity;
+        let yielding = (&matrix.compliance, speed);
+        let c = Four::splat(speed);
+        let mut change = SweepChange::default();
         for sweep in 1..=self.sweeps {
-            let (x, c) = (&self.displacement, Four::splat(self.coefficients.velocity));
+            let x = &self.displacement;
             if sweep == 1 {
                 let rates = |group: usize, dof: usize| self.velocity.groups()[group][dof];
-                forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
+                let (contact, right) = (&mut self.contact, &mut self.right);
+                forces.implicit_contact_into(yielding, x, rates, contact, &self.external, right);
             } else {
                 // Few nodes touch: only their velocities are formed between the sweeps.
                 let (moved, offset) = (x.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
-                forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
+                let (contact, right) = (&mut self.contact, &mut self.right);
+                forces.implicit_contact_into(yielding, x, rates, contact, &self.external, right);
             }
             std::mem::swap(&mut self.displacement, &mut self.previous);
-            self.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
-            if sweep > 1 {
-                change = largest_change(&self.displacement, &self.previous);
-            }
+            matrix.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
             self.monitor.sweeps += 1;
-            // Two sweeps are a fixed count; more are a cap on the way to standing still.
-            if sweep >= 2 && self.sweeps > 2 && change <= SWEEP_TOLERANCE {
-                break;
+            // Two sweeps are a fixed count; more are a cap on the way to convergence.
+            if sweep >= 2 && (self.sweeps > 2 || sweep == self.sweeps) {
+                let (moved, offset) = (self.displacement.groups(), velocity_offset.groups());
+                let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
+                change = forces.sweep_change(&self.contact, &self.displacement, &self.previous, rates, speed);
+                if change.is_within(&CONVERGED) {
+                    break;
+                }
             }
         }
-        self.monitor.largest_change = self.monitor.largest_change.max(change);
-        self.monitor.loose_solves += u64::from(change > 1e-5);
+        self.change.merge(change);
+        self.contact.add_to_peaks(&mut self.peaks);
+        self.monitor.largest_change = self.monitor.largest_change.max(change.lateral);
+        self.monitor.loose_solves += u64::from(!change.is_within(&LOOSE));
     }
 
     /// Accelerations and velocities of the stage that was solved, from their offsets a^ and v^.
-    pub(super) fn rates(&self, offsets: [&NodalField<D>; 2], rates: [&mut NodalField<D>; 2]) {
+    pub(super) fn rates(
+        &self,
+        matrix: &StageMatrix<D>,
+        offsets: [&NodalField<D>; 2],
+        rates: [&mut NodalField<D>; 2],
+    ) {
         let n = self.displacement.groups().len();
         let x = &self.displacement.groups()[..n];
         let [a0, v0] = offsets.map(|field| &field.groups()[..n]);
         let [acceleration, velocity] = rates;
         let (a, v) = (&mut acceleration.groups_mut()[..n], &mut velocity.groups_mut()[..n]);
-        let c_a = Four::splat(self.coefficients.acceleration);
-        let c_v = Four::splat(self.coefficients.velocity);
+        let c_a = Four::splat(matrix.coefficients.acceleration);
+        let c_v = Four::splat(matrix.coefficients.velocity);
         for i in 0..n {
             for dof in 0..D {
                 a[i][dof] = x[i][dof].mul_add(c_a, a0[i][dof]);

@@ -73,9 +73,14 @@ pub struct ContactStatistics {
     pub contact_count: u64,
     /// Time in contact \[s\].
     pub contact_time: f64,
-    /// Largest normal force \[N\].
+    /// Largest normal force \[N\]: at ends of steps and, by the implicit methods, in their stages.
     pub largest_normal_force: f64,
+    /// Number of captures: how often the node came to stick, sliding slower than the reference speed of friction.
+    pub capture_count: u64,
+    /// Time that it stuck \[s\].
+    pub stick_time: f64,
     in_contact: bool,
+    sticks: bool,
 }
 
 impl ContactStatistics {
@@ -84,14 +89,24 @@ impl ContactStatistics {
         self.largest_radius_squared.sqrt()
     }
 
-    /// Takes in one step of `duration` seconds.
-    pub(super) fn observe(&mut self, [u, v]: [f64; 2], contact: &NodeContact, duration: f64) {
+    /// Takes in the end of a step of `duration` seconds; a node that slides slower than `sticking_speed` \[m/s\] sticks.
+    pub(super) fn observe(
+        &mut self,
+        [u, v]: [f64; 2],
+        contact: &NodeContact,
+        sticking_speed: f64,
+        duration: f64,
+    ) {
         self.largest_radius_squared = self.largest_radius_squared.max(u * u + v * v);
         if contact.touching {
             self.contact_count += u64::from(!self.in_contact);
             self.contact_time += duration;
             self.largest_normal_force = self.largest_normal_force.max(contact.normal_force);
         }
+        let sticks = contact.touching && contact.sliding_speed.abs() < sticking_speed;
+        self.capture_count += u64::from(sticks && !self.sticks);
+        self.stick_time += if sticks { duration } else { 0.0 };
         self.in_contact = contact.touching;
+        self.sticks = sticks;
     }
 }

@@ -5,8 +5,9 @@
 use super::energy::Ledger;
 use super::error::ErrorSum;
 use super::forces::{ContactForces, Forces};
+use super::grid::parts;
 use super::implicit::{held_list, largest_change, multiply_add};
-use super::run::{Books, State, steps_per_interval};
+use super::run::{Books, State};
 use crate::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
@@ -28,9 +29,11 @@ pub(super) struct Rk4<const D: usize> {
     external: NodalField<D>,
     right: NodalField<D>,
     between: NodalVector<D>,
-    pub(super) contact: ContactForces,
+    contact: ContactForces,
     pub(super) rejected: u64,
     pub(super) steps: u64,
+    /// The shortest and the longest step made \[s\].
+    pub(super) step_range: [f64; 2],
 }
 
 /// Step doubling.
@@ -78,6 +81,7 @@ impl<const D: usize> Rk4<D> {
             contact: ContactForces::none(n),
             rejected: 0,
             steps: 0,
+            step_range: [f64::INFINITY, 0.0],
         })
     }
 
@@ -92,7 +96,7 @@ impl<const D: usize> Rk4<D> {
     ) -> Result<(), StepCollapsed> {
         let Some(mut adaptive) = self.adaptive.take() else {
             let Books { ledger, errors } = books;
-            let count = steps_per_interval(interval, self.largest_step);
+            let count = parts(interval, self.largest_step);
             let h = interval / count as f64;
             for i in 0..count {
                 self.step(forces, time + i as f64 * h, h, state, Some(ledger));
@@ -132,7 +136,7 @@ impl<const D: usize> Rk4<D> {
             if error <= *tolerance {
                 let share = Four::splat(1.0 / 15.0);
                 let (end, other) = (fine.displacement.groups(), coarse.displacement.groups());
-                errors.add(end.len(), |group, dof| (end[group][dof] - other[group][dof]) * share);
+                errors.add_groups(end.len(), |group, dof| (end[group][dof] - other[group][dof]) * share);
                 std::mem::swap(state, fine);
                 elapsed += 2.0 * h;
                 let factor = 0.9 * (*tolerance / error.max(1e-300)).powf(0.2);
@@ -155,7 +159,7 @@ impl<const D: usize> Rk4<D> {
     fn add_error(&self, h: f64, state: &State<D>, errors: &mut ErrorSum) {
         let (last, _) = &self.rates[3];
         let (last, velocity, sixth) = (last.groups(), state.velocity.groups(), Four::splat(h / 6.0));
-        errors.add(last.len(), |group, dof| sixth * (last[group][dof] - velocity[group][dof]));
+        errors.add_groups(last.len(), |group, dof| sixth * (last[group][dof] - velocity[group][dof]));
     }
 
     /// One step of `h`, its work in the ledger if it is to be kept.
@@ -200,6 +204,7 @@ impl<const D: usize> Rk4<D> {
             axpy(&mut state.velocity, weight * h, rate_v);
         }
         self.steps += 1;
+        self.step_range = [self.step_range[0].min(h), self.step_range[1].max(h)];
     }
 }
 

@@ -2,21 +2,27 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::adaptive::{self, Tolerances};
 use super::checkpoint::{self, Checkpoint, CheckpointError};
+use super::dense;
 use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
 use super::esdirk::Esdirk;
 use super::failure::{DivergenceReason, TransientError};
 use super::forces::{ContactForces, Forces};
 use super::generalized_alpha::{self, GeneralizedAlpha};
+use super::grid::Grid;
 use super::implicit::SweepMonitor;
 use super::records::{ContactStatistics, NodeHistory};
 use super::rk4::{self, Rk4};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, stability};
 use crate::control::Control;
-use crate::linalg::NodalField;
+use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{DynamicSystem, Model, NodalVector};
 use crate::scenario::Integrator;
+
+/// How often the longest step of a run that adapts its steps can be halved.
+const HALVINGS: u32 = 7;
 
 /// Rows of the energy ledger per second of simulated time.
 const LEDGER_RATE_HZ: f64 = 10.0;
@@ -32,10 +38,14 @@ pub(super) struct Run<'m, const D: usize> {
     initial: NodalField<D>,
     stepper: Stepper<D>,
     ledger: Ledger<D>,
+    /// What the wall does at the present state.
+    contact: ContactForces,
     /// Samples of a whole run.
     samples: u64,
-    interval: f64,
-    steps_per_sample: u64,
+    grid: Grid,
+    /// Present where the step adapts itself.
+    tolerances: Option<Tolerances>,
+    /// Samples from one row of the ledger to the next.
     ledger_every: u64,
     subdivisions: u32,
     /// Node that moved fastest at the last sample, from 0.
@@ -46,12 +56,19 @@ pub(super) struct Run<'m, const D: usize> {
 /// Everything that changes during a run and is not scratch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress<const D: usize> {
-    pub(super) sample: u64,
+    /// Ticks of the grid that are behind.
+    pub(super) ticks: u64,
+    /// The level of step that is wanted next.
+    pub(super) level: u32,
     pub(super) state: State<D>,
     pub(super) work: Work,
     pub(super) monitor: SweepMonitor,
     pub(super) errors: ErrorSum,
     pub(super) rejected: u64,
+    /// Steps of the shortest length that left more than the tolerance.
+    pub(super) unresolved: u64,
+    /// The shortest and the longest step made \[s\].
+    pub(super) step_range: [f64; 2],
     pub(super) steps: u64,
     pub(super) histories: Vec<NodeHistory>,
     pub(super) contacts: Vec<ContactStatistics>,
@@ -110,20 +127,32 @@ impl<'m, const D: usize> Run<'m, D> {
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
         let ledger_every = (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64;
-        let steps_per_sample = steps_per_interval(interval, stepping.step) * u64::from(subdivisions);
-        let step = interval / steps_per_sample as f64;
+        let longest = stepping.step / f64::from(subdivisions);
         let hole_radius = 0.5 * scenario.well.hole_diameter;
+        let tolerances = stepping.tolerance.map(|tolerance| Tolerances::new(tolerance, hole_radius));
+        let (longest, halvings) = match (stepping.integrator, tolerances) {
+            // RK4 makes steps of its own within a recording interval.
+            (Integrator::Rk4, _) => (interval, 0),
+            (_, Some(_)) => (longest, HALVINGS),
+            (_, None) => (longest, 0),
+        };
+        let grid = Grid::new(interval, longest, halvings);
         let stepper = match stepping.integrator {
             Integrator::GeneralizedAlpha => Stepper::GeneralizedAlpha(Box::new(GeneralizedAlpha::new(
                 &system,
                 initial,
-                step,
+                &forces,
+                grid.step(0),
                 stepping.contact_sweeps,
                 stepping.spectral_radius.unwrap_or(generalized_alpha::SPECTRAL_RADIUS),
             )?)),
-            Integrator::Esdirk4 => {
-                Stepper::Esdirk(Box::new(Esdirk::new(&system, initial, step, stepping.contact_sweeps)?))
-            }
+            Integrator::Esdirk4 => Stepper::Esdirk(Box::new(Esdirk::new(
+                &system,
+                initial,
+                &forces,
+                &grid,
+                stepping.contact_sweeps,
+            )?)),
             Integrator::Rk4 => {
                 if stepping.tolerance.is_none() && stepping.step > rk4_limit {
                     let limit = rk4_limit;
@@ -136,12 +165,16 @@ impl<'m, const D: usize> Run<'m, D> {
         };
         let mut run = Self {
             progress: Progress {
-                sample: 0,
+                ticks: 0,
+                // What happens at once is resolved; after it steps double as long as they may.
+                level: if tolerances.is_some() { grid.top() / 2 } else { grid.top() },
                 state: State::at_rest(&start, stepping.step),
                 work: Work::default(),
                 monitor: SweepMonitor::default(),
                 errors: ErrorSum::default(),
                 rejected: 0,
+                unresolved: 0,
+                step_range: [f64::INFINITY, 0.0],
                 steps: 0,
                 histories: recorded_nodes(model)
                     .into_iter()
@@ -157,9 +190,10 @@ impl<'m, const D: usize> Run<'m, D> {
             rest,
             stepper,
             ledger,
+            contact: ContactForces::none(model.node_count()),
             samples,
-            interval,
-            steps_per_sample,
+            grid,
+            tolerances,
             ledger_every,
             subdivisions,
             fastest: 0,
@@ -171,33 +205,38 @@ impl<'m, const D: usize> Run<'m, D> {
     pub(super) fn go_on_from(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
         self.progress = checkpoint.progress_for(&self.model.scenario, self.model.node_count())?;
         self.ledger.set_work(self.progress.work);
+        self.touch();
         let progress = &mut self.progress;
         for history in &mut progress.histories {
-            history.reserve((self.samples - progress.sample) as usize);
+            history.reserve((self.samples - progress.ticks / self.grid.at_sample(1)) as usize);
         }
-        progress.energy.reserve(ledger_rows(self.samples - progress.sample, self.ledger_every));
+        progress
+            .energy
+            .reserve(ledger_rows(self.samples - progress.ticks / self.grid.at_sample(1), self.ledger_every));
         Ok(())
     }
 
     pub(super) fn run(mut self, control: &Control) -> Result<Outcome, TransientError> {
-        while self.progress.sample < self.samples {
+        let (row, end) = (self.grid.at_sample(self.ledger_every), self.grid.at_sample(self.samples));
+        self.record_start();
+        while self.progress.ticks < end {
             if control.is_cancelled() {
                 return Ok(Outcome::Cancelled);
             }
-            // The ledger adds up between its rows: a run is suspended at one of them.
-            if control.is_suspended() && self.progress.sample.is_multiple_of(self.ledger_every) {
-                self.progress.work = self.ledger.work();
-                return Ok(Outcome::Suspended(Box::new(Checkpoint::new(
-                    &self.model.scenario,
-                    &self.progress,
-                ))));
+            if self.progress.ticks.is_multiple_of(row) {
+                // The ledger adds up between its rows: a run is suspended at one of them.
+                if control.is_suspended() {
+                    self.progress.work = self.ledger.work();
+                    let checkpoint = Checkpoint::new(&self.model.scenario, &self.progress);
+                    return Ok(Outcome::Suspended(Box::new(checkpoint)));
+                }
+                self.book()?;
             }
-            self.record()?;
-            self.advance()?;
+            let next_row = (self.progress.ticks / row + 1) * row;
+            self.advance(next_row.min(end))?;
             control.report(self.time());
         }
-        let time = self.time();
-        let energy_bound = self.book(time)?;
+        let energy_bound = self.book()?;
         let scenario = &self.model.scenario;
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
@@ -212,14 +251,16 @@ impl<'m, const D: usize> Run<'m, D> {
                 subdivisions: self.subdivisions,
                 steps: self.progress.steps,
                 rejected_steps: self.progress.rejected,
+                unresolved_steps: self.progress.unresolved,
+                step_range: self.progress.step_range,
                 sweeps: self.progress.monitor,
             },
         })))
     }
 
-    /// Simulated time reached \[s\]: a count times an interval, never a sum.
+    /// Simulated time reached \[s\].
     fn time(&self) -> f64 {
-        self.progress.sample as f64 * self.interval
+        self.grid.time(self.progress.ticks)
     }
 
     /// Acceleration and powers at t = 0, with the dynamic friction law: most of the static friction vanishes there.
@@ -227,11 +268,11 @@ impl<'m, const D: usize> Run<'m, D> {
         let state = &mut self.progress.state;
         let n = state.displacement.nodes();
         let (mut forces, mut linear) = (NodalField::zeros(n), vec![[0.0; D]; n]);
-        let mut contact = ContactForces::none(n);
+        let contact = &mut self.contact;
         let mut external = self.forces.load.clone();
         self.forces.add_unbalance(0.0, &mut external);
         let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
-        self.forces.contact_into(&state.displacement, rates, &mut contact, &external, &mut forces);
+        self.forces.contact_into(&state.displacement, rates, contact, &external, &mut forces);
         let mut right = forces.to_nodes();
         self.system.stiffness.multiply_into(&state.displacement.to_nodes(), &mut linear);
         for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
@@ -242,34 +283,87 @@ impl<'m, const D: usize> Run<'m, D> {
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
         state.acceleration.copy_from_nodes(&right);
         state.stage_power =
-            self.ledger.power(&state.velocity, &state.displacement, &contact, self.forces.unbalance_at(0.0));
-        observe(&mut self.progress.contacts, state, &contact, 0.0);
+            self.ledger.power(&state.velocity, &state.displacement, contact, self.forces.unbalance_at(0.0));
+        self.observe(0.0);
         Ok(())
     }
 
-    fn record(&mut self) -> Result<(), TransientError> {
-        for history in &mut self.progress.histories {
-            let (node, state) = (history.node, &self.progress.state);
-            let all = |values: [f64; D], held: [f64; 6]| {
-                self.system.places.iter().zip(values).fold(held, |mut all, (&place, value)| {
-                    all[place] = value;
-                    all
-                })
-            };
-            history.push(
-                &all(state.displacement.node(node), self.rest[node]),
-                &all(state.velocity.node(node), [0.0; 6]),
-            );
+    /// Asks the law what the wall does at the present state.
+    fn touch(&mut self) {
+        let state = &self.progress.state;
+        self.forces.contact_at(&state.displacement, &state.velocity, &mut self.contact);
+    }
+
+    /// Enters the present contacts into the statistics, after a step of `duration` seconds.
+    fn observe(&mut self, duration: f64) {
+        let Progress { contacts, state, .. } = &mut self.progress;
+        let (x, sticking_speed) = (&state.displacement, self.model.scenario.contact.friction_reference_speed);
+        self.contact.each_node(contacts.len(), |node, contact| {
+            contacts[node].observe([x[(node, 0)], x[(node, 1)]], &contact, sticking_speed, duration);
+        });
+    }
+
+    /// Takes the largest forces within the step into the statistics.
+    fn note_peaks(&mut self) {
+        let peaks = match &self.stepper {
+            Stepper::GeneralizedAlpha(method) => method.solver.peaks(),
+            Stepper::Esdirk(method) => method.solver.peaks(),
+            Stepper::Rk4(_) => return,
+        };
+        for (nodes, peaks) in self.progress.contacts.chunks_mut(Four::LANES).zip(peaks) {
+            for (node, peak) in nodes.iter_mut().zip(peaks.to_array()) {
+                node.largest_normal_force = node.largest_normal_force.max(peak);
+            }
         }
-        if self.progress.sample.is_multiple_of(self.ledger_every) {
-            let time = self.time();
-            self.book(time)?;
+    }
+
+    /// Records the first sample.
+    fn record_start(&mut self) {
+        if self.progress.ticks == 0 {
+            let Progress { histories, state, .. } = &mut self.progress;
+            for history in histories {
+                push(
+                    history,
+                    &self.system.places,
+                    &self.rest,
+                    &state.displacement.node(history.node),
+                    &state.velocity.node(history.node),
+                );
+            }
         }
-        Ok(())
+    }
+
+    /// Records the samples of the step that led from `start` ticks to the present.
+    fn record_step(&mut self, start: u64) {
+        let Progress { histories, state, ticks, .. } = &mut self.progress;
+        let per_sample = self.grid.at_sample(1);
+        for sample in start / per_sample + 1..=(*ticks / per_sample).min(self.samples - 1) {
+            let at = self.grid.at_sample(sample);
+            for history in histories.iter_mut() {
+                let node = history.node;
+                let end =
+                    [&state.displacement, &state.velocity, &state.acceleration].map(|field| field.node(node));
+                let (x, v) = match &self.stepper {
+                    Stepper::Esdirk(method) if at < *ticks => {
+                        let start_motion = method.start().map(|field| field.node(node));
+                        let step = self.grid.time(*ticks - start);
+                        dense::within(
+                            step,
+                            (at - start) as f64 / (*ticks - start) as f64,
+                            &start_motion,
+                            &end,
+                        )
+                    }
+                    _ => (end[0], end[1]),
+                };
+                push(history, &self.system.places, &self.rest, &x, &v);
+            }
+        }
     }
 
     /// Enters a row into the ledger and returns its bound.
-    fn book(&mut self, time: f64) -> Result<f64, TransientError> {
+    fn book(&mut self) -> Result<f64, TransientError> {
+        let time = self.time();
         let state = &self.progress.state;
         self.progress.errors.observe_motion(&state.displacement, &self.initial);
         let row = self.ledger.row(time, &state.displacement, &state.velocity);
@@ -283,41 +377,58 @@ impl<'m, const D: usize> Run<'m, D> {
             .diverged(self.fastest, DivergenceReason::EnergyNotConserved { residual: row.residual, bound }))
     }
 
-    /// Advances by one recording interval.
-    fn advance(&mut self) -> Result<(), TransientError> {
-        let start = self.time();
-        let step = self.interval / self.steps_per_sample as f64;
-        let Self { forces, stepper, ledger, progress, .. } = self;
+    /// Makes one step, not beyond `end` ticks.
+    fn advance(&mut self, end: u64) -> Result<(), TransientError> {
+        let time = self.time();
+        let start = self.progress.ticks;
+        let mut level = self.grid.level_at(start, end, self.progress.level);
+        let nodes = self.model.node_count();
+        let Self { forces, stepper, ledger, contact, progress, grid, tolerances, .. } = self;
         let (state, errors) = (&mut progress.state, &mut progress.errors);
         match stepper {
             Stepper::GeneralizedAlpha(method) => {
-                for i in 0..self.steps_per_sample {
-                    method.advance(forces, start + i as f64 * step, state, Books { ledger, errors });
-                    observe(&mut progress.contacts, state, &method.solver.contact, step);
-                }
+                method.advance(forces, time, state, contact, Books { ledger, errors });
                 progress.monitor.merge(&mut method.solver.monitor);
-                progress.steps += self.steps_per_sample;
             }
             Stepper::Esdirk(method) => {
-                for i in 0..self.steps_per_sample {
-                    method.advance(forces, start + i as f64 * step, state, Books { ledger, errors });
-                    observe(&mut progress.contacts, state, &method.solver.contact, step);
+                loop {
+                    method.attempt(level, forces, time, state, contact, ledger);
+                    let Some(tolerances) = tolerances else { break };
+                    let error = method.error(level, forces, state);
+                    let error = tolerances.relative(&error, errors.motion(nodes));
+                    let next = adaptive::next_level(level, error).min(grid.top());
+                    if error <= 1.0 || level == 0 {
+                        progress.unresolved += u64::from(!(error <= 1.0));
+                        progress.level = next;
+                        break;
+                    }
+                    progress.rejected += 1;
+                    level = next;
                 }
+                method.accept(level, state, Books { ledger, errors });
                 progress.monitor.merge(&mut method.solver.monitor);
-                progress.steps += self.steps_per_sample;
             }
             Stepper::Rk4(method) => {
-                let outcome = method.advance(forces, start, self.interval, state, Books { ledger, errors });
-                observe(&mut progress.contacts, state, &method.contact, self.interval);
-                progress.steps += std::mem::take(&mut method.steps);
+                let outcome = method.advance(forces, time, grid.step(0), state, Books { ledger, errors });
                 progress.rejected += std::mem::take(&mut method.rejected);
                 if outcome.is_err() {
                     return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
                 }
             }
         }
+        let (made, range) = match &mut self.stepper {
+            Stepper::Rk4(method) => (std::mem::take(&mut method.steps), method.step_range),
+            _ => (1, [self.grid.step(level); 2]),
+        };
+        let progress = &mut self.progress;
+        progress.steps += made;
+        progress.step_range = [progress.step_range[0].min(range[0]), progress.step_range[1].max(range[1])];
+        progress.ticks += 1 << level;
         self.check_bounds()?;
-        self.progress.sample += 1;
+        self.touch();
+        self.observe(self.grid.step(level));
+        self.note_peaks();
+        self.record_step(start);
         Ok(())
     }
 
@@ -386,19 +497,20 @@ fn ledger_rows(samples: u64, every: u64) -> usize {
     (samples / every) as usize + 2
 }
 
-/// Equal steps, none longer than `step`, that fill `interval` \[s\].
-pub(super) fn steps_per_interval(interval: f64, step: f64) -> u64 {
-    (interval / step * (1.0 - 1e-9)).ceil().max(1.0) as u64
-}
-
-fn observe<const D: usize>(
-    statistics: &mut [ContactStatistics],
-    state: &State<D>,
-    contact: &ContactForces,
-    duration: f64,
+/// Adds a sample to a history: the degrees of freedom `places` as they move, the others at rest.
+fn push<const D: usize>(
+    history: &mut NodeHistory,
+    places: &[usize; D],
+    rest: &NodalVector,
+    x: &[f64; D],
+    v: &[f64; D],
 ) {
-    contact.each_node(statistics.len(), |node, contact| {
-        let x = &state.displacement;
-        statistics[node].observe([x[(node, 0)], x[(node, 1)]], &contact, duration);
-    });
+    let all = |values: &[f64; D], held: [f64; 6]| {
+        places.iter().zip(values).fold(held, |mut all, (&place, value)| {
+            all[place] = *value;
+            all
+        })
+    };
+    let at_rest = rest[history.node];
+    history.push(&all(x, at_rest), &all(v, [0.0; 6]));
 }

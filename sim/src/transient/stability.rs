@@ -3,10 +3,9 @@
 use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
-use crate::beam::ElementVector;
 use crate::contact::ContactParameters;
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
-use crate::model::{DynamicSystem, Model, add_element_vector};
+use crate::model::{DynamicSystem, Model};
 use crate::scenario::{Integrator, TimeStepping};
 use crate::statics::Equilibrium;
 use crate::string::MeshNode;
@@ -20,6 +19,9 @@ const POWER_ITERATIONS: usize = 300;
 
 /// Parts into which a step is cut at most. More would be a run that never ends.
 const MOST_SUBDIVISIONS: u32 = 4096;
+
+/// Largest factor of a sweep at which two sweeps are enough: they leave a quarter of what the predictor missed.
+const LARGEST_SWEEP_FACTOR: f64 = 0.5;
 
 /// Iterations for the largest factor of a sweep.
 const SWEEP_ITERATIONS: usize = 40;
@@ -37,19 +39,20 @@ pub(super) fn subdivisions(
     let coefficients = |step: f64| match stepping.integrator {
         Integrator::GeneralizedAlpha => {
             let radius = stepping.spectral_radius.unwrap_or(generalized_alpha::SPECTRAL_RADIUS);
-            Some((generalized_alpha::stage_coefficients(step, radius), 1.0))
+            Some(generalized_alpha::stage_coefficients(step, radius))
         }
-        Integrator::Esdirk4 => Some((esdirk::stage_coefficients(step), esdirk::DIAGONAL)),
+        Integrator::Esdirk4 => Some(esdirk::stage_coefficients(step)),
         Integrator::Rk4 => None,
     };
+    // Generalized-alpha damps little of what sweeps leave at high frequencies: it must do without the help of implicit forces.
+    let is_implicit = stepping.integrator == Integrator::Esdirk4;
     let mut parts = 1;
     loop {
-        let Some((coefficients, fraction)) = coefficients(stepping.step / f64::from(parts)) else {
+        let Some(coefficients) = coefficients(stepping.step / f64::from(parts)) else {
             return Ok(1);
         };
-        let (factor, node) = sweep_factor(model, system, normal_force, coefficients)?;
-        let lumped = sweep_number(model, fraction * stepping.step / f64::from(parts));
-        if factor < largest_sweep_factor(model, coefficients) && lumped < 1.0 {
+        let (factor, node) = sweep_factor(model, system, normal_force, coefficients, is_implicit)?;
+        if factor < LARGEST_SWEEP_FACTOR {
             return Ok(parts);
         }
         if parts >= MOST_SUBDIVISIONS {
@@ -63,16 +66,6 @@ pub(super) fn subdivisions(
     }
 }
 
-/// `h C_c / m + h^2 K_c / m` with the smallest lumped nodal mass for its share of the law, `h` being the step of one implicit solve: the
-/// rule that separates the runs of performance.md section 3. It is the stricter one for a string whose nodes are alike.
-fn sweep_number(model: &Model, step: f64) -> f64 {
-    if !model.effects.contact {
-        return 0.0;
-    }
-    let contact = &model.scenario.contact;
-    (step * contact.damping + step * step * contact.stiffness) * largest_share_by_mass(model)
-}
-
 /// What is expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction, which hardly
 /// matter to how contact pushes single nodes unless the string all but stands still.
 pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u32 {
@@ -82,24 +75,18 @@ pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u
     subdivisions(model, &system, &unloaded.normal_force, stepping).unwrap_or(MOST_SUBDIVISIONS)
 }
 
-/// The sweep factor below which two sweeps are stable, from the amplification of one node in the wall by either method: 1 for
-/// a damper, 0.6 for a damper and a spring of equal shares, and next to nothing for a spring alone, whose vibration nothing else
-/// damps.
-fn largest_sweep_factor(model: &Model, coefficients: StageCoefficients) -> f64 {
-    let contact = &model.scenario.contact;
-    let spring = contact.stiffness / (contact.stiffness + coefficients.velocity * contact.damping);
-    1.0 - 0.8 * spring - 1.3 * (spring - 0.9).max(0.0)
-}
-
 /// By how much a sweep can multiply an error of the displacements when every node is in the wall, and the node that it is largest at,
-/// from 0: the largest eigenvalue of `A0^-1 (K_c + c_v C_c)`. Contact pushes on single nodes, whose part of the mass is
-/// smaller at a free end and larger where the string is stiff, so no nodal mass tells it. Friction counts as a damper where it rises with
-/// the sliding speed of the rotation, as it does for a string that hardly turns; beyond, it is bounded by its normal force.
+/// from 0. A sweep changes the force f of a node to the one that agrees with its motion x as far as the node's own compliance g moves it,
+/// `f' = (s x + s g f) / (1 + s g)` with the wall's slope `s = K_c + c_v C_c`; with `x = -A0^-1 f` for all nodes together that is
+/// `f' = -s / (1 + s g) (A0^-1 - g) f`, so that only what nodes do to each other is left. Friction counts as a damper where it rises with
+/// the sliding speed of the rotation, as it does for a string that hardly turns; beyond, it is bounded by its normal force. With
+/// forces that are not implicit the compliances count as zero.
 fn sweep_factor(
     model: &Model,
     system: &DynamicSystem,
     normal_force: &[f64],
     coefficients: StageCoefficients,
+    is_implicit: bool,
 ) -> Result<(f64, usize), SingularBlock> {
     if !model.effects.contact {
         return Ok((0.0, 0));
@@ -107,36 +94,59 @@ fn sweep_factor(
     let contact = &model.scenario.contact;
     let law = ContactParameters::<f64>::new(contact, &model.effects);
     let wall = contact.stiffness + coefficients.velocity * contact.damping;
-    let pushes: Vec<(f64, f64)> = model
+    let matrix = coefficients.matrix(system);
+    let inverse = matrix.inverse_diagonal()?;
+    // Of every node: the slopes of its force laterally and about its axis, and its own compliances.
+    let sites: Vec<[(f64, f64); 2]> = model
         .mesh
         .nodes
         .iter()
         .zip(normal_force)
-        .map(|(node, force)| {
+        .zip(&inverse)
+        .map(|((node, force), inverse)| {
             let radius = node.contact_radius;
             let slope = law.friction_slope(model.rotation_speed * radius).max(0.0);
             let friction = coefficients.velocity * force * slope;
-            (wall * node.contact_share + friction, friction * radius * radius)
+            let lateral = wall * node.contact_share + friction;
+            let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
+            [
+                (lateral, own(0.5 * (inverse[(0, 0)] + inverse[(1, 1)]))),
+                (friction * radius * radius, own(inverse[(5, 5)])),
+            ]
         })
         .collect();
-    let solver = Factor::new(&coefficients.matrix(system))?;
+    let solver = Factor::new(&matrix)?;
     let mut x: Vec<[f64; 6]> =
         (0..model.node_count())
             .map(|node| {
                 if node % 2 == 0 { [1.0, 0.7, 0.0, 0.0, 0.0, 5.0] } else { [-0.9, -0.6, 0.0, 0.0, 0.0, 4.0] }
             })
             .collect();
+    let mut forces = x.clone();
     let (mut factor, mut node) = (0.0, 0);
     for _ in 0..SWEEP_ITERATIONS {
-        for ((x, (lateral, twist)), held) in x.iter_mut().zip(&pushes).zip(&system.held) {
-            *x = [lateral * x[0], lateral * x[1], 0.0, 0.0, 0.0, twist * x[5]];
-            for (value, _) in x.iter_mut().zip(held).filter(|(_, held)| **held) {
+        let pushed = |(slope, own): (f64, f64), x: f64| slope / slope.mul_add(own, 1.0) * x;
+        for (((force, x), &[lateral, twist]), held) in forces.iter_mut().zip(&x).zip(&sites).zip(&system.held)
+        {
+            *force = [pushed(lateral, x[0]), pushed(lateral, x[1]), 0.0, 0.0, 0.0, pushed(twist, x[5])];
+            for (value, _) in force.iter_mut().zip(held).filter(|(_, held)| **held) {
                 *value = 0.0;
             }
         }
         // The held top node never touches.
-        x[0] = [0.0; 6];
+        forces[0] = [0.0; 6];
+        x.clone_from_slice(&forces);
         solver.solve_in_place(&mut x);
+        for ((x, force), &[(_, lateral), (_, twist)]) in x.iter_mut().zip(&forces).zip(&sites) {
+            *x = [
+                x[0] - lateral * force[0],
+                x[1] - lateral * force[1],
+                0.0,
+                0.0,
+                0.0,
+                x[5] - twist * force[5],
+            ];
+        }
         // Twist counts by the way of the surface.
         let size = |(x, node): (&[f64; 6], &MeshNode)| x[0].hypot(x[1]).max(node.contact_radius * x[5].abs());
         (node, factor) = x
@@ -199,20 +209,6 @@ fn largest_ratio(
         }
     }
     Ok(largest)
-}
-
-/// The largest share of the contact law that a node has for each kilogram \[1/kg\] that it sets against a lateral push:
-/// the sum over its row for a rigid shift.
-fn largest_share_by_mass(model: &Model) -> f64 {
-    let shift = ElementVector::from_fn(|i, _| if i % 6 == 0 { 1.0 } else { 0.0 });
-    let mut mass = vec![[0.0; 6]; model.node_count()];
-    for (e, element) in model.elements.iter().enumerate() {
-        let beam = &element.beam;
-        let of_element = beam.mass() + beam.lateral_mass() * model.added_mass(e);
-        add_element_vector(&mut mass, e, &(element.chord.matrix_to_nodes(&of_element) * shift));
-    }
-    let nodes = mass.iter().zip(&model.mesh.nodes).skip(1);
-    nodes.map(|(row, node)| node.contact_share / row[0]).fold(0.0, f64::max)
 }
 
 fn mass_norm(mass: &BlockTridiagonal<f64>, x: &[[f64; 6]]) -> f64 {

@@ -1,8 +1,10 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
+use crate::scenario::accuracy::TOLERANCES;
 use crate::scenario::{
-    Accuracy, CostStudy, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TimeWindow,
+    Accuracy, AccuracyTarget, CostStudy, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
+    TimeStepping, TimeWindow,
 };
 use crate::string::StringMesh;
 
@@ -109,25 +111,28 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
     let stepping = scenario.accuracy.time_stepping();
     report.positive(stepping.step, "accuracy.step");
     let rate = scenario.recording.rate_hz;
-    if stepping.step > 0.0 && rate > 0.0 && stepping.step.is_finite() && rate.is_finite() {
-        let path = match scenario.accuracy {
-            Accuracy::Preset(_) => "recording.rate_hz",
-            Accuracy::Explicit(_) => "accuracy.step",
-        };
-        let got = match scenario.accuracy {
-            Accuracy::Preset(_) => rate,
-            Accuracy::Explicit(_) => stepping.step,
-        };
-        report.require(
-            is_whole(1.0 / (rate * stepping.step)),
-            path,
-            got,
-            format!(
-                "the recording interval, {} s, must be a whole multiple of the step, {} s",
-                1.0 / rate,
-                stepping.step
-            ),
-        );
+    let adapts = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
+    if !adapts && stepping.step > 0.0 && rate > 0.0 && stepping.step.is_finite() && rate.is_finite() {
+        let (interval, intervals) = (1.0 / rate, stepping.step * rate);
+        let is_part = is_whole(1.0 / intervals);
+        if stepping.integrator == Integrator::Esdirk4 {
+            let is_power_of_two = is_whole(intervals) && (intervals.round() as u64).is_power_of_two();
+            report.require(
+                is_part || is_power_of_two,
+                "accuracy.step",
+                stepping.step,
+                format!(
+                    "must be a whole part of the recording interval, {interval} s, or that times a power of two"
+                ),
+            );
+        } else {
+            report.require(
+                is_part,
+                "accuracy.step",
+                stepping.step,
+                format!("must be a whole part of the recording interval, {interval} s"),
+            );
+        }
     }
 
     let effects = scenario.active_effects();
@@ -168,21 +173,37 @@ fn check_accuracy(report: &mut Report, scenario: &Scenario) {
             },
         );
     }
-    if let Some(tolerance) = stepping.tolerance {
-        if explicit {
-            report.number(
-                tolerance,
-                "accuracy.tolerance",
-                |tolerance| tolerance > 0.0 && tolerance < 0.1,
-                "must be greater than 0 and less than 0.1",
-            );
-        } else {
-            report.number(
-                tolerance,
-                "accuracy.tolerance",
-                |_| false,
-                "is for rk4 only: the implicit methods keep a fixed step",
-            );
+    check_tolerance(report, scenario);
+}
+
+fn check_tolerance(report: &mut Report, scenario: &Scenario) {
+    let within = |tolerance: f64| TOLERANCES.contains(&tolerance);
+    let valid = || format!("must be {} to {}", TOLERANCES.start(), TOLERANCES.end());
+    match scenario.accuracy {
+        Accuracy::Preset(_) | Accuracy::Explicit(TimeStepping { tolerance: None, .. }) => {}
+        Accuracy::Target(AccuracyTarget::Statistics(tolerance)) => {
+            report.number(tolerance, "accuracy.statistics", within, valid());
+        }
+        Accuracy::Target(AccuracyTarget::Trajectory(tolerance)) => {
+            report.number(tolerance, "accuracy.trajectory", within, valid());
+        }
+        Accuracy::Explicit(TimeStepping { integrator, tolerance: Some(tolerance), .. }) => {
+            const PATH: &str = "accuracy.tolerance";
+            match integrator {
+                Integrator::Esdirk4 => report.number(tolerance, PATH, within, valid()),
+                Integrator::Rk4 => report.number(
+                    tolerance,
+                    PATH,
+                    |tolerance| tolerance > 0.0 && tolerance < 0.1,
+                    "must be greater than 0 and less than 0.1",
+                ),
+                Integrator::GeneralizedAlpha => report.number(
+                    tolerance,
+                    PATH,
+                    |_| false,
+                    "is for esdirk4 and rk4: generalized_alpha keeps a fixed step",
+                ),
+            }
         }
     }
 }
@@ -337,7 +358,7 @@ fn is_whole(ratio: f64) -> bool {
 mod tests {
     use super::super::report::testing::{problem, problems, warnings};
     use super::*;
-    use crate::scenario::{AccuracyPreset, TimeStepping};
+    use crate::scenario::AccuracyPreset;
 
     fn explicit(integrator: Integrator, step: f64) -> TimeStepping {
         TimeStepping::fixed(integrator, step)
@@ -372,19 +393,20 @@ mod tests {
     }
 
     #[test]
-    fn step_divides_the_recording_interval() {
-        for step in [3e-4, 2e-3, 1.0000001e-3] {
+    fn a_fixed_step_divides_the_recording_interval_or_doubles_it() {
+        for step in [3e-4, 3e-3, 1.0000001e-3] {
             let message = accuracy_problem("accuracy.step", explicit(Integrator::Esdirk4, step));
             assert!(message.contains("0.001 s"), "{message}");
         }
-        for step in [1e-3, 5e-4, 1e-3 / 3.0, 1e-3 / 7.0] {
+        accuracy_problem("accuracy.step", explicit(Integrator::GeneralizedAlpha, 2e-3));
+        for step in [1e-3, 5e-4, 1e-3 / 3.0, 1e-3 / 7.0, 2e-3, 4e-3] {
             assert_eq!(
                 warnings(|s| s.accuracy = Accuracy::Explicit(explicit(Integrator::Esdirk4, step))),
                 []
             );
         }
-        let found = problem("recording.rate_hz", |s| s.recording.rate_hz = 1500.0);
-        assert!(found.message.contains("multiple of the step, 0.001 s"), "{found}");
+        // Steps that adapt themselves fit any interval.
+        assert_eq!(warnings(|s| s.recording.rate_hz = 1500.0), []);
         assert_eq!(warnings(|s| s.accuracy = Accuracy::Preset(AccuracyPreset::Draft)), []);
     }
 
@@ -406,13 +428,24 @@ mod tests {
     }
 
     #[test]
-    fn tolerance_is_for_rk4_and_small() {
+    fn tolerances_are_small_and_not_for_generalized_alpha() {
         let tolerance = Some(1e-3);
         let message = accuracy_problem(
             "accuracy.tolerance",
-            TimeStepping { tolerance, ..explicit(Integrator::Esdirk4, 1e-3) },
+            TimeStepping { tolerance, ..explicit(Integrator::GeneralizedAlpha, 1e-3) },
         );
-        assert!(message.contains("rk4"));
+        assert!(message.contains("esdirk4 and rk4"));
+        let esdirk4 = TimeStepping { tolerance, ..explicit(Integrator::Esdirk4, 3e-3) };
+        assert_eq!(warnings(|s| s.accuracy = Accuracy::Explicit(esdirk4)), []);
+        for tolerance in [1e-5, 0.2] {
+            accuracy_problem("accuracy.tolerance", TimeStepping { tolerance: Some(tolerance), ..esdirk4 });
+            let target =
+                |s: &mut Scenario| s.accuracy = Accuracy::Target(AccuracyTarget::Statistics(tolerance));
+            problem("accuracy.statistics", target);
+            let target =
+                |s: &mut Scenario| s.accuracy = Accuracy::Target(AccuracyTarget::Trajectory(tolerance));
+            problem("accuracy.trajectory", target);
+        }
         let rk4 = explicit(Integrator::Rk4, 1e-4);
         assert_eq!(warnings(|s| s.accuracy = Accuracy::Explicit(TimeStepping { tolerance, ..rk4 })), []);
         for tolerance in [0.0, -1e-3, 0.1, 1.0].map(Some) {

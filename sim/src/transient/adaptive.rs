@@ -1,0 +1,112 @@
+//! How long a step may be: what is asked of a step, and the step that comes next.
+
+use super::forces::SweepChange;
+
+/// What a step may leave, for a tolerance on the statistics of a run.
+///
+/// A node that sticks and slips tells more of a step than any displacement: friction is as steep as 1 / v_ref at rest, so that the error
+/// of its coefficient, the error of the sliding speed times the slope of the curve, is looked at wherever nodes touch. The
+/// displacements' local error covers the rest of the string and impacts, and what the last contact sweep changed says whether the
+/// contacts converged at all. The shares of the tolerance are from comparisons with converged runs over whole runs
+/// (`tests/whole_runs.rs`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tolerances {
+    /// Local error of the lateral displacements of a step, root mean square over the nodes, relative to that of the motion.
+    displacement: f64,
+    /// Local error of a friction coefficient.
+    friction: f64,
+    /// Change in the last contact sweep: of a lateral displacement relative to the motion, and of a friction coefficient.
+    sweep: SweepChange,
+    /// The smallest motion that errors are related to \[m\].
+    smallest_motion: f64,
+}
+
+/// What a step leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StepError {
+    /// Local error of the lateral displacements, root mean square over the nodes \[m\].
+    pub(super) displacement: f64,
+    /// Largest local error of a friction coefficient.
+    pub(super) friction: f64,
+    /// What the last contact sweeps changed.
+    pub(super) sweep: SweepChange,
+}
+
+/// Motion below this part of the hole's radius counts as this much.
+const SMALLEST_MOTION: f64 = 1e-4;
+
+/// The embedded method is of order 3: a local error falls with the fourth power of the step.
+const LOCAL_ORDER: f64 = 4.0;
+
+/// Error, relative to what is allowed, below which a step of twice the length is tried: it would leave two thirds.
+const ROOM_TO_DOUBLE: f64 = 0.04;
+
+impl Tolerances {
+    /// For a relative tolerance on statistics, in a hole of radius `hole_radius` \[m\].
+    pub(super) fn new(statistics: f64, hole_radius: f64) -> Self {
+        Self {
+            displacement: 0.006 * statistics,
+            friction: 0.3 * statistics,
+            sweep: SweepChange { lateral: 0.06 * statistics, friction: 3.0 * statistics },
+            smallest_motion: SMALLEST_MOTION * hole_radius,
+        }
+    }
+
+    /// The error of a step relative to what is allowed, for a motion of `motion` \[m\]: up to 1 it is within the tolerance.
+    pub(super) fn relative(&self, error: &StepError, motion: f64) -> f64 {
+        let motion = motion.max(self.smallest_motion);
+        let parts = [
+            error.displacement / (self.displacement * motion),
+            error.friction / self.friction,
+            error.sweep.lateral / (self.sweep.lateral * motion),
+            error.sweep.friction / self.sweep.friction,
+        ];
+        // What is not a number is beyond every tolerance: it is handed on, not compared.
+        parts.into_iter().fold(0.0, |most, part| if part <= most || most.is_nan() { most } else { part })
+    }
+}
+
+/// The level of the step after one of `level` that left `error`, relative to what is allowed.
+pub(super) fn next_level(level: u32, error: f64) -> u32 {
+    if error < ROOM_TO_DOUBLE {
+        level + 1
+    } else if error <= 1.0 {
+        level
+    } else {
+        let halvings = (error.log2() / LOCAL_ORDER).ceil();
+        // A step that is not finite says nothing of how much shorter it must be.
+        level.saturating_sub(if halvings.is_finite() { halvings as u32 } else { 1 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_halved_as_often_as_its_order_says() {
+        assert_eq!(next_level(5, 1.0), 5);
+        assert_eq!(next_level(5, 0.03), 6);
+        assert_eq!(next_level(5, 1.1), 4);
+        assert_eq!(next_level(5, 15.9), 4);
+        assert_eq!(next_level(5, 17.0), 3);
+        assert_eq!(next_level(1, 1e9), 0);
+        assert_eq!(next_level(5, f64::INFINITY), 4);
+        assert_eq!(next_level(5, f64::NAN), 4);
+    }
+
+    #[test]
+    fn the_worst_part_counts_and_a_part_that_is_not_a_number_is_the_worst() {
+        let tolerances = Tolerances::new(0.02, 0.1);
+        let quiet = StepError { displacement: 0.0, friction: 0.0, sweep: SweepChange::default() };
+        assert_eq!(tolerances.relative(&quiet, 1e-3), 0.0);
+        let friction = StepError { friction: 0.02, ..quiet };
+        assert!((tolerances.relative(&friction, 1e-3) - 10.0 / 3.0).abs() < 1e-12);
+        let displacement = StepError { displacement: 6e-7, ..friction };
+        assert!((tolerances.relative(&displacement, 1e-3) - 5.0).abs() < 1e-12);
+        // In a hole of 0.1 m, rest counts as 10 um of motion.
+        assert!((tolerances.relative(&displacement, 0.0) - 500.0).abs() < 1e-9);
+        let lost = StepError { sweep: SweepChange { lateral: f64::NAN, friction: 0.0 }, ..displacement };
+        assert!(tolerances.relative(&lost, 1e-3).is_nan());
+    }
+}

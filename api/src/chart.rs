@@ -147,14 +147,21 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     let mean_width = MEAN_BINS * attribute("resolution").unwrap_or(0.0);
     let is_motion = |frequency: f64| frequency.abs() > mean_width;
-    let points = frequency.iter().zip(amplitude).map(|(frequency, amplitude)| {
+    let points = frequency.iter().zip(&amplitude).map(|(frequency, amplitude)| {
         [*frequency, if is_motion(*frequency) { 1e3 * amplitude } else { f64::NAN }]
     });
     let peaks = table.attributes.get("peaks").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    // A line between two bins is higher than the curve; its name stands on the curve all the same.
+    let bin = attribute("resolution").unwrap_or(0.0);
+    let curve_at = |line: f64| {
+        let near =
+            frequency.iter().zip(&amplitude).filter(|(frequency, _)| (**frequency - line).abs() <= bin);
+        1e3 * near.fold(0.0, |most: f64, (_, amplitude)| most.max(*amplitude))
+    };
     let label = |peak: &Value| {
         let (frequency, amplitude) = (peak["frequency"].as_f64()?, 1e3 * peak["amplitude"].as_f64()?);
         let text = format!("{frequency:+.2} Hz, {amplitude:.2} mm").replace('-', "−");
-        is_motion(frequency).then_some(Label { at: [frequency, amplitude], text })
+        is_motion(frequency).then(|| Label { at: [frequency, curve_at(frequency)], text })
     };
     let window = table.attributes.get("window").and_then(Value::as_str).unwrap_or_default();
     let plot = LinePlot {
@@ -410,10 +417,10 @@ mod tests {
             .attribute("measured_depth", 57.73)
             .attribute(
                 "peaks",
-                json!([{"frequency": 0.0, "amplitude": 0.037}, {"frequency": 2.0, "amplitude": 0.003}]),
+                json!([{"frequency": 0.0, "amplitude": 0.037}, {"frequency": 2.04, "amplitude": 0.0035}]),
             );
         let svg = spectrum(&table, "spectrum").unwrap().svg();
-        assert!(svg.contains("+2.00 Hz, 3.00 mm") && svg.contains("node 49 at 57.73 m"), "{svg}");
+        assert!(svg.contains("+2.04 Hz, 3.50 mm") && svg.contains("node 49 at 57.73 m"), "{svg}");
         assert!(!svg.contains("37.00 mm") && !svg.contains(">30<"), "the mean does not stretch the axis");
     }
 

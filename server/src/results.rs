@@ -376,8 +376,8 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 ///
 /// Of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward.
 /// Columns `frequency`, `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the
-/// highest peaks with their whirl direction. Lines outside the range enter neither. Of a run that kept spectra only the
-/// window is one of its scenario's.
+/// highest peaks with their whirl direction, frequency and amplitude interpolated between the bins. Lines outside the range enter
+/// neither. Of a run that kept spectra only the window is one of its scenario's.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/spectrum",

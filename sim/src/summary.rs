@@ -95,7 +95,7 @@ pub struct SpectrumSummary {
 pub struct LineSummary {
     /// Frequency \[Hz\]; negative is backward whirl.
     pub frequency_hz: f64,
-    /// Amplitude |Z| / N \[m\]: the radius of the circle that the line draws.
+    /// Amplitude \[m\]: the radius of the circle that the line draws, interpolated between the bins.
     pub amplitude: f64,
     /// Sense of the whirl.
     pub whirl: Whirl,

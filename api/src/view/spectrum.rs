@@ -15,7 +15,7 @@ const LINE_WIDTH_BINS: f64 = 2.0;
 /// The full spectrum of all samples of a motion, within plus and minus `range` \[Hz\]: columns `frequency`
 /// \[Hz\], `amplitude` and `peak_to_peak` \[m\], ascending in frequency. Positive frequencies are forward
 /// whirl. Attributes: `samples`, `resolution` \[Hz\], `window`, and `peaks`, the `peaks` highest lines in the
-/// range, highest first, each with `frequency` (interpolated between the bins), `amplitude`, `peak_to_peak`
+/// range, highest first, each with `frequency`, `amplitude` and `peak_to_peak`, all interpolated between the bins,
 /// and `whirl`.
 ///
 /// # Errors

@@ -28,7 +28,7 @@ pub struct FullSpectrum {
 pub struct Peak {
     /// Frequency \[Hz\], interpolated between the bins.
     pub frequency_hz: f64,
-    /// Amplitude of the highest bin \[m\].
+    /// Amplitude \[m\], interpolated as the frequency is: that of the motion, however far its frequency lies from a bin.
     pub amplitude: f64,
     /// Sense of the motion.
     pub whirl: Whirl,
@@ -104,7 +104,8 @@ impl FullSpectrum {
     }
 
     /// The highest lines, the highest first. A line is a bin above both its neighbours, so the first and last
-    /// bins are none.
+    /// bins are none. Frequency and amplitude are interpolated between the bins: exact for a line that is alone in a long window, and
+    /// as near as the leakage of other lines lets them be for one that is not.
     pub fn peaks(&self, search: &PeakSearch) -> Vec<Peak> {
         let mut candidates: Vec<Peak> =
             (1..self.amplitude.len().saturating_sub(1)).filter_map(|bin| self.peak_at(bin)).collect();
@@ -138,6 +139,10 @@ impl FullSpectrum {
         };
         let offset = self.window.line_offset(below.max(above) / amplitude);
         let towards = if above > below { offset } else { -offset };
-        Some(Peak { frequency_hz: centre + towards * self.resolution_hz, amplitude, whirl })
+        Some(Peak {
+            frequency_hz: centre + towards * self.resolution_hz,
+            amplitude: amplitude / self.window.line_height(offset),
+            whirl,
+        })
     }
 }

@@ -113,6 +113,28 @@ fn a_lone_line_between_bins_is_found() {
     }
 }
 
+/// Wherever it lies between two bins, a lone line has its own amplitude. The closed forms are those of many samples: N sin(pi d / N)
+/// in place of pi d, and what comes of it in the offset, are both within (pi / N)^2 of them.
+#[test]
+fn a_lone_line_has_its_amplitude_wherever_it_lies() {
+    let amplitude = 1e-2;
+    for count in [64_u32, 1_000, 10_000] {
+        let bound = (std::f64::consts::PI / f64::from(count)).powi(2) + 1e-11;
+        for step in -20..=20 {
+            for bin in [11.0, -17.0] {
+                let frequency = bin + 0.025 * f64::from(step);
+                let (u, v) = orbit(&[(frequency, amplitude, 0.7)], f64::from(count), count as usize);
+                for window in [Window::Rectangular, Window::Hann] {
+                    let spectrum = full_spectrum(&u, &v, f64::from(count), window);
+                    let peak = spectrum.peaks(&PeakSearch { count: 1, ..ALL })[0];
+                    let error = (peak.amplitude / amplitude - 1.0).abs();
+                    assert!(error < bound, "{window:?}, {count} samples, {frequency}: {error}");
+                }
+            }
+        }
+    }
+}
+
 /// Hann's sidelobes fall as the cube of the distance in bins: 20 bins off, an equal line moves the other's ratio
 /// of neighbours by about 1 / 20^3.
 #[test]

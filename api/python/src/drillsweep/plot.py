@@ -79,7 +79,9 @@ def spectrum(
     for line in lines[:peaks]:
         side = "right" if line["frequency"] < 0.0 else "left"
         place: dict[str, Any] = {"textcoords": "offset points", "xytext": (0, 3), "ha": side, "fontsize": "small"}
-        axes.annotate(f"{line['frequency']:+.2f} Hz", (line["frequency"], line["amplitude"] * _MILLIMETRES), **place)
+        # A line between two bins is higher than the curve; its name stands on the curve.
+        near = np.abs(table["frequency"] - line["frequency"]) <= table.attributes["resolution"]
+        axes.annotate(f"{line['frequency']:+.2f} Hz", (line["frequency"], np.max(amplitude[near])), **place)
     axes.axvline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("frequency [Hz], backward - and forward + whirl")
     axes.set_ylabel("amplitude [mm]")

@@ -162,7 +162,7 @@ class Point:
     ) -> Table:
         """The full spectrum of a node's orbit: `frequency` (positive is forward whirl), `amplitude`, `peak_to_peak`.
 
-        The highest lines are in `attributes["peaks"]`.
+        The highest lines are in `attributes["peaks"]`, their frequency and amplitude interpolated between the bins.
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.

@@ -299,9 +299,10 @@ pub struct ContactLaw {
     pub dynamic_friction: f64,
     /// Reference speed v_ref of the regularised friction \[m/s\]; its slope at rest is 1 / v_ref.
     pub friction_reference_speed: f64,
-    /// Length of string \[m\] that stiffness and damping belong to: a node has its share by the length that it stands for,
-    /// so that a finer mesh meets the same wall. Absent means that every node has the whole of them, as in the
-    /// paper, and a finer mesh meets a stiffer wall.
+    /// Length of string \[m\] that stiffness and damping belong to: a node has its share by the length that touches the wall through
+    /// it, half of each adjoining element of the larger diameter, so that a finer mesh meets the same wall. Gauges, which are
+    /// places, keep the whole of them. Absent means that every node has the whole of them, as in the paper, and a finer mesh meets a
+    /// stiffer wall.
     #[serde(default)]
     pub reference_length: Option<f64>,
 }

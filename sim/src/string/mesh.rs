@@ -99,7 +99,8 @@ pub struct MeshNode {
     /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
     /// Share of the contact law's stiffness and damping: 1 where these are a node's or the node is a gauge, which is a
-    /// place and not a length; else the length that the node stands for over the law's reference length.
+    /// place and not a length; else the length that touches the wall through the node, half of each adjoining element of its contact
+    /// radius, over the law's reference length.
     pub contact_share: f64,
     /// Whether the clearance is a gauge's.
     pub is_gauge: bool,
@@ -148,10 +149,9 @@ impl StringMesh {
             node.is_gauge = true;
         }
         if let Some(reference_length) = scenario.contact.reference_length {
-            for (index, node) in mesh.nodes.iter_mut().enumerate().filter(|(_, node)| !node.is_gauge) {
-                let above = index.checked_sub(1).map_or(0.0, |above| mesh.elements[above].length);
-                let below = mesh.elements.get(index).map_or(0.0, |below| below.length);
-                node.contact_share = 0.5 * (above + below) / reference_length;
+            let lengths: Vec<f64> = (0..mesh.nodes.len()).map(|node| mesh.touching_length(node)).collect();
+            for (node, length) in mesh.nodes.iter_mut().zip(lengths).filter(|(node, _)| !node.is_gauge) {
+                node.contact_share = length / reference_length;
             }
         }
         for mass in &string.unbalance {
@@ -161,6 +161,17 @@ impl StringMesh {
                 .push(NodeUnbalance { moment: mass.mass * mass.radius, phase: mass.phase_deg.to_radians() });
         }
         Ok(mesh)
+    }
+
+    /// Length of string \[m\] that touches the wall through a node: half of each adjoining element of the diameter that the node
+    /// touches with. The slimmer body beside a tool joint's end is off the wall there.
+    fn touching_length(&self, node: usize) -> f64 {
+        let adjoining =
+            [node.checked_sub(1).and_then(|above| self.elements.get(above)), self.elements.get(node)];
+        let adjoining = adjoining.into_iter().flatten();
+        let diameter = adjoining.clone().map(|element| element.outer_diameter).fold(0.0, f64::max);
+        let touching = adjoining.filter(|element| element.outer_diameter == diameter);
+        touching.map(|element| 0.5 * element.length).sum()
     }
 
     /// Measured depths of the nodes \[m\], increasing.
@@ -329,6 +340,32 @@ mod tests {
             // physics.md section 6: the blades touch at 0.10785 m.
             assert_eq!(node(depth).clearance, 1e-4);
             assert!((node(depth).contact_radius - 0.10785).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn shares_are_those_of_the_length_that_touches() {
+        let mut scenario = paper();
+        assert!(paper_mesh().nodes.iter().all(|node| node.contact_share == 1.0), "a node's law");
+        scenario.contact.reference_length = Some(0.5);
+        for factor in [1.0, 0.25] {
+            scenario.mesh.drillpipe = 1.5 * factor;
+            scenario.mesh.tool_joint = 0.3 * factor;
+            scenario.mesh.collar = 0.5 * factor;
+            let mesh = StringMesh::new(&scenario).unwrap();
+            let length = |depth: f64| mesh.nodes[mesh.nearest_node(depth)].contact_share * 0.5;
+            // The end of a tool joint has half of the joint's element and nothing of the body's, nor of the collar's, which is slimmer.
+            for (depth, expected) in [(4.0, 0.15), (4.3, 0.15), (13.5, 0.3), (89.5, 0.15), (90.5, 0.5)] {
+                assert!((length(depth) - expected * factor).abs() < 1e-12, "at {depth} m: {}", length(depth));
+            }
+            let body = mesh.elements[mesh.nearest_node(8.0)].length;
+            assert!((length(8.0) - body).abs() < 1e-12);
+            // Gauges are places: the whole of the law, whatever the mesh.
+            assert!(mesh.nodes.iter().all(|node| !node.is_gauge || node.contact_share == 1.0));
+            // All joints together touch with their own length, 9 pairs of 0.3 m.
+            let joints = mesh.nodes.iter().filter(|node| (node.contact_radius - 0.08095).abs() < 1e-9);
+            let touching: f64 = joints.map(|node| node.contact_share * 0.5).sum();
+            assert!((touching - 18.0 * 0.3).abs() < 1e-9, "{touching} m");
         }
     }
 

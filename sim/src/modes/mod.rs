@@ -9,9 +9,11 @@ mod arnoldi;
 mod pencil;
 mod shifted;
 mod stability;
+mod torsion;
 
 pub use pencil::Pencil;
 pub use stability::{Instability, InstabilityKind, Stability, stability};
+pub use torsion::{TorsionalMode, UndampedTorsion, torsional_modes};
 
 use std::f64::consts::TAU;
 

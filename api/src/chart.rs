@@ -10,6 +10,7 @@ use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, SweepM
 use crate::problem::ProblemDetails;
 use crate::table::{Column, Table};
 use crate::units;
+use crate::view::verification::{Findings, is_bias_column};
 
 /// Width of a picture as PNG: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;
@@ -181,7 +182,8 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
 }
 
 /// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
-/// over two a map; over more a map over the first two, for which each place shows its last point.
+/// over two a map; over more a map over the first two, for which each place shows its last point. Points that are verified
+/// are marked on a map, and what that shows stands below the title.
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them, or none is given.
@@ -189,6 +191,7 @@ pub fn sweep(
     table: &Table,
     parameters: &IndexSet<String>,
     fields: Option<&[String]>,
+    findings: &Findings,
     title: &str,
 ) -> Result<Drawing, Box<ProblemDetails>> {
     let fields = fields.unwrap_or_default();
@@ -207,6 +210,7 @@ pub fn sweep(
         [first, second, ..] => (*first, Some(*second)),
     };
     let xs = numbers(table, x)?;
+    let verified = findings.caption(first);
     let Some(y) = y else {
         let names: Vec<&str> = fields.iter().map(String::as_str).collect();
         let shown = Shown::of(table, &names)?;
@@ -218,6 +222,7 @@ pub fn sweep(
         };
         let plot = LinePlot {
             title: title.to_owned(),
+            subtitle: verified.unwrap_or_default(),
             x_label: with_unit(x),
             y_label,
             lines: shown.columns.into_iter().map(line).collect(),
@@ -229,11 +234,15 @@ pub fn sweep(
     let mut shown = Shown::of(table, &[first.as_str()])?;
     let value_label = shown.label();
     let (_, values) = shown.columns.swap_remove(0);
-    let points = xs.iter().zip(ys).zip(values).map(|((x, y), value)| MapPoint { x: *x, y, value });
-    let subtitle = match varied.len() {
-        2 => String::new(),
-        more => format!("{} more parameters vary; each place shows one of its points", more - 2),
+    let is_marked = verified_rows(table);
+    let points = xs.iter().zip(ys).zip(values).zip(is_marked);
+    let points = points.map(|(((x, y), value), is_marked)| MapPoint { x: *x, y, value, is_marked });
+    let more = match varied.len() {
+        2 => None,
+        more => Some(format!("{} more parameters vary; each place shows one of its points", more - 2)),
     };
+    let verified = verified.map(|verified| format!("diamonds: {verified}"));
+    let subtitle = verified.into_iter().chain(more).collect::<Vec<_>>().join("; ");
     let plot = SweepMap {
         title: title.to_owned(),
         subtitle,
@@ -243,6 +252,20 @@ pub fn sweep(
         points: points.collect(),
     };
     Ok(plot.drawing())
+}
+
+/// Which rows of a sweep's table are of points that are verified: those with the bias of any statistic.
+fn verified_rows(table: &Table) -> Vec<bool> {
+    let mut is_verified = vec![false; table.rows()];
+    for (_, column) in table.columns.iter().filter(|(name, _)| is_bias_column(name)) {
+        if let Column::Number(biases) = column {
+            is_verified
+                .iter_mut()
+                .zip(biases)
+                .for_each(|(is_verified, bias)| *is_verified |= bias.is_finite());
+        }
+    }
+    is_verified
 }
 
 /// Columns that are shown on one axis, in its unit.
@@ -434,14 +457,16 @@ mod tests {
                 .with("mud_density", column(density))
                 .with("orbit_radius_rms_49", column(&[0.001, 0.002, 0.003, f64::NAN]))
         };
+        let none = Findings::default();
         let fields = ["orbit_radius_rms_49".to_owned()];
-        let map =
-            sweep(&table(&[1200.0, 1500.0, 1200.0, 1500.0]), &parameters, Some(&fields), "").unwrap().svg();
+        let map = sweep(&table(&[1200.0, 1500.0, 1200.0, 1500.0]), &parameters, Some(&fields), &none, "")
+            .unwrap()
+            .svg();
         assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms 49 [mm]"));
         assert!(map.contains("flow rate [m3/s]") && map.contains("mud density [kg/m3]"));
-        let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), "").unwrap().svg();
+        let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), &none, "").unwrap().svg();
         assert!(lines.contains(r#"class="series""#) && !lines.contains("mud density"));
-        let problem = sweep(&table(&[1200.0; 4]), &parameters, None, "").unwrap_err();
+        let problem = sweep(&table(&[1200.0; 4]), &parameters, None, &none, "").unwrap_err();
         assert!(problem.detail.contains("orbit_radius_rms_49"), "{}", problem.detail);
     }
 }

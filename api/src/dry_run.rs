@@ -20,16 +20,30 @@ pub struct DryRun {
     pub known: u64,
     /// The plan of the first point: effects and why, size, steps and processor time at each accuracy.
     pub plan: Option<Plan>,
-    /// Processor time that the points not yet known are expected to take together \[s\], from the plans of some of them;
-    /// absent before a worker has measured its machine.
+    /// Processor time that the points and reference runs not yet known are expected to take together \[s\], from the plans of
+    /// some of them; absent before a worker has measured its machine.
     pub cpu_time: Option<f64>,
     /// The same shared out among the workers there are now \[s\]; absent where there are none.
     pub wall_time: Option<f64>,
     /// The points, by ordinal.
     pub points: Vec<PlannedPoint>,
+    /// The reference runs that would verify some of them; absent where none is verified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verification: Option<PlannedVerification>,
     /// What can be simulated but is probably not meant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
+}
+
+/// The reference runs that would verify some points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlannedVerification {
+    /// Number of reference runs.
+    pub total: u64,
+    /// Those whose result is already there and would not be computed again.
+    pub known: u64,
+    /// The points that they verify, each with the key of its reference run.
+    pub points: Vec<PlannedPoint>,
 }
 
 /// A point that a request would become.
@@ -44,32 +58,61 @@ pub struct PlannedPoint {
 }
 
 impl DryRun {
-    /// What an expanded request would become: `known` of its points have a result, `speed_json` is what a worker measured
-    /// last, and `workers` are there to share the rest.
-    pub fn new(expansion: &Expansion, known: u64, speed_json: Option<&str>, workers: usize) -> Self {
+    /// What an expanded request would become: `known` of its points have a result, and `known_references` of the runs that verify
+    /// some; `speed_json` is what a worker measured last, and `workers` are there to share the rest.
+    pub fn new(
+        expansion: &Expansion,
+        known: u64,
+        known_references: u64,
+        speed_json: Option<&str>,
+        workers: usize,
+    ) -> Self {
         // A speed that another version has written is as good as none.
         let speed: Option<MachineSpeed> = speed_json.and_then(|json| serde_json::from_str(json).ok());
-        let total = expansion.points.len();
-        let sample = expansion.points.iter().step_by(total.div_ceil(PLANNED_POINTS).max(1));
-        let plans: Vec<Plan> =
-            sample.filter_map(|point| Plan::new(&expansion.scenario(point), speed.as_ref()).ok()).collect();
-        let unknown = (total as u64).saturating_sub(known) as f64;
-        let cpu_time = mean_cpu_time(&plans).map(|mean| mean * unknown);
-        let planned = |point: &SweepPoint| PlannedPoint {
-            ordinal: point.ordinal,
-            parameters: expansion.parameters(point),
-            key: key_text(&point.key),
-        };
+        let plans = plans(expansion, speed.as_ref());
+        let mut cpu_time = cpu_time(expansion, known, &plans);
+        let verification = expansion.verification.as_ref().map(|references| {
+            let of_references =
+                self::cpu_time(references, known_references, &self::plans(references, speed.as_ref()));
+            cpu_time = cpu_time.zip(of_references).map(|(points, references)| points + references);
+            PlannedVerification {
+                total: references.points.len() as u64,
+                known: known_references,
+                points: planned(references),
+            }
+        });
         Self {
-            total: total as u64,
+            total: expansion.points.len() as u64,
             known,
             plan: plans.into_iter().next(),
             cpu_time,
             wall_time: cpu_time.filter(|_| workers > 0).map(|time| time / workers as f64),
-            points: expansion.points.iter().map(planned).collect(),
+            points: planned(expansion),
+            verification,
             warnings: expansion.warnings.clone(),
         }
     }
+}
+
+/// The plans of some points that stand for all.
+fn plans(expansion: &Expansion, speed: Option<&MachineSpeed>) -> Vec<Plan> {
+    let sample = expansion.points.iter().step_by(expansion.points.len().div_ceil(PLANNED_POINTS).max(1));
+    sample.filter_map(|point| Plan::new(&expansion.scenario(point), speed).ok()).collect()
+}
+
+/// Processor time that is expected of the points without a result \[s\].
+fn cpu_time(expansion: &Expansion, known: u64, plans: &[Plan]) -> Option<f64> {
+    let unknown = (expansion.points.len() as u64).saturating_sub(known) as f64;
+    Some(mean_cpu_time(plans)? * unknown)
+}
+
+fn planned(expansion: &Expansion) -> Vec<PlannedPoint> {
+    let planned = |point: &SweepPoint| PlannedPoint {
+        ordinal: point.ordinal,
+        parameters: expansion.parameters(point),
+        key: key_text(&point.key),
+    };
+    expansion.points.iter().map(planned).collect()
 }
 
 /// Mean of the points' expected processor times \[s\]; none where one is not known.
@@ -92,19 +135,34 @@ mod tests {
         let speed = json!({"statics_per_node": 0.0, "start_per_node": [0.0, 0.0, 0.0, 0.0], "step_per_node":
             [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]],
             "large_mesh_factor": 2.0});
-        let planned = DryRun::new(&expansion(), 40, Some(&speed.to_string()), 2);
+        let planned = DryRun::new(&expansion(), 40, 0, Some(&speed.to_string()), 2);
         // 60 points of 120,000 steps of 297 nodes.
         let wanted = 60.0 * 120_000.0 * 297.0 * 3e-7;
         assert!((planned.cpu_time.unwrap() / wanted - 1.0).abs() < 1e-12);
         assert_eq!(planned.wall_time, planned.cpu_time.map(|time| 0.5 * time));
         assert_eq!((planned.total, planned.known, planned.points.len()), (100, 40, 100));
-        assert_eq!(planned.plan.unwrap().accuracies[0].name, "draft");
+        assert_eq!(planned.plan.as_ref().unwrap().accuracies[0].name, "draft");
 
         for speed in [None, Some("of another version")] {
-            let planned = DryRun::new(&expansion(), 0, speed, 2);
+            let planned = DryRun::new(&expansion(), 0, 0, speed, 2);
             assert_eq!((planned.cpu_time, planned.wall_time), (None, None));
             assert!(planned.plan.unwrap().effects.iter().all(|effect| effect.active));
         }
-        assert_eq!(DryRun::new(&expansion(), 0, Some(&speed.to_string()), 0).wall_time, None);
+        assert_eq!(DryRun::new(&expansion(), 0, 0, Some(&speed.to_string()), 0).wall_time, None);
+
+        let mut verified = request.clone();
+        verified["verify"] = json!(0.05);
+        let verified = expand(&serde_json::from_value(verified).unwrap()).unwrap();
+        let with_references = DryRun::new(&verified, 40, 1, Some(&speed.to_string()), 2);
+        let verification = with_references.verification.as_ref().unwrap();
+        assert_eq!((verification.total, verification.known, verification.points.len()), (5, 1, 5));
+        let reference = expand(
+            &serde_json::from_value(json!({"preset": "paper-200m", "set": {"accuracy": "reference"}}))
+                .unwrap(),
+        )
+        .unwrap();
+        let of_one = DryRun::new(&reference, 0, 0, Some(&speed.to_string()), 2).cpu_time.unwrap();
+        let expected = planned.cpu_time.unwrap() + 4.0 * of_one;
+        assert!((with_references.cpu_time.unwrap() / expected - 1.0).abs() < 1e-12);
     }
 }

@@ -6,11 +6,14 @@ use utoipa::ToSchema;
 
 use crate::point::PointState;
 
-/// The data of an event `point`: a result that points of the sweep share has come to a new state.
+/// The data of an event `point`: a result that points of the sweep share, or that verifies some, has come to a new state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct PointEvent {
-    /// The points, by their numbers in the sweep.
+    /// The points, by their numbers in the sweep; none where it is only the reference run of some.
     pub ordinals: Vec<u32>,
+    /// The points that the result verifies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub verifies: Vec<u32>,
     /// Where they stand now.
     pub state: PointState,
     /// When it happened.

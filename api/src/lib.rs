@@ -23,10 +23,11 @@ pub mod service;
 pub mod sweep;
 pub mod table;
 pub mod units;
+pub mod verify;
 pub mod view;
 
 pub use axis::{Axis, Scale};
-pub use dry_run::{DryRun, PlannedPoint};
+pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::PointEvent;
 pub use expand::{Expansion, PointKey, SweepPoint, check_patch, compose, expand, expand_added, key_text};
 pub use point::{
@@ -39,7 +40,8 @@ pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, Sweep
 pub use service::{
     Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
 };
-pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState};
+pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState, SweepVerification};
 pub use table::{Column, Table};
+pub use verify::{Promise, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -74,6 +74,13 @@ pub struct SweepRequest {
     /// seed ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
+    /// How many of the points are run a second time, at the accuracy `reference`, to see how far theirs can be trusted: a part of
+    /// them below 1, such as 0.05 (rounded, but one at least), or a number of them. They are spread over the order of the points,
+    /// the same for the same request. Of points that are added later as many are verified as make up that part, or that number, of
+    /// the whole sweep. What is found is at `GET /v1/sweeps/{id}/verification`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(exclusive_minimum = 0.0, example = 0.05)]
+    pub verify: Option<f64>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
@@ -169,7 +176,9 @@ impl AppendRequest {
     /// When the parameters are not those of the sweep.
     pub(crate) fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
         let AppendRequest { design, axes, points, samples, seed, skip } = self;
-        let request = SweepRequest { design, axes, points, samples, seed, skip, ..original.clone() };
+        // Which of the points are verified is found once it is known which of them the sweep has not.
+        let request =
+            SweepRequest { design, axes, points, samples, seed, skip, verify: None, ..original.clone() };
         let (added, own): (BTreeSet<_>, BTreeSet<_>) = (request.parameters(), original.parameters());
         if added == own {
             return Ok(request);

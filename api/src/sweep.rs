@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 
 use crate::problem::FieldProblem;
 use crate::request::{AppendRequest, SweepRequest};
+use crate::view::verification::WorstBias;
 
 /// A sweep with its counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -24,13 +25,17 @@ pub struct Sweep {
     pub state: SweepState,
     /// Points by state.
     pub counts: PointCounts,
-    /// Done part of the work, points under way counted by their simulated time; 1 when every point is final.
+    /// How far a sample of the points is verified by the reference, and what that shows; absent where none is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verification: Option<SweepVerification>,
+    /// Done part of the work, that of verifying points included, what is under way counted by its simulated time; 1 when every point
+    /// and every reference run is final.
     pub progress: f64,
     /// Higher goes first among the sweeps of one owner.
     pub priority: i64,
     /// When it was submitted.
     pub created: Timestamp,
-    /// When its last point became final.
+    /// When its last point, or the last reference run that verifies one, became final.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished: Option<Timestamp>,
     /// Whether it, and all that belongs to it, is kept whatever its age.
@@ -57,11 +62,11 @@ pub struct Sweep {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepState {
-    /// Some points are not final yet.
+    /// Some points, or reference runs that verify some, are not final yet.
     Running,
-    /// Some points are not final yet, and those that wait are not handed out.
+    /// Some are not final yet, and those that wait are not handed out.
     Paused,
-    /// Every point is final, succeeded or failed; `counts` says how many of each.
+    /// Every point and every reference run is final, succeeded or failed; `counts` says how many of each.
     Completed,
     /// It was cancelled.
     Cancelled,
@@ -96,6 +101,20 @@ pub struct PointCounts {
     pub cancelled: u64,
 }
 
+/// How far a sample of a sweep's points is verified, and what that shows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SweepVerification {
+    /// The reference runs by state; `total` is how many were wanted.
+    pub counts: PointCounts,
+    /// The bias of orbit size that is farthest from zero, once a point is verified; told by the sweep itself, and left out of lists,
+    /// event streams and answers to what is done with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst: Option<WorstBias>,
+    /// Where biases exceed what the accuracy promises, in words; likewise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+}
+
 /// Where to read more about a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SweepLinks {
@@ -106,6 +125,8 @@ pub struct SweepLinks {
     pub points: String,
     /// One row a point, with its summary.
     pub table: String,
+    /// What verifying a sample of the points has shown.
+    pub verification: String,
     /// A stream of events.
     pub events: String,
     /// Everything in one archive.
@@ -127,6 +148,7 @@ impl SweepLinks {
         SweepLinks {
             points: format!("{this}/points"),
             table: format!("{this}/table"),
+            verification: format!("{this}/verification"),
             events: format!("{this}/events"),
             export: format!("{this}/export"),
             cancel: format!("{this}/cancel"),

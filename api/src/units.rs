@@ -5,6 +5,10 @@
 /// Columns of one node, such as `u_49`, and of one spectrum window, such as `line_amplitude_49_w1`, have the
 /// unit of the name without those numbers.
 pub fn unit(column: &str) -> Option<&'static str> {
+    // Biases are relative, but for those of frequencies.
+    if let Some(statistic) = column.strip_prefix("bias_") {
+        return unit(statistic).map(|unit| if unit == "Hz" { unit } else { "1" });
+    }
     Some(match quantity(column) {
         "time" | "from" | "to" | "error_time" | "histories_part_at" | "contact_time" | "duration"
         | "wall_time" | "cpu_time" | "step" => "s",
@@ -47,15 +51,16 @@ pub fn unit(column: &str) -> Option<&'static str> {
     })
 }
 
-/// The name of a column without the numbers of node and window, and without what says that it is of an ensemble.
+/// The name of a column without the numbers of node and window, and without what says that it is of an ensemble or of the reference.
 fn quantity(column: &str) -> &str {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let without = |name, separator| match str::rsplit_once(name, separator) {
         Some((rest, number)) if is_number(number) => rest,
         _ => name,
     };
-    let of_ensemble = column.strip_prefix("spread_").or_else(|| column.strip_prefix("ensemble_mean_"));
-    without(without(of_ensemble.unwrap_or(column), "_w"), "_")
+    let prefixes = ["spread_", "ensemble_mean_", "reference_"];
+    let of_another = prefixes.iter().find_map(|prefix| column.strip_prefix(prefix));
+    without(without(of_another.unwrap_or(column), "_w"), "_")
 }
 
 #[cfg(test)]
@@ -71,6 +76,9 @@ mod tests {
         assert_eq!(unit("orbit_radius_rms_282"), Some("m"));
         assert_eq!(unit("spread_orbit_radius_rms_282"), Some("m"));
         assert_eq!(unit("ensemble_mean_line_frequency_hz_49_w2"), Some("Hz"));
+        assert_eq!(unit("reference_orbit_mean_radius_49"), Some("m"));
+        assert_eq!(unit("bias_orbit_mean_radius_49"), Some("1"));
+        assert_eq!(unit("bias_line_frequency_hz_49_w1"), Some("Hz"));
         assert_eq!(unit("cost_cpu_time_0_1_percent"), Some("s"));
         assert_eq!(unit("node"), None);
         assert_eq!(unit("49"), None);

@@ -1,13 +1,15 @@
 //! Between what the store keeps and what clients see.
 
 use drillsweep_api::view::points::PointSummary;
+use drillsweep_api::view::verification::VerifiedPoint;
 use drillsweep_api::{
     Expansion, Failure, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
-    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, compose, key_text,
+    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, SweepVerification, compose,
+    key_text,
 };
 use drillsweep_store::{
-    CachePolicy, FailureRecord, NewPoint, NewSweep, PointRecord, ScenarioText, Store, SweepRecord,
-    TableRecord, WorkState,
+    CachePolicy, FailureRecord, NewPoint, NewSweep, NewVerification, PointRecord, ScenarioText, StateCounts,
+    Store, SweepRecord, TableRecord, VerificationRecord, WorkState,
 };
 use indexmap::IndexMap;
 use jiff::Timestamp;
@@ -38,7 +40,16 @@ pub(crate) fn new_sweep(
         base_json: write(&expansion.base)?,
         physics_version: drillsweep_api::PHYSICS_VERSION.into(),
         points: new_points(expansion)?,
+        verification: match &expansion.verification {
+            Some(references) => new_verification(references)?,
+            None => NewVerification::default(),
+        },
     })
+}
+
+/// The reference runs that verify some points, as the store takes them.
+pub(crate) fn new_verification(references: &Expansion) -> Result<NewVerification> {
+    Ok(NewVerification { base_json: write(&references.base)?, runs: new_points(references)? })
 }
 
 /// The points of an expansion as the store takes them.
@@ -63,24 +74,23 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         (false, None) if record.is_paused => SweepState::Paused,
         (false, None) => SweepState::Running,
     };
-    let counts = &record.counts;
+    let total = record.counts.total + record.verification.total;
     let progress = match record.finished {
         Some(_) => 1.0,
-        None => (record.progress / (counts.total.max(1) as f64)).clamp(0.0, 1.0),
+        None => (record.progress / (total.max(1) as f64)).clamp(0.0, 1.0),
     };
+    let verification = (record.verification.total > 0).then(|| SweepVerification {
+        counts: counts(&record.verification),
+        worst: None,
+        warnings: Vec::new(),
+    });
     Ok(Sweep {
         id: record.id.clone(),
         name: record.name.clone(),
         owner: record.owner.clone(),
         state,
-        counts: PointCounts {
-            total: counts.total.unsigned_abs(),
-            queued: counts.queued.unsigned_abs(),
-            running: counts.running.unsigned_abs(),
-            succeeded: counts.done.unsigned_abs(),
-            failed: counts.failed.unsigned_abs(),
-            cancelled: counts.cancelled.unsigned_abs(),
-        },
+        counts: counts(&record.counts),
+        verification,
         progress,
         priority: record.priority,
         created: timestamp(record.created)?,
@@ -93,6 +103,17 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         appended: Vec::new(),
         links: SweepLinks::new(&record.id),
     })
+}
+
+fn counts(counts: &StateCounts) -> PointCounts {
+    PointCounts {
+        total: counts.total.unsigned_abs(),
+        queued: counts.queued.unsigned_abs(),
+        running: counts.running.unsigned_abs(),
+        succeeded: counts.done.unsigned_abs(),
+        failed: counts.failed.unsigned_abs(),
+        cancelled: counts.cancelled.unsigned_abs(),
+    }
 }
 
 /// The same with the request that made it and those that added to it.
@@ -143,13 +164,26 @@ pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String
     })
 }
 
-/// A point's row in the table of its sweep.
+/// A point beside the reference run that verifies it.
+pub(crate) fn verified_point(record: &VerificationRecord) -> Result<VerifiedPoint> {
+    Ok(VerifiedPoint {
+        ordinal: ordinal(record.ordinal)?,
+        parameters: read(&record.parameters_json)?,
+        statistics: record.summary_json.as_deref().map(read).transpose()?,
+        state: point_state(record.state),
+        reference: record.reference_json.as_deref().map(read).transpose()?,
+        error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
+    })
+}
+
+/// A point's row in the table of its sweep, without what verifying it has shown.
 pub(crate) fn point_summary(record: &TableRecord) -> Result<PointSummary> {
     Ok(PointSummary {
         ordinal: ordinal(record.ordinal)?,
         state: point_state(record.state),
         parameters: read(&record.parameters_json)?,
         summary: record.summary_json.as_deref().map(read).transpose()?,
+        biases: IndexMap::new(),
         error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
     })
 }

@@ -41,11 +41,11 @@ pub(crate) struct EventsQuery {
 
 /// Follow a sweep: a stream of events
 ///
-/// Events `point` (data: `PointEvent`) tell of points that came to a new state, events `sweep` (data: `Sweep`, without
-/// its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and every two seconds
-/// while points make progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at the
-/// first that is kept. It ends when every point is final; who then connects again is answered 204, which ends the
-/// matter for a browser's EventSource.
+/// Events `point` (data: `PointEvent`) tell of points, and of reference runs that verify some, that came to a new state; events
+/// `sweep` (data: `Sweep`, without its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and
+/// every two seconds while there is progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at
+/// the first that is kept. It ends when everything is final; who then connects again is answered 204, which ends the matter for a
+/// browser's EventSource.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/events",
@@ -165,6 +165,7 @@ impl Follower {
             self.sequence = event.seq;
             let data = PointEvent {
                 ordinals: event.ordinals.clone(),
+                verifies: event.verifies.clone(),
                 state: convert::point_state(event.state),
                 at: convert::timestamp(event.at)?,
             };

@@ -17,10 +17,10 @@ use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
 use crate::app::App;
-use crate::convert;
 use crate::error::{Error, Result};
 use crate::extract::{Path, Query, value};
 use crate::openapi::Problems;
+use crate::verification::Verified;
 
 /// Bytes that are sent at once.
 const CHUNK: usize = 256 << 10;
@@ -44,9 +44,10 @@ pub(crate) struct ExportQuery {
 
 /// A whole sweep as one archive
 ///
-/// A zip file with `sweep.json` (what was asked for, and how it stands), `table.csv` (a row a point) and the files of
-/// every point that has a result, as `points/1/history.parquet`. It is written while it is sent: its size is not known
-/// beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
+/// A zip file with `sweep.json` (what was asked for, and how it stands), `table.csv` (a row a point), `verification.csv` (a row a
+/// verified point, where there are some) and the files of every point that has a result, as `points/1/history.parquet`. It is written
+/// while it is sent: its size is not known beforehand, and an archive that breaks off has no directory at its end, so that no program
+/// takes it for whole.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/export",
@@ -129,10 +130,13 @@ impl Archive {
         zip.start_file("sweep.json", text)?;
         zip.write_all(sweep)?;
         let records = self.handle.block_on(self.store.table_rows(&self.id)).map_err(io::Error::other)?;
-        let rows: Vec<_> =
-            records.iter().map(convert::point_summary).collect::<Result<_>>().map_err(failed)?;
+        let verified = self.handle.block_on(Verified::load(&self.store, &self.id)).map_err(failed)?;
         zip.start_file("table.csv", text.large_file(true))?;
-        zip.write_all(points::points(&rows).csv().as_bytes())?;
+        zip.write_all(points::points(&verified.rows(&records).map_err(failed)?).csv().as_bytes())?;
+        if !verified.points.is_empty() {
+            zip.start_file("verification.csv", text)?;
+            zip.write_all(verified.table().csv().as_bytes())?;
+        }
         if self.wanted.as_ref().is_none_or(|wanted| !wanted.is_empty()) {
             self.write_points(&mut zip)?;
         }

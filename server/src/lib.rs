@@ -27,6 +27,7 @@ mod router;
 mod scenarios;
 mod status;
 mod sweeps;
+mod verification;
 mod work;
 
 pub use app::{Config, DEFAULT_ADDRESS, Listeners, ServeError, serve};

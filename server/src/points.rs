@@ -115,7 +115,7 @@ pub(crate) struct FailuresQuery {
 /// The points of all sweeps that were given up, the latest first
 ///
 /// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
-/// of a sweep again.
+/// of a sweep again. Of reference runs that only verify a point `GET /v1/sweeps/{id}/verification` tells.
 #[utoipa::path(
     get,
     path = "/v1/failures",

@@ -13,7 +13,7 @@ use crate::app::{App, Config};
 use crate::error::Error;
 use crate::{
     cost, docs, events, export, files, health, middleware, openapi, points, results, scenarios, status,
-    sweeps,
+    sweeps, verification,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -40,6 +40,7 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::pause))
         .routes(routes!(sweeps::resume))
         .routes(routes!(sweeps::table))
+        .routes(routes!(verification::show))
         .routes(routes!(events::follow))
         .routes(routes!(export::export))
         .routes(routes!(sweeps::create_run))

@@ -11,9 +11,11 @@ use drillsweep_api::chart;
 use drillsweep_api::view::points;
 use drillsweep_api::{
     AppendRequest, DryRun, Expansion, LIMITS, PHYSICS_VERSION, ProblemKind, RunRequest, Sweep, SweepList,
-    SweepPatch, SweepRequest, SweepState, check_patch, expand, expand_added,
+    SweepPatch, SweepRequest, SweepState, check_patch, expand, expand_added, sample,
 };
-use drillsweep_store::{AppendOutcome, CachePolicy, SubmitOutcome, SweepChanges, SweepFilter};
+use drillsweep_store::{
+    Addition, AppendOutcome, CachePolicy, NewSweep, NewVerification, SubmitOutcome, SweepChanges, SweepFilter,
+};
 use jiff::Timestamp;
 use serde::Deserialize;
 use tokio::time::Instant;
@@ -29,6 +31,7 @@ use crate::limit;
 use crate::openapi::{Conditional, PictureResponse, Problems};
 use crate::results::PictureQuery;
 use crate::status::WORKER_SILENCE;
+use crate::verification::Verified;
 use crate::work::blocking;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
@@ -153,12 +156,15 @@ async fn submit(
         return Ok(Json(plan(&app, expansion, cache).await?).into_response());
     }
     if cache != CachePolicy::Only {
-        limit::check_open_points(&app, &new_sweep.owner, new_sweep.points.len()).await?;
+        let added = new_sweep.points.len() + new_sweep.verification.runs.len();
+        limit::check_open_points(&app, &new_sweep.owner, added).await?;
     }
     let id = match app.store.submit_sweep(&new_sweep).await? {
         SubmitOutcome::Created => new_sweep.id,
         SubmitOutcome::Known(id) => id,
-        SubmitOutcome::NotComputed(missing) => return Err(not_computed(&missing, new_sweep.points.len())),
+        SubmitOutcome::NotComputed { points, verifications } => {
+            return Err(not_computed(&new_sweep, &points, &verifications));
+        }
     };
     let sweep = Sweep { warnings: expansion.warnings, ..load(&app, &id).await? };
     let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
@@ -166,29 +172,40 @@ async fn submit(
 }
 
 /// The problem that a sweep which computes nothing has points without an outcome.
-fn not_computed(missing: &[i64], total: usize) -> Error {
+fn not_computed(sweep: &NewSweep, points: &[i64], verifications: &[i64]) -> Error {
     const NAMED: usize = 20;
-    let mut named: Vec<String> = missing.iter().take(NAMED).map(i64::to_string).collect();
-    if missing.len() > NAMED {
-        named.push("...".to_owned());
-    }
-    let detail = format!(
-        "{} of {total} points have not been computed, and cache=only computes none: {}",
-        missing.len(),
-        named.join(", ")
-    );
+    let of = |what: &str, missing: &[i64], total: usize| {
+        let mut named: Vec<String> = missing.iter().take(NAMED).map(i64::to_string).collect();
+        if missing.len() > NAMED {
+            named.push("...".to_owned());
+        }
+        let number = missing.len();
+        format!(
+            "{number} of {total} {what} have not been computed, and cache=only computes none: {}",
+            named.join(", ")
+        )
+    };
+    let detail = match points {
+        [] => of("reference runs that verify points", verifications, sweep.verification.runs.len()),
+        _ => of("points", points, sweep.points.len()),
+    };
     Error::new(ProblemKind::NoResult, detail)
 }
 
 async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
-    let keys: Vec<_> = expansion.points.iter().map(|point| (point.key, point.fuller_key)).collect();
-    let known = match cache {
-        CachePolicy::Refresh => 0,
-        CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await?,
+    let known = async |expansion: Option<&Expansion>| {
+        let points = expansion.into_iter().flat_map(|expansion| &expansion.points);
+        let keys: Vec<_> = points.map(|point| (point.key, point.fuller_key)).collect();
+        match cache {
+            CachePolicy::Refresh => Ok(0),
+            CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await,
+        }
     };
+    let (known, known_references) =
+        (known(Some(&expansion)).await?, known(expansion.verification.as_deref()).await?);
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
-    blocking(move || Ok(DryRun::new(&expansion, known, speed.as_deref(), workers))).await
+    blocking(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
 }
 
 /// What tells two requests under the same key apart.
@@ -265,18 +282,34 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
 /// Requests by which points were added that an answer has: who adds them one by one has thousands, and is answered every time.
 const APPENDED_SHOWN: i64 = 100;
 
+/// The sweep with its counts. What verifying its points has shown is left out: that takes their results to tell, too much for each
+/// look at a sweep that is followed.
 pub(crate) async fn load(app: &App, id: &str) -> Result<Sweep> {
     load_with(app, id, APPENDED_SHOWN).await
 }
 
-/// The sweep with all that was ever asked for.
+/// The sweep with what verifying its points has shown.
+async fn load_findings(app: &App, id: &str) -> Result<Sweep> {
+    with_findings(app, load(app, id).await?).await
+}
+
+/// The sweep with all that was ever asked for, and all that it has shown.
 pub(crate) async fn load_whole(app: &App, id: &str) -> Result<Sweep> {
-    load_with(app, id, i64::MAX).await
+    with_findings(app, load_with(app, id, i64::MAX).await?).await
 }
 
 async fn load_with(app: &App, id: &str, appended: i64) -> Result<Sweep> {
     let Some(record) = app.store.sweep(id).await? else { return Err(convert::no_such_sweep(id)) };
     convert::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)
+}
+
+async fn with_findings(app: &App, mut sweep: Sweep) -> Result<Sweep> {
+    if let Some(verification) = &mut sweep.verification {
+        let findings = Verified::load(&app.store, &sweep.id).await?.findings;
+        verification.worst = findings.worst_orbit_size();
+        verification.warnings = findings.warnings;
+    }
+    Ok(sweep)
 }
 
 /// Whether and for what a request waits.
@@ -301,7 +334,7 @@ pub(crate) enum Until {
     /// Any change of state, counts or progress.
     #[default]
     Change,
-    /// Every point is final.
+    /// Every point is final, and every reference run that verifies one.
     Completed,
 }
 
@@ -322,7 +355,7 @@ pub(crate) async fn show(
     Path(id): Path<String>,
     Query(query): Query<ShowQuery>,
 ) -> Result<Json<Sweep>> {
-    let sweep = load(&app, &id).await?;
+    let sweep = load_findings(&app, &id).await?;
     match query.wait {
         Some(wait) => Ok(Json(wait_for(&app, sweep, wait, query.until).await?)),
         None => Ok(Json(sweep)),
@@ -333,7 +366,10 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
     let start = Instant::now();
     let deadline = start + wait.min(Duration::from_secs(LIMITS.wait_seconds));
     let mut stopping = app.stopping.clone();
-    let seen = |sweep: &Sweep| (sweep.state, sweep.counts, sweep.progress.to_bits());
+    let seen = |sweep: &Sweep| {
+        let verification = sweep.verification.as_ref().map(|verification| verification.counts);
+        (sweep.state, sweep.counts, verification, sweep.progress.to_bits())
+    };
     let (mut sweep, mut version, mut read) = (before.clone(), None, start);
     while sweep.finished.is_none() && (until == Until::Completed || seen(&sweep) == seen(&before)) {
         let now = Instant::now();
@@ -352,13 +388,16 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
             (version, read) = (Some(current), Instant::now());
         }
     }
-    Ok(sweep)
+    match seen(&sweep) == seen(&before) {
+        true => Ok(before),
+        false => load_findings(app, &before.id).await,
+    }
 }
 
 /// Cancel a sweep
 ///
-/// Points that wait are cancelled at once, points under way within a heartbeat of their worker. Points whose
-/// result another sweep wants too go on for that sweep. Cancelling again changes nothing.
+/// Points that wait are cancelled at once, points under way within a heartbeat of their worker, and so are the reference runs that
+/// verify some. What another sweep wants too goes on for that sweep. Cancelling again changes nothing.
 #[utoipa::path(
     post,
     path = "/v1/sweeps/{id}/cancel",
@@ -372,7 +411,7 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
     Ok(Json(load(&app, &id).await?))
 }
 
-/// Retry the failed and cancelled points of a sweep
+/// Retry the failed and cancelled points of a sweep, and reference runs that verify some
 #[utoipa::path(
     post,
     path = "/v1/sweeps/{id}/retry",
@@ -450,7 +489,7 @@ pub(crate) async fn change(
 ///
 /// Points of the sweep's scenario with other values of its parameters, by any design; their numbers go on from its last
 /// point. Points that the sweep has already are passed over, so that a finer grid may be asked for as a whole, and the same
-/// request again changes nothing.
+/// request again changes nothing. Of the added points as many are verified as make up the `verify` of the whole sweep.
 #[utoipa::path(
     post,
     path = "/v1/sweeps/{id}/points",
@@ -470,16 +509,41 @@ pub(crate) async fn append(
         return Err(Error::internal("a sweep was read without its request"));
     };
     let request_json = convert::write(&request)?;
+    let verify = original.verify;
     let (expansion, points) = blocking(move || {
         let expansion = expand_added(request, &original)?;
         let points = convert::new_points(&expansion)?;
         Ok((expansion, points))
     })
     .await?;
-    limit::check_open_points(&app, &sweep.owner, points.len()).await?;
-    let (base, physics) = (convert::write(&expansion.base)?, PHYSICS_VERSION.into());
+    let (expansion, verification) = match verify {
+        None => (expansion, NewVerification::default()),
+        Some(verify) => {
+            let lacking = app.store.lacking_points(&id, &points).await?;
+            let verified = sweep.verification.as_ref().map_or(0, |verification| verification.counts.total);
+            let total = sweep.counts.total as usize + lacking.len();
+            blocking(move || {
+                let sample = sample(verify, total, verified as usize, lacking.len());
+                // Ordinals of the expansion count from 1.
+                let sample: Vec<usize> =
+                    sample.into_iter().map(|index| lacking[index] as usize - 1).collect();
+                let verification = convert::new_verification(&expansion.references(&sample)?)?;
+                Ok((expansion, verification))
+            })
+            .await?
+        }
+    };
+    limit::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
+    let base_json = convert::write(&expansion.base)?;
+    let addition = Addition {
+        base_json: &base_json,
+        physics_version: PHYSICS_VERSION.into(),
+        points: &points,
+        verification: &verification,
+        request_json: &request_json,
+    };
     let most = LIMITS.points_per_sweep as u64;
-    match app.store.append_points(&id, &base, physics, &points, &request_json, most).await? {
+    match app.store.append_points(&id, &addition, most).await? {
         AppendOutcome::Added(_) => {}
         AppendOutcome::NoSuchSweep => return Err(convert::no_such_sweep(&id)),
         AppendOutcome::Cancelled => {
@@ -505,8 +569,10 @@ pub(crate) async fn append(
 
 /// One row a point: its parameters and the scalars of its result
 ///
-/// Points without a result have their row too, with empty fields; `state` and `error` say why. A picture shows the
-/// columns in `fields` over the parameters that vary: lines over one of them, a map of the first column over two.
+/// Points without a result have their row too, with empty fields; `state` and `error` say why. Points that the request's `verify`
+/// has chosen have the bias of each statistic against the reference, as `bias_orbit_radius_rms_49`; where biases exceed what the
+/// accuracy promises, the attribute `warnings` says so. A picture shows the columns in `fields` over the parameters that vary: lines
+/// over one of them, a map of the first column over two, with diamonds at verified points.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/table",
@@ -524,12 +590,18 @@ pub(crate) async fn table(
     let format = Format::choose(format, &headers)?;
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(convert::no_such_sweep(&id)) };
     let records = app.store.table_rows(&id).await?;
+    let verified = Verified::load(&app.store, &id).await?;
     blocking(move || {
-        let rows: Vec<_> = records.iter().map(convert::point_summary).collect::<Result<_>>()?;
+        let rows = verified.rows(&records)?;
+        let mut table = points::points(&rows);
+        let findings = &verified.findings;
+        if !findings.warnings.is_empty() {
+            table = table.attribute("warnings", findings.warnings.clone());
+        }
         let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
         let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-        format::respond_or_draw(&points::points(&rows), fields, format, &format!("sweep-{id}"), |table| {
-            chart::sweep(table, &parameters, fields, title)
+        format::respond_or_draw(&table, fields, format, &format!("sweep-{id}"), |table| {
+            chart::sweep(table, &parameters, fields, findings, title)
         })
     })
     .await

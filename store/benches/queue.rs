@@ -3,7 +3,10 @@
 use std::cell::Cell;
 
 use divan::Bencher;
-use drillsweep_store::{CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, Role, Store, StoreConfig};
+use drillsweep_store::{
+    Addition, CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Role, Store,
+    StoreConfig,
+};
 use tempfile::TempDir;
 use tokio::runtime::Runtime;
 
@@ -48,6 +51,7 @@ fn sweep(number: i64) -> NewSweep {
         base_json: format!("{number:>3000}"),
         physics_version: 1,
         points: (1..=POINTS).map(point).collect(),
+        verification: NewVerification::default(),
     }
 }
 
@@ -110,7 +114,14 @@ fn append_a_point(bencher: Bencher, points: i64) {
             [point]
         })
         .bench_local_values(|point| {
-            let append = queue.store.append_points("1", &sweep.base_json, 1, &point, "{}", 100_000);
+            let addition = Addition {
+                base_json: &sweep.base_json,
+                physics_version: 1,
+                points: &point,
+                verification: &sweep.verification,
+                request_json: "{}",
+            };
+            let append = queue.store.append_points("1", &addition, 100_000);
             queue.runtime.block_on(append).expect("appended")
         });
 }

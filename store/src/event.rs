@@ -15,6 +15,8 @@ pub struct Event {
     pub work_key: WorkKey,
     /// Numbers of the points of the sweep that have it, from 1.
     pub ordinals: Vec<u32>,
+    /// Numbers of the points that it verifies.
+    pub verifies: Vec<u32>,
     /// When it happened \[ms since the epoch\].
     pub at: i64,
 }
@@ -25,11 +27,13 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
-        type Row = (i64, String, Vec<u8>, i64, Option<String>);
+        type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT seq, kind, work_key, at,
                     (SELECT group_concat(p.ordinal) FROM point p
-                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id)
+                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id AND p.verifies = 0),
+                    (SELECT group_concat(p.ordinal) FROM point p
+                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id AND p.verifies = 1)
              FROM event WHERE sweep_id = ?1 AND seq > ?2 ORDER BY seq LIMIT ?3",
         )
         .bind(sweep_id)
@@ -38,15 +42,19 @@ impl Store {
         .fetch_all(&self.pool)
         .await?;
         rows.into_iter()
-            .map(|(seq, kind, key, at, ordinals)| {
-                let mut ordinals: Vec<u32> = ordinals
-                    .iter()
-                    .flat_map(|list| list.split(','))
-                    .filter_map(|number| number.parse().ok())
-                    .collect();
-                ordinals.sort_unstable();
-                Ok(Event { seq, state: WorkState::parse(&kind)?, work_key: work_key(&key)?, ordinals, at })
+            .map(|(seq, kind, key, at, ordinals, verifies)| {
+                let state = WorkState::parse(&kind)?;
+                let (ordinals, verifies) = (numbers(ordinals.as_deref()), numbers(verifies.as_deref()));
+                Ok(Event { seq, state, work_key: work_key(&key)?, ordinals, verifies, at })
             })
             .collect()
     }
+}
+
+/// A list of numbers, in order.
+fn numbers(list: Option<&str>) -> Vec<u32> {
+    let mut numbers: Vec<u32> =
+        list.into_iter().flat_map(|list| list.split(',')).filter_map(|number| number.parse().ok()).collect();
+    numbers.sort_unstable();
+    numbers
 }

@@ -21,6 +21,7 @@ mod submit;
 mod sweep;
 mod table;
 mod token;
+mod verification;
 mod worker;
 
 pub use blob::{BlobId, BlobStore};
@@ -34,8 +35,9 @@ pub use point::{Artifact, PointRecord, ScenarioText, TableRecord};
 pub use queue::{Claim, FailureClass, Lease, NewArtifact, NewResult, QueueDepths, Renewal};
 pub use retention::{Garbage, RetentionPolicy};
 pub use state::{StateCounts, WorkKey, WorkState};
-pub use submit::{AppendOutcome, CachePolicy, NewPoint, NewSweep, SubmitOutcome};
+pub use submit::{Addition, AppendOutcome, CachePolicy, NewPoint, NewSweep, NewVerification, SubmitOutcome};
 pub use sweep::{SweepChanges, SweepFilter, SweepRecord};
 pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};
 pub use token::{NewToken, TokenRecord, TokenScope, TokenSecret, TokensPresent};
+pub use verification::VerificationRecord;
 pub use worker::WorkerRecord;

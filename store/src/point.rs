@@ -106,7 +106,7 @@ impl Store {
             "SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
                     w.error, NULL AS summary, NULL AS provenance
              FROM point p JOIN work w ON w.key = p.work_key
-             WHERE p.sweep_id = ?1 AND p.ordinal > ?2 AND (?3 IS NULL OR instr(?3, ',' || w.state || ',') > 0)
+             WHERE p.sweep_id = ?1 AND p.verifies = 0 AND p.ordinal > ?2 AND (?3 IS NULL OR instr(?3, ',' || w.state || ',') > 0)
              ORDER BY p.ordinal LIMIT ?4",
         )
         .bind(sweep_id)
@@ -127,7 +127,7 @@ impl Store {
             "SELECT p.ordinal, p.parameters, w.key, s.text AS base, w.changes, w.state, w.progress, w.starts, w.error,
                     r.summary, r.provenance
              FROM point p JOIN work w ON w.key = p.work_key JOIN scenario s ON s.hash = w.base LEFT JOIN result r ON r.work_key = w.key
-             WHERE p.sweep_id = ?1 AND p.ordinal = ?2",
+             WHERE p.sweep_id = ?1 AND p.verifies = 0 AND p.ordinal = ?2",
         )
         .bind(sweep_id)
         .bind(ordinal)
@@ -145,7 +145,7 @@ impl Store {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT p.ordinal, p.parameters, w.state, r.summary, w.error
              FROM point p JOIN work w ON w.key = p.work_key LEFT JOIN result r ON r.work_key = w.key
-             WHERE p.sweep_id = ?1 ORDER BY p.ordinal",
+             WHERE p.sweep_id = ?1 AND p.verifies = 0 ORDER BY p.ordinal",
         )
         .bind(sweep_id)
         .fetch_all(&self.pool)
@@ -182,7 +182,7 @@ impl Store {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT p.ordinal, a.name, a.media_type, a.blob, a.bytes, a.row_count, a.expired
              FROM (SELECT ordinal, work_key FROM point
-                   WHERE sweep_id = ?1 AND ordinal > ?2
+                   WHERE sweep_id = ?1 AND verifies = 0 AND ordinal > ?2
                      AND EXISTS (SELECT 1 FROM artifact WHERE artifact.work_key = point.work_key)
                    ORDER BY ordinal LIMIT ?3) AS p
              JOIN artifact a ON a.work_key = p.work_key AND a.expired IS NULL

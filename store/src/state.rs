@@ -41,6 +41,13 @@ pub struct StateCounts {
     pub cancelled: i64,
 }
 
+impl StateCounts {
+    /// Those whose state will not change by itself.
+    pub(crate) fn final_ones(&self) -> i64 {
+        self.done + self.failed + self.cancelled
+    }
+}
+
 impl WorkState {
     /// The name in the database.
     pub fn as_str(self) -> &'static str {

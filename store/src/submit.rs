@@ -1,9 +1,9 @@
 //! Submitting a sweep.
 
 use std::borrow::Cow;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use sqlx::{QueryBuilder, Sqlite, SqliteExecutor, Transaction};
+use sqlx::{QueryBuilder, Sqlite, SqliteConnection, SqliteExecutor, Transaction};
 
 use crate::connection::{Store, now};
 use crate::error::{Result, StoreError};
@@ -40,10 +40,12 @@ pub struct NewSweep {
     pub physics_version: i64,
     /// The points, ordinals from 1.
     pub points: Vec<NewPoint>,
+    /// The reference runs that verify some of them.
+    pub verification: NewVerification,
 }
 
 /// A point of a sweep to store.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewPoint {
     /// Number in the sweep, from 1.
     pub ordinal: i64,
@@ -55,6 +57,30 @@ pub struct NewPoint {
     pub fuller_key: Option<WorkKey>,
     /// What it changes in the base scenario, as a JSON object by path.
     pub changes_json: String,
+}
+
+/// Runs that verify points of a sweep; none unless there are some.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct NewVerification {
+    /// The scenario that the runs change, as JSON text.
+    pub base_json: String,
+    /// The runs, each with the ordinal of the point that it verifies.
+    pub runs: Vec<NewPoint>,
+}
+
+/// Points to add to a sweep.
+#[derive(Debug, Clone, Copy)]
+pub struct Addition<'a> {
+    /// The scenario that the points change, as JSON text.
+    pub base_json: &'a str,
+    /// Version of the numbers that the keys were made for.
+    pub physics_version: i64,
+    /// The points, ordinals from 1: the order in which they get theirs in the sweep.
+    pub points: &'a [NewPoint],
+    /// The runs that verify some of them, by the ordinals of `points`; those of points that the sweep has already are left out.
+    pub verification: &'a NewVerification,
+    /// The request as JSON.
+    pub request_json: &'a str,
 }
 
 /// What becomes of points that were computed before.
@@ -91,9 +117,17 @@ struct Wanted<'a> {
     owner: &'a str,
     priority: i64,
     physics_version: i64,
-    base: [u8; 32],
     cache: CachePolicy,
     is_paused: bool,
+}
+
+/// What a row of the table `point` is.
+#[derive(Clone, Copy)]
+enum Role {
+    /// A point of the sweep.
+    Point,
+    /// The run that verifies a point.
+    Verification,
 }
 
 /// What became of a submission.
@@ -103,8 +137,13 @@ pub enum SubmitOutcome {
     Created,
     /// The same request was stored before under the same idempotency key, as this sweep.
     Known(String),
-    /// Under [`CachePolicy::Only`]: the points with these ordinals have not been computed, and nothing is stored.
-    NotComputed(Vec<i64>),
+    /// Under [`CachePolicy::Only`]: some have not been computed, and nothing is stored.
+    NotComputed {
+        /// Ordinals of points.
+        points: Vec<i64>,
+        /// Ordinals of points whose verification has not been computed.
+        verifications: Vec<i64>,
+    },
 }
 
 impl Store {
@@ -118,14 +157,18 @@ impl Store {
         if let Some(known) = known_sweep(&mut tx, sweep).await? {
             return Ok(SubmitOutcome::Known(known));
         }
-        let points = match sweep.cache {
-            CachePolicy::Reuse | CachePolicy::Only => with_fuller(&mut tx, &sweep.points).await?,
-            CachePolicy::Refresh => Cow::from(&sweep.points),
+        let runs = &sweep.verification.runs;
+        let (points, runs) = match sweep.cache {
+            CachePolicy::Reuse | CachePolicy::Only => {
+                (with_fuller(&mut tx, &sweep.points).await?, with_fuller(&mut tx, runs).await?)
+            }
+            CachePolicy::Refresh => (Cow::from(&sweep.points), Cow::from(runs)),
         };
         if sweep.cache == CachePolicy::Only {
-            let missing = not_computed(&mut tx, &points).await?;
-            if !missing.is_empty() {
-                return Ok(SubmitOutcome::NotComputed(missing));
+            let (points, verifications) =
+                (not_computed(&mut tx, &points).await?, not_computed(&mut tx, &runs).await?);
+            if !points.is_empty() || !verifications.is_empty() {
+                return Ok(SubmitOutcome::NotComputed { points, verifications });
             }
         }
         let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
@@ -139,31 +182,38 @@ impl Store {
             owner: &sweep.owner,
             priority: sweep.priority,
             physics_version: sweep.physics_version,
-            base: insert_base(&mut tx, &sweep.base_json).await?,
             cache: sweep.cache,
             is_paused: false,
         };
-        insert(&mut tx, &wanted, &points, now).await?;
-        count_points(&mut tx, &sweep.id, 0, now).await?;
+        insert(&mut tx, &wanted, (&sweep.base_json, &points), (&sweep.verification.base_json, &runs), now)
+            .await?;
+        count(&mut tx, &sweep.id, 0, now).await?;
         tx.commit().await?;
         Ok(SubmitOutcome::Created)
     }
 
+    /// Which of some points a sweep has not, by their ordinals: those that [`append_points`](Self::append_points) would add.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn lacking_points(&self, sweep_id: &str, points: &[NewPoint]) -> Result<Vec<i64>> {
+        let mut connection = self.pool.acquire().await?;
+        Ok(lacking(&mut connection, sweep_id, points).await?.iter().map(|point| point.ordinal).collect())
+    }
+
     /// Adds points to a sweep, but for those that it has already; their ordinals are given here, going on from its last
-    /// point. `request_json` is noted beside the sweep's own request, unless the sweep has all of its points. A sweep has
-    /// at most `limit` points.
+    /// point. The request is noted beside the sweep's own, unless the sweep has all of its points. A sweep has at most
+    /// `limit` points.
     ///
     /// # Errors
     /// When the database fails.
     pub async fn append_points(
         &self,
         sweep_id: &str,
-        base_json: &str,
-        physics_version: i64,
-        points: &[NewPoint],
-        request_json: &str,
+        addition: &Addition<'_>,
         limit: u64,
     ) -> Result<AppendOutcome> {
+        let Addition { base_json, physics_version, points, verification, request_json } = *addition;
         let mut tx = self.write().await?;
         let sweep: Option<(String, i64, i64, i64, i64)> =
             sqlx::query_as("SELECT owner, priority, points, cancelled, paused FROM sweep WHERE id = ?1")
@@ -179,7 +229,7 @@ impl Store {
         // All points of a sweep are of one version: the first tells.
         let version: Option<i64> = sqlx::query_scalar(
             "SELECT w.physics_version FROM point p JOIN work w ON w.key = p.work_key
-             WHERE p.sweep_id = ?1 ORDER BY p.ordinal LIMIT 1",
+             WHERE p.sweep_id = ?1 AND p.verifies = 0 ORDER BY p.ordinal LIMIT 1",
         )
         .bind(sweep_id)
         .fetch_optional(&mut *tx)
@@ -187,18 +237,19 @@ impl Store {
         if let Some(other) = version.filter(|version| *version != physics_version) {
             return Ok(AppendOutcome::OtherNumbers(other));
         }
-        let points = with_fuller(&mut tx, points).await?;
-        let has = points_of(&mut tx, sweep_id, &points).await?;
-        let mut seen: HashSet<&[u8]> = has.iter().map(Vec::as_slice).collect();
-        let fresh: Vec<NewPoint> = points
-            .iter()
-            .filter(|point| seen.insert(&point.work_key))
-            .zip(known + 1..)
-            .map(|(point, ordinal)| NewPoint { ordinal, ..point.clone() })
-            .collect();
+        let mut fresh = lacking(&mut tx, sweep_id, points).await?;
         if fresh.is_empty() {
             return Ok(AppendOutcome::Added(0));
         }
+        let mut ordinals = HashMap::new();
+        for (point, ordinal) in fresh.iter_mut().zip(known + 1..) {
+            ordinals.insert(point.ordinal, ordinal);
+            point.ordinal = ordinal;
+        }
+        let renumbered =
+            |run: &NewPoint| Some(NewPoint { ordinal: *ordinals.get(&run.ordinal)?, ..run.clone() });
+        let runs: Vec<NewPoint> = verification.runs.iter().filter_map(renumbered).collect();
+        let runs = with_fuller(&mut tx, &runs).await?;
         let total = known.unsigned_abs() + fresh.len() as u64;
         if total > limit {
             return Ok(AppendOutcome::TooMany(total));
@@ -213,11 +264,10 @@ impl Store {
             owner: &owner,
             priority,
             physics_version,
-            base: insert_base(&mut tx, base_json).await?,
             cache: CachePolicy::Reuse,
             is_paused: paused != 0,
         };
-        insert(&mut tx, &wanted, &fresh, now).await?;
+        insert(&mut tx, &wanted, (base_json, &fresh), (&verification.base_json, &runs), now).await?;
         sqlx::query(
             "INSERT INTO appended (sweep_id, number, request)
              SELECT ?1, coalesce(max(number), 0) + 1, ?2 FROM appended WHERE sweep_id = ?1",
@@ -231,7 +281,7 @@ impl Store {
             .bind(total as i64)
             .execute(&mut *tx)
             .await?;
-        count_points(&mut tx, sweep_id, known, now).await?;
+        count(&mut tx, sweep_id, known, now).await?;
         tx.commit().await?;
         Ok(AppendOutcome::Added(fresh.len() as u64))
     }
@@ -329,13 +379,13 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
 
 /// The points, those for which fuller work has a result as points of that work.
 async fn with_fuller<'p>(
-    tx: &mut Transaction<'static, Sqlite>,
+    connection: &mut SqliteConnection,
     points: &'p [NewPoint],
 ) -> Result<Cow<'p, [NewPoint]>> {
     let mut all = Cow::from(points);
     for (start, chunk) in (0..).step_by(ROWS_AT_ONCE).zip(points.chunks(ROWS_AT_ONCE)) {
         let fuller: Vec<WorkKey> = chunk.iter().filter_map(|point| point.fuller_key).collect();
-        let found = fuller_results(&mut **tx, &fuller).await?;
+        let found = fuller_results(&mut *connection, &fuller).await?;
         for (index, point) in (start..).zip(chunk) {
             if let Some(key) = point.fuller_key.filter(|key| found.contains(key)) {
                 all.to_mut()[index].work_key = key;
@@ -385,22 +435,37 @@ async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]
     Ok(missing)
 }
 
+/// The points that a sweep has not, each once; those for which fuller work has a result as points of that work.
+async fn lacking(
+    connection: &mut SqliteConnection,
+    sweep_id: &str,
+    points: &[NewPoint],
+) -> Result<Vec<NewPoint>> {
+    let points = with_fuller(connection, points).await?;
+    let mut seen: HashSet<WorkKey> = points_of(connection, sweep_id, &points)
+        .await?
+        .iter()
+        .map(|key| work_key(key))
+        .collect::<Result<_>>()?;
+    Ok(points.iter().filter(|point| seen.insert(point.work_key)).cloned().collect())
+}
+
 /// Keys of the given points that the sweep has already.
 async fn points_of(
-    tx: &mut Transaction<'static, Sqlite>,
+    connection: &mut SqliteConnection,
     sweep_id: &str,
     points: &[NewPoint],
 ) -> Result<Vec<Vec<u8>>> {
     let mut found = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
         let mut query = QueryBuilder::new("SELECT work_key FROM point WHERE sweep_id = ");
-        query.push_bind(sweep_id).push(" AND work_key IN (");
+        query.push_bind(sweep_id).push(" AND verifies = 0 AND work_key IN (");
         let mut list = query.separated(", ");
         for point in points {
             list.push_bind(point.work_key.as_slice());
         }
         query.push(")");
-        found.extend(query.build_query_scalar::<Vec<u8>>().fetch_all(&mut **tx).await?);
+        found.extend(query.build_query_scalar::<Vec<u8>>().fetch_all(&mut *connection).await?);
     }
     Ok(found)
 }
@@ -442,18 +507,26 @@ async fn insert_base(tx: &mut Transaction<'static, Sqlite>, text: &str) -> Resul
     Ok(hash)
 }
 
-/// Stores the points of a sweep and the work behind them, the latter at the end of its owner's order.
+/// Stores points of a sweep, the runs that verify some of them, and the work behind both, at the end of its owner's order:
+/// the points first. Each with the base that they change.
 async fn insert(
     tx: &mut Transaction<'static, Sqlite>,
     wanted: &Wanted<'_>,
-    points: &[NewPoint],
+    points: (&str, &[NewPoint]),
+    verification: (&str, &[NewPoint]),
     now: i64,
 ) -> Result<()> {
     let mut place = wanted.order.last;
-    for points in points.chunks(ROWS_AT_ONCE) {
-        insert_work(tx, wanted, points, place, now).await?;
-        insert_points(tx, wanted.sweep_id, points).await?;
-        place += PLACE_OF_A_POINT * points.len() as i64;
+    for (role, (base_json, rows)) in [(Role::Point, points), (Role::Verification, verification)] {
+        if rows.is_empty() {
+            continue;
+        }
+        let base = insert_base(tx, base_json).await?;
+        for rows in rows.chunks(ROWS_AT_ONCE) {
+            insert_work(tx, wanted, base, rows, place, now).await?;
+            insert_points(tx, wanted.sweep_id, role, rows).await?;
+            place += PLACE_OF_A_POINT * rows.len() as i64;
+        }
     }
     Ok(())
 }
@@ -461,6 +534,7 @@ async fn insert(
 async fn insert_work(
     tx: &mut Transaction<'static, Sqlite>,
     wanted: &Wanted<'_>,
+    base: [u8; 32],
     points: &[NewPoint],
     place: i64,
     now: i64,
@@ -472,7 +546,7 @@ async fn insert_work(
         row.push_bind(point.work_key.as_slice())
             .push_bind(&point.changes_json)
             .push_bind(place + PLACE_OF_A_POINT * number)
-            .push_bind(wanted.base.to_vec())
+            .push_bind(base.to_vec())
             .push_bind(wanted.physics_version)
             .push_bind(wanted.owner)
             .push("'queued'")
@@ -530,11 +604,15 @@ fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
 async fn insert_points(
     tx: &mut Transaction<'static, Sqlite>,
     sweep_id: &str,
+    role: Role,
     points: &[NewPoint],
 ) -> Result<()> {
-    let mut query = QueryBuilder::new("INSERT INTO point (sweep_id, ordinal, parameters, work_key) ");
+    let verifies = matches!(role, Role::Verification);
+    let mut query =
+        QueryBuilder::new("INSERT INTO point (sweep_id, verifies, ordinal, parameters, work_key) ");
     query.push_values(points, |mut row, point| {
         row.push_bind(sweep_id)
+            .push_bind(verifies)
             .push_bind(point.ordinal)
             .push_bind(&point.parameters_json)
             .push_bind(point.work_key.as_slice());
@@ -543,18 +621,28 @@ async fn insert_points(
     Ok(())
 }
 
-/// Counts the points of a sweep that are new, those after the ordinal `after`; from then on the counts follow the work.
-async fn count_points(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now: i64) -> Result<()> {
+/// Counts the points of a sweep that are new, those after the ordinal `after`, and their verifications; from then on the counts
+/// follow the work. Both values of `verifies` are named so that the new ones are found by the key, and not among all.
+async fn count(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now: i64) -> Result<()> {
     sqlx::query(
-        "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled, finished) = (
-             SELECT points_queued + coalesce(sum(w.state IN ('waiting', 'queued')), 0),
-                    points_running + coalesce(sum(w.state = 'leased'), 0),
-                    points_done + coalesce(sum(w.state = 'done'), 0),
-                    points_failed + coalesce(sum(w.state IN ('failed', 'dead')), 0),
-                    points_cancelled + coalesce(sum(w.state = 'cancelled'), 0),
-                    CASE WHEN points_queued + points_running
-                              + coalesce(sum(w.state IN ('waiting', 'queued', 'leased')), 0) = 0 THEN ?3 END
-             FROM point p JOIN work w ON w.key = p.work_key WHERE p.sweep_id = ?1 AND p.ordinal > ?2)
+        "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
+                           verifications, verifications_queued, verifications_running, verifications_done,
+                           verifications_failed, verifications_cancelled, finished) = (
+             SELECT points_queued + total(p.verifies = 0 AND w.state IN ('waiting', 'queued')),
+                    points_running + total(p.verifies = 0 AND w.state = 'leased'),
+                    points_done + total(p.verifies = 0 AND w.state = 'done'),
+                    points_failed + total(p.verifies = 0 AND w.state IN ('failed', 'dead')),
+                    points_cancelled + total(p.verifies = 0 AND w.state = 'cancelled'),
+                    verifications + total(p.verifies),
+                    verifications_queued + total(p.verifies AND w.state IN ('waiting', 'queued')),
+                    verifications_running + total(p.verifies AND w.state = 'leased'),
+                    verifications_done + total(p.verifies AND w.state = 'done'),
+                    verifications_failed + total(p.verifies AND w.state IN ('failed', 'dead')),
+                    verifications_cancelled + total(p.verifies AND w.state = 'cancelled'),
+                    CASE WHEN points_queued + points_running + verifications_queued + verifications_running
+                              + total(w.state IN ('waiting', 'queued', 'leased')) = 0 THEN ?3 END
+             FROM point p JOIN work w ON w.key = p.work_key
+             WHERE p.sweep_id = ?1 AND p.verifies IN (0, 1) AND p.ordinal > ?2)
          WHERE id = ?1",
     )
     .bind(id)

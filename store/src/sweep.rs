@@ -39,7 +39,9 @@ pub struct SweepRecord {
     pub finished: Option<i64>,
     /// Points by state.
     pub counts: StateCounts,
-    /// Sum of the points' progress, each 0 to 1; a point that is final counts whole.
+    /// Runs that verify points, by state.
+    pub verification: StateCounts,
+    /// Sum of the progress of points and of the runs that verify them, each 0 to 1; one that is final counts whole.
     pub progress: f64,
 }
 
@@ -77,6 +79,12 @@ struct SweepRow {
     points_done: i64,
     points_failed: i64,
     points_cancelled: i64,
+    verifications: i64,
+    verifications_queued: i64,
+    verifications_running: i64,
+    verifications_done: i64,
+    verifications_failed: i64,
+    verifications_cancelled: i64,
     running_progress: f64,
 }
 
@@ -88,7 +96,9 @@ macro_rules! select_sweeps {
             "SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags,
                     created, finished, points,
                     points_queued, points_running, points_done, points_failed, points_cancelled,
-                    CASE points_running WHEN 0 THEN 0.0 ELSE (
+                    verifications, verifications_queued, verifications_running, verifications_done,
+                    verifications_failed, verifications_cancelled,
+                    CASE points_running + verifications_running WHEN 0 THEN 0.0 ELSE (
                         SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
                         WHERE w.state = 'leased' AND p.sweep_id = sweep.id) END AS running_progress
              FROM sweep ",
@@ -97,8 +107,8 @@ macro_rules! select_sweeps {
     };
 }
 
-/// Whether a sweep that meets a condition wants the work: whether it has a point of it, and of work that has a result,
-/// whether it wants that computed anew.
+/// Whether a sweep that meets a condition wants the work: whether it has a point of it, or verifies one by it, and of work that
+/// has a result, whether it wants that computed anew.
 macro_rules! wanted {
     ($condition:literal) => {
         concat!(
@@ -163,8 +173,8 @@ impl Store {
             .await?)
     }
 
-    /// Cancels a sweep: its points that no other live sweep wants are cancelled, those under way as soon as their
-    /// worker hears of it. False if there is no such sweep.
+    /// Cancels a sweep: its points that no other live sweep wants are cancelled, and the runs that verify them; those under way as
+    /// soon as their worker hears of it. False if there is no such sweep.
     ///
     /// # Errors
     /// When the database fails.
@@ -258,8 +268,8 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Queues the failed and cancelled points of a sweep again, behind what their owner has in the queue; tells how
-    /// many pieces of work that is, or none if there is no such sweep. A cancelled sweep is wanted again.
+    /// Queues the failed and cancelled points of a sweep, and the runs that verify them, again, behind what their owner has in the
+    /// queue; tells how many pieces of work that is, or none if there is no such sweep. A cancelled sweep is wanted again.
     ///
     /// # Errors
     /// When the database fails.
@@ -287,7 +297,7 @@ impl Store {
             now!(),
             ", owner = ?3, vtime = ?4 + ?5 * turn.number, error = NULL, progress = 0,
                  crash_count = 0, failure_count = 0, cancel_requested = 0
-             FROM (SELECT p.work_key AS key, row_number() OVER (ORDER BY min(p.ordinal)) AS number
+             FROM (SELECT p.work_key AS key, row_number() OVER (ORDER BY min(p.verifies), min(p.ordinal)) AS number
                    FROM point p JOIN work w ON w.key = p.work_key
                    WHERE p.sweep_id = ?2 AND w.state IN ('failed', 'dead', 'cancelled')
                    GROUP BY p.work_key) AS turn
@@ -338,7 +348,22 @@ async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()
 
 impl SweepRow {
     fn record(self) -> SweepRecord {
-        let is_final = self.points_done + self.points_failed + self.points_cancelled;
+        let counts = StateCounts {
+            total: self.points,
+            queued: self.points_queued,
+            running: self.points_running,
+            done: self.points_done,
+            failed: self.points_failed,
+            cancelled: self.points_cancelled,
+        };
+        let verification = StateCounts {
+            total: self.verifications,
+            queued: self.verifications_queued,
+            running: self.verifications_running,
+            done: self.verifications_done,
+            failed: self.verifications_failed,
+            cancelled: self.verifications_cancelled,
+        };
         SweepRecord {
             id: self.id,
             name: self.name,
@@ -353,15 +378,9 @@ impl SweepRow {
             tags_json: self.tags,
             created: self.created,
             finished: self.finished,
-            counts: StateCounts {
-                total: self.points,
-                queued: self.points_queued,
-                running: self.points_running,
-                done: self.points_done,
-                failed: self.points_failed,
-                cancelled: self.points_cancelled,
-            },
-            progress: is_final as f64 + self.running_progress,
+            counts,
+            verification,
+            progress: (counts.final_ones() + verification.final_ones()) as f64 + self.running_progress,
         }
     }
 }

@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use drillsweep_store::{
-    CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, Renewal, Role, Store, StoreConfig,
-    SubmitOutcome, WorkState,
+    CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Renewal, Role, Store,
+    StoreConfig, SubmitOutcome, WorkState,
 };
 
 const POINTS: i64 = 1_000;
@@ -191,6 +191,7 @@ async fn killed_workers_lose_and_double_nothing() {
         base_json: "{}".to_owned(),
         physics_version: 1,
         points: points.collect(),
+        verification: NewVerification::default(),
     };
     assert_eq!(store.submit_sweep(&sweep).await.unwrap(), SubmitOutcome::Created);
 

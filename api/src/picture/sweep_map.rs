@@ -17,6 +17,8 @@ const SCALE_WIDTH: f64 = 18.0;
 /// Steps of the scale of colours.
 const SCALE_STEPS: usize = 128;
 const VALUE_SIZE: f64 = 12.0;
+/// From the corner of a cell to the middle of its mark.
+const MARK_INSET: f64 = 10.0;
 /// Values of one parameter, at most, up to which a sweep is drawn as a field of cells.
 const MOST_CELLS: usize = 200;
 
@@ -36,7 +38,7 @@ const VIRIDIS: [[f64; 3]; 9] = [
 /// One value a point of a sweep, by colour, over two parameters.
 ///
 /// Where the points fill a grid, cells of equal size stand for its values, whatever their distance; else each point
-/// is a mark at its place. A point without a value is crossed out.
+/// is a mark at its place. A point without a value is crossed out; one that stands out has a diamond.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SweepMap {
     /// The title; may be empty.
@@ -62,6 +64,8 @@ pub struct MapPoint {
     pub y: f64,
     /// The value; not finite where there is none.
     pub value: f64,
+    /// Whether the point stands out among the others: it gets a diamond.
+    pub is_marked: bool,
 }
 
 impl SweepMap {
@@ -173,7 +177,7 @@ impl Places {
         x_ticks: &[Tick],
         y_ticks: &[Tick],
     ) -> Shape {
-        let mut shapes = Vec::new();
+        let (mut shapes, mut marks) = (Vec::new(), Vec::new());
         match self {
             Places::Grid(xs, ys) => {
                 let (width, height) = (area.width() / xs.len() as f64, area.height() / ys.len() as f64);
@@ -183,7 +187,18 @@ impl Places {
                     let bottom = area.bottom - height * row as f64;
                     let cell = Rectangle { left, right: left + width, top: bottom - height, bottom };
                     draw_cell(&mut shapes, &cell, point.value, scale);
+                    if point.is_marked {
+                        // In the corner, clear of the value; in the middle of a cell that is too small for both.
+                        let (x, y) = (MARK_INSET.min(0.5 * width), MARK_INSET.min(0.5 * height));
+                        marks.push(Shape::Marker(
+                            [cell.left + x, cell.top + y],
+                            Marker::Diamond,
+                            Colour::TEXT,
+                        ));
+                    }
                 }
+                // Above all cells, which small ones would else cover.
+                shapes.append(&mut marks);
             }
             Places::Scattered(x, y) => {
                 shapes.push(plot_area::grid(area, x_ticks, y_ticks));
@@ -191,7 +206,10 @@ impl Places {
                     let (Some(x), Some(y)) = (x.fraction(point.x), y.fraction(point.y)) else { continue };
                     let at = plot_area::position(area, x, y);
                     shapes.push(match scale.fraction(point.value) {
-                        Some(fraction) => Shape::Marker(at, Marker::Circle, colour(fraction)),
+                        Some(fraction) => {
+                            let marker = if point.is_marked { Marker::Diamond } else { Marker::Circle };
+                            Shape::Marker(at, marker, colour(fraction))
+                        }
                         None => Shape::Marker(at, Marker::Cross, Colour::FRAME),
                     });
                 }
@@ -269,7 +287,12 @@ mod tests {
         let places = [0.01, 0.04, 0.06].into_iter().enumerate();
         places
             .flat_map(|(i, x)| {
-                (0..4).map(move |j| MapPoint { x, y: f64::from(j), value: (10 * i as i32 + j).into() })
+                (0..4).map(move |j| MapPoint {
+                    x,
+                    y: f64::from(j),
+                    value: (10 * i as i32 + j).into(),
+                    is_marked: false,
+                })
             })
             .collect()
     }
@@ -321,7 +344,7 @@ mod tests {
     fn a_design_without_a_grid_is_scattered() {
         let points: Vec<MapPoint> = (0..40)
             .map(|k| (f64::from(k), f64::from(k * 17 % 40)))
-            .map(|(x, y)| MapPoint { x, y, value: x + y })
+            .map(|(x, y)| MapPoint { x, y, value: x + y, is_marked: false })
             .collect();
         let svg = map(points).svg();
         let document = Document::parse(&svg).expect("well-formed XML");
@@ -332,6 +355,19 @@ mod tests {
     }
 
     #[test]
+    fn points_that_stand_out_have_a_diamond_above_all_cells() {
+        let mut points = grid();
+        assert!(!map(points.clone()).svg().contains(r#"class="marker""#));
+        for marked in [2, 7] {
+            points[marked].is_marked = true;
+        }
+        let svg = map(points).svg();
+        assert_eq!(svg.matches(r#"class="marker""#).count(), 2);
+        let last_cell = svg[..svg.find(r#"class="scale""#).expect("a scale")].rfind("<rect").expect("cells");
+        assert!(svg.find(r#"class="marker""#).expect("a marker") > last_cell);
+    }
+
+    #[test]
     fn points_without_a_value_are_crossed_out_and_odd_values_stay_on_the_page() {
         let mut points = grid();
         points[5].value = f64::NAN;
@@ -339,11 +375,11 @@ mod tests {
         assert_eq!(crossed.matches("<polyline").count(), 2);
         let cases = [
             vec![],
-            vec![MapPoint { x: f64::NAN, y: 0.0, value: 1.0 }],
-            vec![MapPoint { x: 1.0, y: 1.0, value: f64::NAN }],
+            vec![MapPoint { x: f64::NAN, value: 1.0, ..MapPoint::default() }],
+            vec![MapPoint { x: 1.0, y: 1.0, value: f64::NAN, is_marked: true }],
             vec![
-                MapPoint { x: f64::MAX, y: f64::MIN, value: 1e300 },
-                MapPoint { x: 0.0, y: 0.0, value: -1e300 },
+                MapPoint { x: f64::MAX, y: f64::MIN, value: 1e300, is_marked: true },
+                MapPoint { value: -1e300, ..MapPoint::default() },
             ],
             vec![MapPoint::default(); 3],
         ];

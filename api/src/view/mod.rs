@@ -5,4 +5,5 @@ pub mod node;
 pub mod orbit;
 pub mod points;
 pub mod spectrum;
+pub mod verification;
 pub mod window;

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use crate::point::{PointError, PointState};
 use crate::table::{Column, Table};
+use crate::view::verification::bias_column;
 
 /// What the table needs to know of a point.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,12 +18,14 @@ pub struct PointSummary {
     pub parameters: IndexMap<String, f64>,
     /// The scalar results, if there are any.
     pub summary: Option<Map<String, Value>>,
+    /// The bias of its statistics, by their names, where it is verified.
+    pub biases: IndexMap<String, f64>,
     /// Why it failed, if it did.
     pub error: Option<PointError>,
 }
 
-/// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, and the `error` with its
-/// `error_time` \[s\] and `error_node`.
+/// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, of points that are verified the bias of each
+/// statistic NAME against the reference as `bias_NAME`, and the `error` with its `error_time` \[s\] and `error_node`.
 ///
 /// Columns are the union over all points, in the order in which they are first met; a point that has no
 /// value has `null` there. Fields of the summary that are objects become columns named
@@ -49,6 +52,13 @@ pub fn points(rows: &[PointSummary]) -> Table {
             table
                 .push(*name, column(&summaries.iter().map(|summary| summary.get(*name)).collect::<Vec<_>>()));
         }
+    }
+
+    let statistics: IndexSet<&str> =
+        rows.iter().flat_map(|row| row.biases.keys().map(String::as_str)).collect();
+    for name in statistics {
+        let values = rows.iter().map(|row| row.biases.get(name).copied().unwrap_or(f64::NAN));
+        table.push(bias_column(name), Column::Number(values.collect()));
     }
 
     let errors = || rows.iter().map(|row| row.error.as_ref());
@@ -115,6 +125,7 @@ mod tests {
             state: PointState::Succeeded,
             parameters: parameters(1200.0),
             summary: summary.as_object().cloned(),
+            biases: [("orbit_radius_rms_49".to_owned(), -0.25)].into(),
             error: None,
         };
         let failed = PointSummary {
@@ -122,6 +133,7 @@ mod tests {
             state: PointState::Failed,
             parameters: parameters(1500.0),
             summary: None,
+            biases: IndexMap::new(),
             error: Some(PointError {
                 class: FailureClass::Physical,
                 reason: "diverged".to_owned(),
@@ -141,11 +153,17 @@ mod tests {
                 "residual": [0.5, null],
                 "orbit.radius": [0.037, null],
                 "regimes": ["[\"laminar\"]", null],
+                "bias_orbit_radius_rms_49": [-0.25, null],
                 "error": [null, "diverged"],
                 "error_time": [null, 1.5],
                 "error_node": [null, 49],
             })
         );
-        assert_eq!(json["units"], json!({"mud_density": "kg/m3", "error_time": "s", "residual": "J"}));
+        assert_eq!(
+            json["units"],
+            json!({
+                "mud_density": "kg/m3", "error_time": "s", "residual": "J", "bias_orbit_radius_rms_49": "1",
+            })
+        );
     }
 }

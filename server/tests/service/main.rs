@@ -14,3 +14,4 @@ mod results;
 mod shutdown;
 mod submit;
 mod trust;
+mod verification;

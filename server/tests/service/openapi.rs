@@ -51,6 +51,7 @@ fn every_route_is_documented() {
         "get /v1/sweeps/{id}/points",
         "get /v1/failures",
         "get /v1/sweeps/{id}/table",
+        "get /v1/sweeps/{id}/verification",
         "get /v1/sweeps/{id}/events",
         "get /v1/sweeps/{id}/export",
         "post /v1/runs",

@@ -1,8 +1,8 @@
 //! What an engine must give the tests, and what they have in common.
 
 use drillsweep_store::{
-    CachePolicy, Claim, NewArtifact, NewPoint, NewResult, NewSweep, PointRecord, Role, ScenarioText, Store,
-    StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
+    Addition, CachePolicy, Claim, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, PointRecord,
+    Role, ScenarioText, Store, StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 
 pub(crate) const PHYSICS: i64 = 1;
@@ -93,7 +93,35 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         base_json: scenario(id, 0).base_json,
         physics_version: PHYSICS,
         points: numbers.into_iter().enumerate().map(point).collect(),
+        verification: NewVerification::default(),
     }
+}
+
+/// The same with runs that verify some of its points: for each the point's ordinal and the run's work item.
+pub(crate) fn verified(sweep: NewSweep, runs: &[(i64, u32)]) -> NewSweep {
+    NewSweep { verification: verification(runs), ..sweep }
+}
+
+/// Runs that verify points: for each the point's ordinal and the run's work item.
+pub(crate) fn verification(runs: &[(i64, u32)]) -> NewVerification {
+    let run = |&(ordinal, number): &(i64, u32)| NewPoint {
+        ordinal,
+        parameters_json: format!(r#"{{"flow_rate":{number}}}"#),
+        work_key: key(number),
+        fuller_key: None,
+        changes_json: scenario("", number).changes_json,
+    };
+    NewVerification { base_json: scenario("reference", 0).base_json, runs: runs.iter().map(run).collect() }
+}
+
+/// Points to add to a sweep, without runs that verify them.
+pub(crate) fn addition<'a>(
+    base_json: &'a str,
+    points: &'a [NewPoint],
+    request_json: &'a str,
+) -> Addition<'a> {
+    static NONE: NewVerification = NewVerification { base_json: String::new(), runs: Vec::new() };
+    Addition { base_json, physics_version: PHYSICS, points, verification: &NONE, request_json }
 }
 
 /// The scenario of a work item of a sweep.

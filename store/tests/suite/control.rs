@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use drillsweep_store::{
-    AppendOutcome, CachePolicy, FailureClass, NewArtifact, NewPoint, NewResult, NewSweep, QueueDepths,
-    StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
+    Addition, AppendOutcome, CachePolicy, FailureClass, NewArtifact, NewPoint, NewResult, NewSweep,
+    QueueDepths, StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
 
 use crate::bench::{
-    Engine, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
-    sweep_record,
+    Engine, PHYSICS, addition, claim, claim_or_none, finish, key, point_record, scenario, states, submit,
+    sweep, sweep_record,
 };
 
 const LONG_AGO: Duration = Duration::from_secs(86_400);
@@ -97,9 +97,9 @@ pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {
     assert!(sweep_record(&store, "s").await.finished.is_some());
     let points: Vec<NewPoint> = sweep("s", [2, 3, 3, 4]).points;
     let base = scenario("s", 0).base_json;
-    let append = async |limit| {
-        store.append_points("s", &base, PHYSICS, &points, r#"{"added":1}"#, limit).await.unwrap()
-    };
+    let addition = addition(&base, &points, r#"{"added":1}"#);
+    let append = async |limit| store.append_points("s", &addition, limit).await.unwrap();
+    assert_eq!(store.lacking_points("s", &points).await.unwrap(), [2, 4]);
     assert_eq!(append(3).await, AppendOutcome::TooMany(4));
     assert_eq!(append(4).await, AppendOutcome::Added(2));
     assert_eq!(append(4).await, AppendOutcome::Added(0));
@@ -115,14 +115,15 @@ pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {
     let finished = sweep_record(&store, "s").await.finished;
     assert!(finished.is_some());
     let later = engine.after(60_000).await;
-    let again = later.append_points("s", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    let again = later.append_points("s", &addition, 9).await.unwrap();
     assert_eq!(again, AppendOutcome::Added(0));
     assert_eq!(sweep_record(&store, "s").await.finished, finished, "nothing was added, nothing ends anew");
-    let others = store.append_points("s", &base, PHYSICS + 1, &points, "{}", 9).await.unwrap();
+    let of_others = Addition { physics_version: PHYSICS + 1, ..addition };
+    let others = store.append_points("s", &of_others, 9).await.unwrap();
     assert_eq!(others, AppendOutcome::OtherNumbers(PHYSICS));
     assert!(store.cancel_sweep("s").await.unwrap());
     assert_eq!(append(9).await, AppendOutcome::Cancelled);
-    let none = store.append_points("t", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    let none = store.append_points("t", &addition, 9).await.unwrap();
     assert_eq!(none, AppendOutcome::NoSuchSweep);
 }
 
@@ -136,7 +137,7 @@ pub(crate) async fn what_is_added_to_a_paused_sweep_waits_with_the_rest<E: Engin
     assert!(store.pause_sweep("s", true).await.unwrap());
     let points = sweep("s", [2, 3]).points;
     let base = scenario("s", 0).base_json;
-    let added = store.append_points("s", &base, PHYSICS, &points, "{}", 9).await.unwrap();
+    let added = store.append_points("s", &addition(&base, &points, "{}"), 9).await.unwrap();
     assert_eq!(added, AppendOutcome::Added(2));
     assert_eq!(claim_or_none(&store, "w").await, None);
     assert!(store.pause_sweep("s", false).await.unwrap());
@@ -149,7 +150,7 @@ pub(crate) async fn what_is_added_to_a_paused_sweep_waits_with_the_rest<E: Engin
 /// Adds a point to a sweep.
 async fn append_one(store: &Store, id: &str, number: u32, request: &str) {
     let (points, base) = (sweep(id, [number]).points, scenario(id, 0).base_json);
-    let added = store.append_points(id, &base, PHYSICS, &points, request, 100_000).await.unwrap();
+    let added = store.append_points(id, &addition(&base, &points, request), 100_000).await.unwrap();
     assert_eq!(added, AppendOutcome::Added(1));
 }
 
@@ -331,7 +332,7 @@ pub(crate) async fn only_what_is_known_is_taken_or_nothing_is_stored<E: Engine>(
         ..sweep(id, numbers.iter().copied())
     };
     let outcome = store.submit_sweep(&only("some", &[1, 3, 2, 4])).await.unwrap();
-    assert_eq!(outcome, SubmitOutcome::NotComputed(vec![2, 4]));
+    assert_eq!(outcome, SubmitOutcome::NotComputed { points: vec![2, 4], verifications: vec![] });
     assert_eq!(store.sweep("some").await.unwrap(), None);
     submit(&store, &only("all", &[1, 2])).await;
     assert_eq!(states(&store, "all").await, [WorkState::Done, WorkState::Failed]);

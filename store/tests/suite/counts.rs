@@ -1,10 +1,10 @@
 //! A sweep's counts, end and events follow its points through whatever happens to them.
 
-use drillsweep_store::{Claim, FailureClass, StateCounts, Store, WorkState};
+use drillsweep_store::{Addition, Claim, FailureClass, StateCounts, Store, WorkState};
 
 use crate::bench::{
-    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, scenario, states, submit, sweep,
-    sweep_record,
+    Engine, LEASE_MS, addition, claim, claim_or_none, finish, key, scenario, states, submit, sweep,
+    sweep_record, verification, verified,
 };
 
 /// A small generator (xorshift): the same numbers in every run.
@@ -38,9 +38,24 @@ async fn check(store: &Store, sweeps: &[String], step: usize) {
         let record = sweep_record(store, id).await;
         let expected = recount(&states);
         assert_eq!(record.counts, expected, "sweep {id} after step {step}");
-        let is_open = expected.queued + expected.running > 0;
+        let runs: Vec<WorkState> =
+            store.verifications(id).await.unwrap().into_iter().map(|run| run.state).collect();
+        let of_runs = recount(&runs);
+        assert_eq!(record.verification, of_runs, "sweep {id} after step {step}");
+        let is_open = expected.queued + expected.running + of_runs.queued + of_runs.running > 0;
         assert_eq!(record.finished.is_none(), is_open, "sweep {id} after step {step}: {record:?}");
     }
+}
+
+/// Runs that verify some of so many points. Some are of the work that is a point's own, here or elsewhere.
+fn runs(dice: &mut Dice, points: usize) -> Vec<(i64, u32)> {
+    let mut runs = Vec::new();
+    for ordinal in 1..=points as i64 {
+        if dice.roll(3) == 0 {
+            runs.push((ordinal, 10 + dice.roll(20) as u32));
+        }
+    }
+    runs
 }
 
 pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_random_history<E: Engine>() {
@@ -57,7 +72,8 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
                     let id = format!("s{step}");
                     // Few work items, so that sweeps share them and have some of them twice.
                     let numbers: Vec<u32> = (0..1 + dice.roll(8)).map(|_| dice.roll(20) as u32).collect();
-                    submit(&store, &sweep(&id, numbers)).await;
+                    let runs = runs(&mut dice, numbers.len());
+                    submit(&store, &verified(sweep(&id, numbers), &runs)).await;
                     sweeps.push(id);
                 }
                 0..=3 => claims.extend(claim_or_none(&store, "w").await),
@@ -76,8 +92,10 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
                     let id = &sweeps[dice.roll(sweeps.len())];
                     let points = sweep(id, (0..1 + dice.roll(4)).map(|_| dice.roll(20) as u32)).points;
                     let base = scenario(id, 0).base_json;
+                    let verification = verification(&runs(&mut dice, points.len()));
+                    let addition = Addition { verification: &verification, ..addition(&base, &points, "{}") };
                     // A sweep that is cancelled, or has all of them, stays as it is.
-                    store.append_points(id, &base, PHYSICS, &points, "{}", 100).await.unwrap();
+                    store.append_points(id, &addition, 100).await.unwrap();
                 }
                 kind if !claims.is_empty() => {
                     // Some of these have lost their lease: then nothing may change.

@@ -112,6 +112,15 @@ macro_rules! conformance {
                 a_token_ends_with_its_time_or_when_it_is_revoked_and_the_store_stays_closed,
                 the_last_use_is_noted_within_the_hour,
             }
+            verification {
+                runs_come_after_the_points_and_end_the_sweep,
+                a_run_is_shared_with_whoever_asks_for_that_very_point,
+                runs_are_cancelled_held_hurried_and_retried_with_their_sweep,
+                a_run_that_another_live_sweep_wants_goes_on,
+                a_run_is_kept_as_long_as_its_sweep,
+                added_points_bring_their_runs,
+                where_nothing_is_computed_runs_must_be_known_too,
+            }
         }
     };
     ($engine:ident: $($module:ident { $($test:ident,)+ })+) => {
@@ -140,3 +149,4 @@ mod sqlite;
 mod submit;
 mod table;
 mod token;
+mod verification;

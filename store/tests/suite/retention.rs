@@ -9,7 +9,7 @@ use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep};
 
 const HOUR: u64 = 3_600;
 const DAY: u64 = 24 * HOUR;
-const DAY_MS: i64 = DAY as i64 * 1_000;
+pub(crate) const DAY_MS: i64 = DAY as i64 * 1_000;
 
 /// Histories for 30 days, all else for a year.
 fn policy() -> RetentionPolicy {
@@ -21,7 +21,7 @@ fn policy() -> RetentionPolicy {
     }
 }
 
-async fn collect(store: &Store) -> Garbage {
+pub(crate) async fn collect(store: &Store) -> Garbage {
     let told = store.collect_garbage(&policy(), true).await.unwrap();
     let done = store.collect_garbage(&policy(), false).await.unwrap();
     assert_eq!(told, done, "a dry run tells what is then done");

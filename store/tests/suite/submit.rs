@@ -8,7 +8,7 @@ use drillsweep_store::{
 };
 
 use crate::bench::{
-    Engine, PHYSICS, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
+    Engine, addition, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
     sweep_record,
 };
 
@@ -122,7 +122,7 @@ pub(crate) async fn a_point_whose_result_is_part_of_a_fuller_one_is_not_computed
 
     // What a sweep has by a fuller result it is not given again.
     let points = partly("more").points;
-    let added = store.append_points("part", "{}", PHYSICS, &points[..1], "{}", 10).await.unwrap();
+    let added = store.append_points("part", &addition("{}", &points[..1], "{}"), 10).await.unwrap();
     assert_eq!(added, AppendOutcome::Added(0));
     // Asked to compute anew, a point is computed as it was asked for.
     submit(&store, &NewSweep { cache: CachePolicy::Refresh, ..partly("anew") }).await;

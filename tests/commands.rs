@@ -165,3 +165,43 @@ fn scenarios_are_listed_and_printed_as_json() {
     assert!(json("", &["scenario", "--json"]).as_array().unwrap().iter().any(|s| s["name"] == "paper-200m"));
     assert_eq!(json("", &["scenario", "paper-200m", "--json"])["mud"]["density"], 1200.0);
 }
+
+#[test]
+fn a_sample_of_points_is_verified_by_the_reference() {
+    let data = tempfile::tempdir().unwrap();
+    let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);
+    let verified = |accuracy: &str, number: &str| {
+        let accuracy = format!("accuracy={accuracy}");
+        let arguments = [
+            &["submit", "paper-200m", "--flow-rate", "0.01:0.05:5", "--verify", number, "--json"][..],
+            &SHORT[2..],
+            &["--set", "recording.rate_hz=500", "--set", &accuracy],
+        ];
+        json(&server, &arguments.concat())
+    };
+    // The string is dropped into its motion, and 0.2 s of it a standard step resolves as well as the reference.
+    let standard = verified("\"standard\"", "0.4");
+    let verification = &standard["verification"];
+    assert_eq!((&standard["state"], &verification["counts"]["succeeded"]), (&json!("completed"), &json!(2)));
+    let bias = verification["worst"]["bias"].as_f64().unwrap();
+    assert!(bias.abs() < 0.02 && verification.get("warnings").is_none(), "{verification}");
+    // The same reference runs do for a method that is far too coarse, and promises nothing.
+    let coarse = verified(r#"{"integrator": "generalized_alpha", "step": 0.002, "spectral_radius": 0}"#, "2");
+    let verification = &coarse["verification"];
+    let worst = &verification["worst"];
+    assert!(worst["bias"].as_f64().unwrap().abs() > 10.0 * bias.abs(), "{verification} against {bias}");
+    assert!(worst.get("promised").is_none() && verification.get("warnings").is_none(), "{verification}");
+    let check = json(&server, &["check", "--data", data.path().to_str().unwrap(), "--json"]);
+    assert_eq!(check["results"], 5 + 2 + 5, "{check}");
+
+    let id = coarse["id"].as_str().unwrap();
+    let shown = text(&server, &["show", id]);
+    let said =
+        format!("verified by the reference: 2 of 2; bias of {} up to", worst["statistic"].as_str().unwrap());
+    assert!(shown.lines().nth(1).unwrap().starts_with(&said), "{shown}");
+    let table = ureq::get(format!("{server}/v1/sweeps/{id}/table?format=csv")).call().unwrap();
+    let table = table.into_body().read_to_string().unwrap();
+    assert!(table.lines().next().unwrap().contains("bias_orbit_radius_rms_49"), "{table}");
+    let refused = run(&server, &["submit", "paper-200m", "--verify", "1.5"]);
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("/verify"));
+}

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::client::{Client, ServerArguments};
 use crate::print;
 use crate::simulate::{parse_set, parse_value};
-use crate::sweeps::{percent_encoded, print_sweep};
+use crate::sweeps::{percent_encoded, print_sweep, verification_line, warn_of_bias};
 use crate::watch::{check, follow};
 
 #[derive(Args)]
@@ -30,6 +30,10 @@ pub(crate) struct SubmitArguments {
     /// `{"orbits": {"window": {"from": 40, "to": 60}, "decimation": 4}}`.
     #[arg(long, value_parser = parse_value)]
     outputs: Option<Value>,
+    /// Run some of the points again by the reference, to see how far the accuracy can be trusted: a part of them such as 0.05, or a
+    /// number of them.
+    #[arg(long)]
+    verify: Option<f64>,
     /// A name for people.
     #[arg(long)]
     name: Option<String>,
@@ -155,6 +159,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     if let Some(outputs) = &arguments.outputs {
         request.insert("outputs".into(), outputs.clone());
     }
+    if let Some(verify) = arguments.verify {
+        request.insert("verify".into(), json!(verify));
+    }
     if let Some(priority) = arguments.priority {
         request.insert("priority".into(), json!(priority));
     }
@@ -181,6 +188,11 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
         print(id);
     }
     let sweep = if arguments.detach { sweep } else { follow(&client, id)? };
+    if let Some(verification) = sweep.get("verification") {
+        // To the log: what is printed is the identifier alone, for scripts.
+        tracing::info!("{}", verification_line(verification));
+    }
+    warn_of_bias(&sweep);
     if arguments.json {
         print(&serde_json::to_string_pretty(&sweep)?);
     }

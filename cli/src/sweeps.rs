@@ -168,6 +168,7 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
         return print_json(&sweep);
     }
     print(&sweep_line(&sweep));
+    warn_of_bias(&sweep);
     let names: Vec<&String> = points
         .first()
         .and_then(|point| point["parameters"].as_object())
@@ -325,7 +326,7 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A sweep in one line.
+/// A sweep in one line, and in a second what verifying some of its points has shown.
 pub(crate) fn sweep_line(sweep: &Value) -> String {
     let counts = &sweep["counts"];
     let mut line =
@@ -335,7 +336,36 @@ pub(crate) fn sweep_line(sweep: &Value) -> String {
             let _ = write!(line, ", {} {state}", counts[state]);
         }
     }
+    if let Some(verification) = sweep.get("verification") {
+        let _ = write!(line, "\n{}", verification_line(verification));
+    }
     line
+}
+
+/// How far the points are verified, and the worst bias of orbit size.
+pub(crate) fn verification_line(verification: &Value) -> String {
+    let (counts, worst) = (&verification["counts"], &verification["worst"]);
+    let mut line = format!("verified by the reference: {} of {}", counts["succeeded"], counts["total"]);
+    for state in ["running", "queued", "failed", "cancelled"] {
+        if counts[state].as_u64().is_some_and(|number| number > 0) {
+            let _ = write!(line, ", {} {state}", counts[state]);
+        }
+    }
+    if let Some(bias) = worst["bias"].as_f64() {
+        let (statistic, ordinal) = (text(&worst["statistic"]), text(&worst["ordinal"]));
+        let _ = write!(line, "; bias of {statistic} up to {:+.2} % (point {ordinal})", 100.0 * bias);
+    }
+    if let Some(promised) = worst["promised"].as_f64() {
+        let _ = write!(line, ", promised {:.1} %", 100.0 * promised);
+    }
+    line
+}
+
+/// Warns where verifying points has shown biases beyond what the accuracy promises.
+pub(crate) fn warn_of_bias(sweep: &Value) {
+    for warning in entries(&sweep["verification"]["warnings"]) {
+        tracing::warn!("{}", text(warning));
+    }
 }
 
 fn print_point(point: &Value) -> anyhow::Result<()> {
@@ -431,5 +461,26 @@ mod tests {
             "counts": {"total": 3, "queued": 0, "running": 1, "succeeded": 2, "failed": 0, "cancelled": 0},
         });
         assert_eq!(sweep_line(&sweep), "a running: 3 points, 2 succeeded, 1 running");
+    }
+
+    #[test]
+    fn a_second_line_says_what_verifying_has_shown() {
+        let mut sweep = json!({
+            "id": "a", "state": "running",
+            "counts": {"total": 3, "queued": 0, "running": 0, "succeeded": 3, "failed": 0, "cancelled": 0},
+            "verification": {"counts": {"total": 2, "queued": 0, "running": 1, "succeeded": 1, "failed": 0, "cancelled": 0}},
+        });
+        assert_eq!(
+            sweep_line(&sweep),
+            "a running: 3 points, 3 succeeded\nverified by the reference: 1 of 2, 1 running"
+        );
+        sweep["verification"]["worst"] =
+            json!({"statistic": "orbit_radius_rms_49", "ordinal": 7, "bias": 0.4, "promised": 0.02});
+        let line = sweep_line(&sweep);
+        let (_, verified) = line.split_once('\n').unwrap();
+        assert_eq!(
+            verified,
+            "verified by the reference: 1 of 2, 1 running; bias of orbit_radius_rms_49 up to +40.00 % (point 7), promised 2.0 %"
+        );
     }
 }

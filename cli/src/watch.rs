@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::client::{Client, ServerArguments};
 use crate::print;
-use crate::sweeps::{percent_encoded, sweep_line};
+use crate::sweeps::{percent_encoded, sweep_line, warn_of_bias};
 
 #[derive(Args)]
 pub(crate) struct WatchArguments {
@@ -20,9 +20,10 @@ pub(crate) struct WatchArguments {
     json: bool,
 }
 
-/// Watches a sweep until every point is final; fails if some have no result.
+/// Watches a sweep until every point is final, and the reference runs that verify some; fails if points have no result.
 pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
     let sweep = follow(&Client::new(&arguments.server), &arguments.sweep)?;
+    warn_of_bias(&sweep);
     if arguments.json {
         print(&serde_json::to_string_pretty(&sweep)?);
     } else {
@@ -42,8 +43,13 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Value> {
         let counts = &sweep["counts"];
         let count = |name: &str| counts[name].as_u64().unwrap_or(0);
         bar.set_position((sweep["progress"].as_f64().unwrap_or(0.0) * 1000.0) as u64);
+        let verified = &sweep["verification"]["counts"];
+        let verified = match verified["total"].as_u64() {
+            Some(total) => format!(", {} of {total} verified", verified["succeeded"]),
+            None => String::new(),
+        };
         bar.set_message(format!(
-            "{} of {} points, {} running, {} failed",
+            "{} of {} points, {} running, {} failed{verified}",
             count("succeeded"),
             count("total"),
             count("running"),

@@ -47,6 +47,25 @@ def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> 
         assert other == frame["orbit_radius_rms_49"].tolist() == table.to_polars()["orbit_radius_rms_49"].to_list()
 
 
+def test_a_sample_is_verified_by_the_reference(client: Client) -> None:
+    # Node 49 settles onto the wall within this second; a coarse method gets its orbit wrong.
+    coarse = {**SHORT, "accuracy": {"integrator": "generalized_alpha", "step": 0.002}, "recording.rate_hz": 500}
+    sweep = client.submit("paper-200m", set=coarse, axes={"flow_rate": [0.01, 0.02, 0.04]}, verify=2)
+    assert sweep.wait(timeout=120.0).counts.succeeded == 3
+    assert sweep.verified is not None
+    assert (sweep.verified.total, sweep.verified.succeeded) == (2, 2)
+    verification = sweep.verification()
+    found = verification.attributes["statistics"]["orbit_radius_rms_49"]
+    assert found["verified"] == verification.rows == 2
+    value, reference = verification["orbit_radius_rms_49"], verification["reference_orbit_radius_rms_49"]
+    assert verification["bias_orbit_radius_rms_49"].tolist() == ((value - reference) / reference).tolist()
+    assert verification.attributes["warnings"] == [], "a method in full promises nothing"
+    assert sweep.table().to_pandas()["bias_orbit_radius_rms_49"].notna().sum() == 2
+    with pytest.raises(InvalidRequest, match="verify"):
+        client.submit("paper-200m", verify=1.5)
+    assert client.run("paper-200m", set=SHORT, outputs="summary").verified is None
+
+
 def test_outputs_say_what_is_kept(client: Client) -> None:
     density = {**SHORT, "mud.density": 1350}
     run = client.run("paper-200m", set=density, outputs="summary").wait(timeout=120.0)

@@ -67,6 +67,7 @@ class Client:
         seed: int | None = None,
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
         outputs: str | Mapping[str, Any] | None = None,
+        verify: float | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
@@ -91,6 +92,8 @@ class Client:
                 (`frame.to_dict("records")`).
             outputs: What is kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
                 `{"orbits": {"nodes": [{"node": 49}], "window": {"from": 40, "to": 60}, "decimation": 4}}` or `"full"`.
+            verify: How many of the points are run again by the reference, to see how far the accuracy can be trusted: a
+                part of them below 1, such as 0.05, or a number; `Sweep.verification` has what is found.
             name: A name for people.
             owner: Whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
@@ -105,7 +108,7 @@ class Client:
             InvalidRequest: With everything that is wrong with it, by field.
             NoResult: Under `cache="only"`, where points have not been computed; the text names them.
         """
-        fields |= design_to_json(design, samples, seed, points) | {"outputs": outputs}
+        fields |= design_to_json(design, samples, seed, points) | {"outputs": outputs, "verify": verify}
         body = _request(preset, scenario, set, axes, name, owner, priority, tags, fields)
         return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key, cache))
 

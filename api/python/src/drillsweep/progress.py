@@ -38,6 +38,8 @@ class ProgressBar:
         text = f"[{bar}] {sweep.progress:4.0%} {counts.succeeded} of {counts.total} points, {counts.running} running"
         if counts.failed:
             text += f", {counts.failed} failed"
+        if sweep.verified:
+            text += f", {sweep.verified.succeeded} of {sweep.verified.total} verified"
         text += f", {_clock(elapsed)}"
         done = sweep.progress - self._first
         if done > 0.0 and sweep.progress < 1.0:

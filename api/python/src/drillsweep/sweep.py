@@ -36,7 +36,7 @@ UNCHANGED = Unchanged.UNCHANGED
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of a sweep's points by state."""
+    """Numbers of a sweep's points, or of the reference runs that verify some, by state."""
 
     total: int
     queued: int
@@ -130,12 +130,17 @@ class Sweep:
     @property
     def counts(self) -> Counts:
         """Its points by state."""
-        counts = self._data["counts"]
-        return Counts(**{name: int(counts[name]) for name in Counts.__dataclass_fields__})
+        return _counts(self._data["counts"])
+
+    @property
+    def verified(self) -> Counts | None:
+        """The reference runs that verify some of its points, by state; None where none was asked for."""
+        verification = self._data.get("verification")
+        return None if verification is None else _counts(verification["counts"])
 
     @property
     def progress(self) -> float:
-        """Done part of the work, 0 to 1."""
+        """Done part of the work, that of verifying points included, 0 to 1."""
         return float(self._data["progress"])
 
     @property
@@ -151,7 +156,7 @@ class Sweep:
 
     @property
     def is_finished(self) -> bool:
-        """Whether every point is final."""
+        """Whether every point is final, and every reference run that verifies one."""
         return self._data.get("finished") is not None
 
     @property
@@ -181,7 +186,7 @@ class Sweep:
         timeout: float | None = None,
         progress: bool | Callable[[Sweep], None] | None = None,
     ) -> Sweep:
-        """Waits until every point is final, and returns the sweep.
+        """Waits until every point is final, and every reference run that verifies one, and returns the sweep.
 
         A server that is away for a while, as when it is started anew, is waited for (`Client.patience`). Failed points
         do not raise: `counts.failed` and `failures` tell.
@@ -235,6 +240,16 @@ class Sweep:
     def table(self) -> Table:
         """One row a point: its parameters and the scalars of its result."""
         return Table.from_json(self._client.get_json(f"{self.path}/table"))
+
+    def verification(self) -> Table:
+        """What verifying some of its points by the reference has shown (`Client.submit(verify=...)`).
+
+        One row a verified point: for each statistic, such as `orbit_radius_rms_49`, its value, that of the reference
+        (`reference_orbit_radius_rms_49`) and the bias (`bias_orbit_radius_rms_49`), relative to the reference or, of
+        frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and what the accuracy
+        promises; `attributes["warnings"]` says where that is exceeded.
+        """
+        return Table.from_json(self._client.get_json(f"{self.path}/verification"))
 
     def save_table(self, file: str | Path) -> Path:
         """Writes the table to a file, in the format of its ending: .csv, .json, .parquet."""
@@ -329,6 +344,10 @@ class Sweep:
         """Identifier, state and counts."""
         counts = self.counts
         return f"Sweep({self.id}, {self.state}, {counts.succeeded} of {counts.total} points)"
+
+
+def _counts(counts: Mapping[str, Any]) -> Counts:
+    return Counts(**{name: int(counts[name]) for name in Counts.__dataclass_fields__})
 
 
 def _nothing(_: Sweep) -> None:

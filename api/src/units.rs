@@ -10,9 +10,9 @@ pub fn unit(column: &str) -> Option<&'static str> {
         return unit(statistic).map(|unit| if unit == "Hz" { unit } else { "1" });
     }
     Some(match quantity(column) {
-        "time" | "from" | "to" | "error_time" | "histories_part_at" | "contact_time" | "duration"
-        | "wall_time" | "cpu_time" | "step" => "s",
-        "frequency" | "line_frequency_hz" | "line_frequency_error_hz" => "Hz",
+        "time" | "from" | "to" | "error_time" | "histories_part_at" | "contact_time" | "stick_time"
+        | "duration" | "wall_time" | "cpu_time" | "step" => "s",
+        "frequency" | "line_frequency_hz" | "line_frequency_error_hz" | "resolved_hz" => "Hz",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
@@ -23,7 +23,8 @@ pub fn unit(column: &str) -> Option<&'static str> {
         | "orbit_mean_radius"
         | "orbit_largest_radius"
         | "orbit_radius_rms"
-        | "orbit_radius_deviation" => "m",
+        | "orbit_radius_deviation"
+        | "high_frequency_rms" => "m",
         "line_amplitude" | "band_rms" | "error_estimate_displacement" => "m",
         "u_rate" | "v_rate" | "w_rate" | "annulus_speed" | "bore_speed" => "m/s",
         "theta_x" | "theta_y" | "theta_z" | "low_side_angle" => "rad",

@@ -237,6 +237,14 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             "energy residual {:.3} J, {:.2e} of the contacts' net work",
             transient.energy_residual, ratio
         )?;
+        writeln!(
+            text,
+            "steps of {} to {} ms resolve vibrations up to {:.0} Hz; {} captures of sticking nodes",
+            1e3 * cost("shortest_step"),
+            1e3 * cost("longest_step"),
+            transient.resolved_hz,
+            transient.capture_count
+        )?;
         let simulated = scenario.duration;
         writeln!(
             text,

@@ -11,6 +11,9 @@ use crate::transient::{ErrorEstimate, Records};
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
 
+/// Beyond this frequency \[Hz\] nothing in a drillstring's lateral motion lives long but what keeps being fed.
+const HIGH_FREQUENCY_HZ: f64 = 100.0;
+
 /// Lines reported of each spectrum.
 const LINES: usize = 3;
 
@@ -42,8 +45,12 @@ pub struct TransientSummary {
     pub orbits: Vec<OrbitSummary>,
     /// Dominant lines of the recorded nodes over the scenario's spectrum windows.
     pub spectra: Vec<SpectrumSummary>,
+    /// Frequency \[Hz\] up to which the longest step resolves a vibration.
+    pub resolved_hz: f64,
     /// Contacts of all nodes together.
     pub contact_count: u64,
+    /// How often nodes came to stick, all together.
+    pub capture_count: u64,
     /// Largest normal force of any node \[N\].
     pub largest_normal_force: f64,
     /// Estimated error of the lateral displacements.
@@ -73,6 +80,9 @@ pub struct OrbitSummary {
     pub orbit_radius_rms: f64,
     /// Standard deviation of the distance from the hole's axis \[m\]: the motion towards and off the wall alone.
     pub radius_deviation: f64,
+    /// Root mean square motion at frequencies above 100 Hz \[m\]: chatter of the contacts or of the method, if any. Absent where the
+    /// recording rate is below 250 Hz.
+    pub high_frequency_rms: Option<f64>,
 }
 
 /// Dominant lines of one node in one window.
@@ -135,7 +145,8 @@ impl TransientSummary {
             let cut =
                 |window: TimeWindow| sample_range(window.from, window.to, records.rate_hz, history.u.len());
             let samples = cut(orbit_window);
-            if let Some(orbit) = orbit_statistics(&history.u[samples.clone()], &history.v[samples]) {
+            let (u, v) = (&history.u[samples.clone()], &history.v[samples]);
+            if let Some(orbit) = orbit_statistics(u, v) {
                 orbits.push(OrbitSummary {
                     node,
                     measured_depth,
@@ -145,6 +156,7 @@ impl TransientSummary {
                     largest_radius: orbit.largest_radius,
                     orbit_radius_rms: orbit.orbit_radius_rms,
                     radius_deviation: orbit.radius_deviation,
+                    high_frequency_rms: high_frequency_rms(u, v, records.rate_hz),
                 });
             }
             for &window in &scenario.recording.spectrum_windows {
@@ -172,6 +184,8 @@ impl TransientSummary {
         Self {
             orbits,
             spectra,
+            resolved_hz: records.effort.resolved_hz,
+            capture_count: records.contacts.iter().map(|contact| contact.capture_count).sum(),
             contact_count: records.contacts.iter().map(|contact| contact.contact_count).sum(),
             largest_normal_force: records
                 .contacts
@@ -183,6 +197,18 @@ impl TransientSummary {
                 .then(|| last.residual.abs() / last.contact_work.abs()),
         }
     }
+}
+
+/// Root of the summed squares of the amplitudes beyond [`HIGH_FREQUENCY_HZ`] (Parseval).
+fn high_frequency_rms(u: &[f64], v: &[f64], rate_hz: f64) -> Option<f64> {
+    if rate_hz < 2.5 * HIGH_FREQUENCY_HZ {
+        return None;
+    }
+    let spectrum = full_spectrum(u, v, rate_hz, Window::Hann);
+    let bins = spectrum.frequency_hz.iter().zip(&spectrum.amplitude);
+    let high = bins.filter(|(frequency, _)| frequency.abs() > HIGH_FREQUENCY_HZ);
+    // Hann's window, scaled to the amplitudes of lines, counts a mean square one and a half times.
+    Some((high.map(|(_, amplitude)| amplitude * amplitude).sum::<f64>() / 1.5).sqrt())
 }
 
 /// Root of the summed squares of all amplitudes but the mean's (Parseval).

@@ -100,6 +100,7 @@ fn transient_row(transient: &TransientSummary) -> Map<String, Value> {
         put(format!("orbit_largest_radius_{node}"), json!(orbit.largest_radius));
         put(format!("orbit_radius_rms_{node}"), json!(orbit.orbit_radius_rms));
         put(format!("orbit_radius_deviation_{node}"), json!(orbit.radius_deviation));
+        put(format!("high_frequency_rms_{node}"), json!(orbit.high_frequency_rms));
     }
     let mut window_number = 0;
     let mut node_before = 0;
@@ -114,6 +115,8 @@ fn transient_row(transient: &TransientSummary) -> Map<String, Value> {
         }
     }
     put("contact_count".into(), json!(transient.contact_count));
+    put("capture_count".into(), json!(transient.capture_count));
+    put("resolved_hz".into(), json!(transient.resolved_hz));
     put("largest_normal_force".into(), json!(transient.largest_normal_force));
     put("error_estimate".into(), json!(transient.error_estimate.relative));
     put("error_estimate_displacement".into(), json!(transient.error_estimate.displacement));
@@ -253,6 +256,8 @@ fn contacts(model: &Model, records: &Records) -> Table {
     integers(&mut table, "contact_count", contacts.iter().map(|c| c.contact_count as i64));
     numbers(&mut table, "contact_time", contacts.iter().map(|c| c.contact_time));
     numbers(&mut table, "largest_normal_force", contacts.iter().map(|c| c.largest_normal_force));
+    integers(&mut table, "capture_count", contacts.iter().map(|c| c.capture_count as i64));
+    numbers(&mut table, "stick_time", contacts.iter().map(|c| c.stick_time));
     table
 }
 

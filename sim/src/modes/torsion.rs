@@ -64,6 +64,11 @@ impl UndampedTorsion {
         Some(if chain.inertia.len() > MOST_NODES { chain.bound() } else { chain.assessment() })
     }
 
+    /// The longest step \[s\] that resolves what grows; absent where nothing does.
+    pub fn resolving_step(&self) -> Option<f64> {
+        self.highest_hz.map(|highest| 1.0 / (STEPS_OF_A_PERIOD * highest))
+    }
+
     /// In words, that what grows is not what steps of this length \[s\] can tell; `None` where they can.
     pub fn warning(&self, step: f64) -> Option<String> {
         let highest = self.highest_hz?;

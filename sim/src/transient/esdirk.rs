@@ -13,6 +13,9 @@ use crate::model::DynamicSystem;
 const STAGES: usize = 6;
 pub(super) const DIAGONAL: f64 = 0.25;
 
+/// Angle \[rad\] of an oscillation in a step up to which its period is right to a thousandth, and its amplitude in each period too.
+pub(super) const RESOLVED_ANGLE: f64 = 1.0;
+
 const NODES: [f64; STAGES] = [0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0];
 
 /// Rows of the tableau left of the diagonal.
@@ -280,6 +283,8 @@ impl<const D: usize> Esdirk<D> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Complex;
+
     use super::*;
 
     fn tableau() -> [[f64; STAGES]; STAGES] {
@@ -337,6 +342,20 @@ mod tests {
             assert!((got - wanted).abs() < 1e-14, "tree {tree}: {got} against {wanted}");
         }
         assert!((embedded(&|i| c[i].powi(3)) - 0.25).abs() > 1e-4, "and not of order four");
+    }
+
+    #[test]
+    fn an_oscillation_of_the_resolved_angle_is_right_to_a_thousandth() {
+        // y' = i y over a step of that angle: the stages are solved one after the other.
+        let (a, z) = (tableau(), Complex::new(0.0, RESOLVED_ANGLE));
+        let mut rates = [Complex::new(0.0, 0.0); STAGES];
+        for i in 0..STAGES {
+            let before: Complex<f64> = (0..i).map(|j| rates[j] * a[i][j]).sum();
+            rates[i] = z * (Complex::new(1.0, 0.0) + before) / (Complex::new(1.0, 0.0) - z * a[i][i]);
+        }
+        let end = Complex::new(1.0, 0.0) + (0..STAGES).map(|i| rates[i] * WEIGHTS[i]).sum::<Complex<f64>>();
+        assert!((end.arg() / RESOLVED_ANGLE - 1.0).abs() < 1e-3, "period: {end}");
+        assert!((end.norm().ln() * std::f64::consts::TAU / RESOLVED_ANGLE).abs() < 1e-3, "amplitude: {end}");
     }
 
     #[test]

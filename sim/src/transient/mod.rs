@@ -33,10 +33,11 @@ use serde::{Deserialize, Serialize};
 use crate::control::Control;
 use crate::ensemble::disturbance;
 use crate::model::Model;
-use crate::scenario::{Integrator, Problem, Scenario, TimeStepping};
+use crate::modes::UndampedTorsion;
+use crate::scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
 use crate::statics::Equilibrium;
 use grid::Grid;
-use run::Run;
+use run::{Run, Start};
 
 /// A run under way.
 pub struct Transient<'m>(Solved<'m>);
@@ -82,6 +83,9 @@ pub struct TransientEffort {
     pub unresolved_steps: u64,
     /// The shortest and the longest step made \[s\].
     pub step_range: [f64; 2],
+    /// Frequency \[Hz\] up to which the longest step resolves a vibration: its period to a thousandth, and its amplitude to a thousandth
+    /// in each period.
+    pub resolved_hz: f64,
     /// Contact sweeps and how far from convergence they ended.
     pub sweeps: SweepMonitor,
 }
@@ -116,11 +120,12 @@ impl<'m> Transient<'m> {
         for (value, at_rest) in rest.iter_mut().flatten().zip(equilibrium.displacement.iter().flatten()) {
             *value += at_rest;
         }
-        let rest = (rest, equilibrium.normal_force.as_slice());
+        let resolving_step = resolving_step(model, equilibrium);
+        let start = Start { rest, normal_force: &equilibrium.normal_force, resolving_step };
         Ok(Self(match *system.moving() {
-            [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], rest)?)),
-            [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], rest)?)),
-            _ => Solved::Six(Box::new(Run::new(model, &system, system.places, rest)?)),
+            [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], start)?)),
+            [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], start)?)),
+            _ => Solved::Six(Box::new(Run::new(model, &system, system.places, start)?)),
         }))
     }
 
@@ -178,6 +183,34 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     let longest = grid.at_sample(samples).div_ceil(1 << grid.top());
     Some(if adapts { (longest as f64 * ADAPTED_STEPS).round() as u64 } else { longest })
 }
+
+/// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`] says: from the methods'
+/// amplification of an undamped oscillation.
+fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
+    let angle = match integrator {
+        Integrator::Esdirk4 => esdirk::RESOLVED_ANGLE,
+        Integrator::GeneralizedAlpha => generalized_alpha::RESOLVED_ANGLE,
+        Integrator::Rk4 => rk4::RESOLVED_ANGLE,
+    };
+    angle / (std::f64::consts::TAU * step)
+}
+
+/// The longest step \[s\] of a run that is to resolve the torsion that falling friction feeds: one that adapts its steps to a tolerance of
+/// the reference or a smaller one. Where torsion grows up to the end of the mesh no step resolves it all; what lies beyond
+/// [`FINEST_TORSION_STEP`] the method damps.
+fn resolving_step(model: &Model, equilibrium: &Equilibrium) -> f64 {
+    let stepping = model.scenario.accuracy.time_stepping();
+    let resolves = stepping.integrator == Integrator::Esdirk4
+        && stepping.tolerance.is_some_and(|tolerance| tolerance <= AccuracyPreset::Reference.tolerance());
+    let torsion = if resolves { UndampedTorsion::about(model, equilibrium) } else { None };
+    torsion
+        .and_then(|torsion| torsion.resolving_step())
+        .map_or(f64::INFINITY, |step| step.max(FINEST_TORSION_STEP))
+}
+
+/// Shortest step \[s\] that torsion alone is a reason for. ESDIRK4 damps torsion above a kilohertz there; with shorter ones single elements, at
+/// some kilohertz, grow in a model without stiffness-proportional damping.
+const FINEST_TORSION_STEP: f64 = 1.25e-4;
 
 /// Steps of a run that adapts them for each step of the longest length that the run would have: 1.02 to 1.35 in stick-slip with the
 /// presets, 1.01 without.

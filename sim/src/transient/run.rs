@@ -15,7 +15,7 @@ use super::grid::Grid;
 use super::implicit::SweepMonitor;
 use super::records::{ContactStatistics, NodeHistory};
 use super::rk4::{self, Rk4};
-use super::{Outcome, Records, TransientEffort, recorded_nodes, stability};
+use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{DynamicSystem, Model, NodalVector};
@@ -51,6 +51,16 @@ pub(super) struct Run<'m, const D: usize> {
     /// Node that moved fastest at the last sample, from 0.
     fastest: usize,
     progress: Progress<D>,
+}
+
+/// What a run starts from.
+pub(super) struct Start<'a> {
+    /// Displacements at the start, of all degrees of freedom.
+    pub(super) rest: NodalVector,
+    /// Normal forces at the equilibrium \[N\].
+    pub(super) normal_force: &'a [f64],
+    /// The longest step that resolves what has to be resolved \[s\].
+    pub(super) resolving_step: f64,
 }
 
 /// Everything that changes during a run and is not scratch.
@@ -104,12 +114,12 @@ enum Stepper<const D: usize> {
 }
 
 impl<'m, const D: usize> Run<'m, D> {
-    /// A run of the degrees of freedom `places` of `system`, from the displacements `rest` with the normal forces there.
+    /// A run of the degrees of freedom `places` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
     pub(super) fn new(
         model: &'m Model,
         system: &DynamicSystem,
         places: [usize; D],
-        (rest, normal_force): (NodalVector, &[f64]),
+        Start { rest, normal_force, resolving_step }: Start<'_>,
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
         let stepping = scenario.accuracy.time_stepping();
@@ -127,7 +137,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
         let ledger_every = (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64;
-        let longest = stepping.step / f64::from(subdivisions);
+        let longest = (stepping.step / f64::from(subdivisions)).min(resolving_step);
         let hole_radius = 0.5 * scenario.well.hole_diameter;
         let tolerances = stepping.tolerance.map(|tolerance| Tolerances::new(tolerance, hole_radius));
         let (longest, halvings) = match (stepping.integrator, tolerances) {
@@ -253,6 +263,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 rejected_steps: self.progress.rejected,
                 unresolved_steps: self.progress.unresolved,
                 step_range: self.progress.step_range,
+                resolved_hz: resolved_hz(stepping.integrator, self.progress.step_range[1]),
                 sweeps: self.progress.monitor,
             },
         })))
@@ -397,8 +408,9 @@ impl<'m, const D: usize> Run<'m, D> {
                     let error = method.error(level, forces, state);
                     let error = tolerances.relative(&error, errors.motion(nodes));
                     let next = adaptive::next_level(level, error).min(grid.top());
-                    if error <= 1.0 || level == 0 {
-                        progress.unresolved += u64::from(!(error <= 1.0));
+                    let is_within = error <= 1.0;
+                    if is_within || level == 0 {
+                        progress.unresolved += u64::from(!is_within);
                         progress.level = next;
                         break;
                     }

@@ -9,7 +9,7 @@ json = weboptions(MediaType="application/json", ContentType="json", Timeout=90, 
 csv = weboptions(ContentType="table", Timeout=90, HeaderFields=header);
 
 request = struct();
-request.preset = "paper-200m";
+request.preset = "paper-200m-damped";
 request.set.duration = 60;
 request.axes.flow_rate.values = [0.01 0.04 0.06];    % a single value would have to be a cell: {0.01}
 request.axes.mud_density = struct("from", 1200, "to", 2100, "count", 4);

@@ -9,7 +9,7 @@ call() { # the token goes through a file, so that it is not in the list of proce
 }
 
 sweep=$(call "$server/v1/sweeps" --header 'content-type: application/json' --data '{
-    "preset": "paper-200m", "set": {"duration": 60},
+    "preset": "paper-200m-damped", "set": {"duration": 60},
     "axes": {"flow_rate": {"values": [0.01, 0.04, 0.06]}, "mud_density": {"from": 1200, "to": 2100, "count": 4}}}' | jq -r .id)
 
 # Every answer is held back until something changes.

@@ -94,7 +94,8 @@ fn request(seconds: f64, flow_rates: usize, densities: usize) -> Value {
         "preset": "paper-200m",
         "set": {
             "duration": seconds,
-            "accuracy": "draft",
+            // Many short steps, so that a point lasts.
+            "accuracy": {"integrator": "generalized_alpha", "step": 5e-4},
             "recording.spectrum_windows": [],
             "recording.orbit_window": null,
         },

@@ -94,7 +94,8 @@ fn submit(server: &str, seconds: f64, changes: &Value) -> String {
         "duration": seconds,
         "recording.spectrum_windows": [],
         "recording.orbit_window": null,
-        "accuracy": "draft",
+        // Many short steps, so that a point lasts.
+        "accuracy": {"integrator": "generalized_alpha", "step": 5e-4},
     });
     set.as_object_mut().unwrap().extend(changes.as_object().unwrap().clone());
     let request =
@@ -373,7 +374,8 @@ fn suspended_point_goes_on_elsewhere_to_the_same_bits() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
     let run = |server: &str| -> String {
-        let set = json!({ "duration": 30.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
+        let set =
+            json!({ "duration": 100.0, "recording.spectrum_windows": [], "recording.orbit_window": null });
         let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
         run["id"].as_str().unwrap().to_owned()
     };

@@ -52,11 +52,13 @@ pub struct Promise {
 impl Promise {
     /// What an accuracy promises; an integrator and step in full promise nothing.
     pub fn of(accuracy: &Accuracy) -> Option<Self> {
-        let (orbit_size, radius_deviation) = match accuracy {
-            Accuracy::Explicit(_) => return None,
-            Accuracy::Preset(AccuracyPreset::Draft) => (0.08, 0.15),
-            Accuracy::Preset(AccuracyPreset::Standard) => (0.02, 0.05),
-            Accuracy::Preset(AccuracyPreset::Reference) => (0.003, 0.01),
+        let orbit_size = accuracy.statistics_tolerance()?;
+        let radius_deviation = match accuracy {
+            Accuracy::Preset(AccuracyPreset::Draft) => 0.15,
+            Accuracy::Preset(AccuracyPreset::Standard) => 0.05,
+            Accuracy::Preset(AccuracyPreset::Reference) => 0.01,
+            // As the standard's.
+            Accuracy::Target(_) | Accuracy::Explicit(_) => 2.5 * orbit_size,
         };
         Some(Self { orbit_size, radius_deviation })
     }

@@ -326,7 +326,9 @@ fn draw_accuracy(draw: &mut Draw) -> (TimeStepping, f64) {
     let spectral_radius =
         (integrator == Integrator::GeneralizedAlpha && draw.chance(0.5)).then(|| draw.between(0.0, 0.95));
     let steps = (1 + draw.below(4)) as f64;
-    let stepping = TimeStepping { contact_sweeps, spectral_radius, ..TimeStepping::fixed(integrator, step) };
+    let fixed = TimeStepping { contact_sweeps, spectral_radius, ..TimeStepping::fixed(integrator, step) };
+    let adapts = integrator == Integrator::Esdirk4 && draw.chance(0.5);
+    let stepping = if adapts { TimeStepping::adaptive(draw.log(1e-3, 0.1)) } else { fixed };
     (stepping, 1.0 / (steps * step))
 }
 

@@ -13,7 +13,7 @@ fn pipe_on_the_low_side(stiffness: f64, elements: u32, reference_length: Option<
     let mut scenario = preset("paper-200m").expect("shipped preset");
     let station = |measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 };
     scenario.well.survey = vec![station(0.0), station(60.0)];
-    let pipe: Section = Section { length: 60.0, ..scenario.string.sections[0].clone() };
+    let pipe: Section = Section { length: 60.0, ..scenario.string.sections[0] };
     scenario.string.sections = vec![pipe];
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();

@@ -44,8 +44,9 @@ pub(super) fn subdivisions(
         Integrator::Esdirk4 => Some(esdirk::stage_coefficients(step)),
         Integrator::Rk4 => None,
     };
-    // Generalized-alpha damps little of what sweeps leave at high frequencies: it must do without the help of implicit forces.
-    let is_implicit = stepping.integrator == Integrator::Esdirk4;
+    // A fixed step must do without the help of implicit forces, which contacts that open and close can spoil; one that adapts itself sees
+    // what its sweeps leave.
+    let is_implicit = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
     let mut parts = 1;
     loop {
         let Some(coefficients) = coefficients(stepping.step / f64::from(parts)) else {

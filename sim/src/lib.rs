@@ -12,6 +12,7 @@ pub mod contact;
 pub mod control;
 pub mod ensemble;
 pub mod linalg;
+pub mod mesh_estimate;
 pub mod model;
 pub mod modes;
 pub mod mud;

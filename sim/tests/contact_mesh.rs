@@ -1,7 +1,8 @@
 //! Contact by length of string (`contact.reference_length`): the wall is the same for every mesh, and what rests on it converges.
 
+use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::{GRAVITY, Model};
-use drillsweep_sim::scenario::{Scenario, Section, SurveyStation, preset};
+use drillsweep_sim::scenario::{Scenario, SurveyStation, preset};
 use drillsweep_sim::statics::Equilibrium;
 
 fn rest(model: &Model) -> Equilibrium {
@@ -13,8 +14,8 @@ fn pipe_on_the_low_side(stiffness: f64, elements: u32, reference_length: Option<
     let mut scenario = preset("paper-200m").expect("shipped preset");
     let station = |measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 };
     scenario.well.survey = vec![station(0.0), station(60.0)];
-    let pipe: Section = Section { length: 60.0, ..scenario.string.sections[0] };
-    scenario.string.sections = vec![pipe];
+    scenario.string.sections.truncate(1);
+    scenario.string.sections[0].length = 60.0;
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();
     scenario.mud = None;
@@ -112,4 +113,55 @@ fn radius_between_tool_joints_converges_with_the_mesh() {
     // A rule of quadrature of second order: with a quarter of the length a sixteenth of that is left.
     assert!((found[2] / limit - 1.0).abs() < 1e-4, "{found:?}");
     assert!(reaching[0] / limit - 1.0 < -1e-2 && reaching[3] / reaching[2] - 1.0 > 2e-3, "{reaching:?}");
+}
+
+#[test]
+fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
+    let scaled = |factor: f64| {
+        let mut scenario = preset("paper-200m").expect("shipped preset");
+        scenario.contact.reference_length = Some(0.5);
+        let mesh = &mut scenario.mesh;
+        for length in
+            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
+        {
+            *length *= factor;
+        }
+        let model = Model::new(&scenario).expect("has a model");
+        let equilibrium = rest(&model);
+        (model, equilibrium)
+    };
+    let (model, equilibrium) = scaled(1.0);
+    let MeshEstimate::Estimated(estimate) = MeshEstimate::of(&model, &equilibrium) else {
+        panic!("is known")
+    };
+    // Nodes of the mesh are nodes of the one with an eighth of its lengths.
+    let (fine_model, fine) = scaled(0.125);
+    let radius = |x: &[f64; 6]| x[0].hypot(x[1]);
+    let at = |depth: f64| fine.displacement[fine_model.mesh.nearest_node(depth)];
+    let (mut worst, mut recorded) = (0.0_f64, 0.0_f64);
+    for (i, (node, x)) in model.mesh.nodes.iter().zip(&equilibrium.displacement).enumerate() {
+        let y = at(node.measured_depth);
+        worst = worst.max((x[0] - y[0]).hypot(x[1] - y[1]) / 0.10795);
+        if [9, 48, 281].contains(&i) {
+            recorded = recorded.max((radius(x) / radius(&y) - 1.0).abs());
+        }
+    }
+    // C_f of each element against that of the finer one in its middle, mean over the length.
+    let (mut apart, mut whole) = (0.0, 0.0);
+    for (element, flow) in model.mesh.elements.iter().zip(&equilibrium.flows) {
+        let middle = element.top + 0.5 * element.length;
+        let below = fine_model.mesh.elements.partition_point(|finer| finer.top + finer.length < middle);
+        let reference = fine.flows[below].friction_coefficient;
+        apart += element.length * (flow.friction_coefficient - reference).abs();
+        whole += element.length * reference;
+    }
+    let pairs = [
+        (Some(estimate.static_position), worst),
+        (estimate.mean_radius, recorded),
+        (estimate.friction_coefficient, apart / whole),
+    ];
+    for (estimated, found) in pairs {
+        let estimated = estimated.expect("is estimated");
+        assert!((1.0 / 3.0..3.0).contains(&(estimated / found)), "{estimated} for {found}");
+    }
 }

@@ -18,7 +18,7 @@ pub struct DryRun {
     pub total: u64,
     /// Points whose result is already there and would not be computed again.
     pub known: u64,
-    /// The plan of the first point: effects and why, size, steps and processor time at each accuracy.
+    /// The plan of the first point: effects and why, size, steps and processor time at each accuracy, and what its equilibrium shows.
     pub plan: Option<Plan>,
     /// Processor time that the points and reference runs not yet known are expected to take together \[s\], from the plans of
     /// some of them; absent before a worker has measured its machine.
@@ -84,7 +84,10 @@ impl DryRun {
         Self {
             total: expansion.points.len() as u64,
             known,
-            plan: plans.into_iter().next(),
+            plan: plans.into_iter().next().map(|plan| match expansion.points.first() {
+                Some(first) => plan.with_equilibrium(&expansion.scenario(first)),
+                None => plan,
+            }),
             cpu_time,
             wall_time: cpu_time.filter(|_| workers > 0).map(|time| time / workers as f64),
             points: planned(expansion),
@@ -141,7 +144,10 @@ mod tests {
         assert!((planned.cpu_time.unwrap() / wanted - 1.0).abs() < 1e-12);
         assert_eq!(planned.wall_time, planned.cpu_time.map(|time| 0.5 * time));
         assert_eq!((planned.total, planned.known, planned.points.len()), (100, 40, 100));
-        assert_eq!(planned.plan.as_ref().unwrap().accuracies[0].name, "draft");
+        let plan = planned.plan.clone().unwrap();
+        assert_eq!(plan.accuracies[0].name, "draft");
+        // The base case as printed has no damping that grows with frequency.
+        assert!(plan.undamped_torsion.unwrap().up_to_the_mesh && plan.warnings.len() == 1);
 
         for speed in [None, Some("of another version")] {
             let planned = DryRun::new(&expansion(), 0, 0, speed, 2);

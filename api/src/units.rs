@@ -12,7 +12,12 @@ pub fn unit(column: &str) -> Option<&'static str> {
     Some(match quantity(column) {
         "time" | "from" | "to" | "error_time" | "histories_part_at" | "contact_time" | "stick_time"
         | "duration" | "wall_time" | "cpu_time" | "step" => "s",
-        "frequency" | "line_frequency_hz" | "line_frequency_error_hz" | "resolved_hz" => "Hz",
+        "frequency"
+        | "line_frequency_hz"
+        | "line_frequency_error_hz"
+        | "resolved_hz"
+        | "undamped_torsion_hz" => "Hz",
+        "undamped_torsion_growth" => "1/s",
         "flow_rate" => "m3/s",
         "mud_density" => "kg/m3",
         "measured_depth" | "measured_depth_top" | "measured_depth_bottom" | "true_vertical_depth" => "m",
@@ -45,6 +50,7 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "contact_work" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
         "residual" | "energy_residual" => "J",
+        "mesh_error_mean_radius" | "mesh_error_static_position" | "mesh_error_friction_coefficient" => "1",
         "cpu_per_simulated_second" | "trajectory_error" | "orbit_size_error" | "mean_radius_error" => "1",
         "static_position_error" | "friction_coefficient_error" | "energy_error" | "estimated_error" => "1",
         name if name.starts_with("cost_step_") || name.starts_with("cost_cpu_time_") => "s",

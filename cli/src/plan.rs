@@ -32,7 +32,7 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
         tracing::warn!("{}: {}", warning.path, warning.message);
     }
     let speed = calibrate()?;
-    let plan = Plan::new(&scenario, Some(&speed))?;
+    let plan = Plan::new(&scenario, Some(&speed))?.with_equilibrium(&scenario);
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
     } else {
@@ -57,6 +57,9 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
     let statics = plan.statics_cpu_time.unwrap_or(0.0) * 1e3;
     writeln!(text, "{} elements, {} nodes", plan.elements, plan.nodes)?;
     writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
+    if let Some(estimate) = &plan.mesh_error {
+        writeln!(text, "{estimate}")?;
+    }
     if plan.accuracies.is_empty() {
         writeln!(text, "no run in time")?;
         return Ok(text);
@@ -74,6 +77,12 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         let chosen = if i == 0 { "  <- as asked for" } else { "" };
         let step = format!("{} ms", step * 1e3);
         writeln!(text, "  {name:10} {:18} {step:>9} {steps:>10}  {time}{chosen}", integrator.name())?;
+    }
+    if let Some(torsion) = plan.undamped_torsion.filter(|torsion| !torsion.up_to_the_mesh) {
+        writeln!(text, "{torsion}")?;
+    }
+    for warning in &plan.warnings {
+        writeln!(text, "warning: {warning}")?;
     }
     Ok(text)
 }

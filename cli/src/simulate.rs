@@ -231,6 +231,12 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 writeln!(text, "{} runs that start 1e-6 m apart stay together", 1 + computed.ensemble.len())?;
             }
         }
+        if let Some(estimate) = &computed.mesh_error {
+            writeln!(text, "{estimate}")?;
+        }
+        for warning in &computed.warnings {
+            writeln!(text, "warning: {warning}")?;
+        }
         let ratio = transient.energy_residual_ratio.unwrap_or(0.0);
         writeln!(
             text,

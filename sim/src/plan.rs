@@ -3,11 +3,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::mesh_estimate::MeshEstimate;
 use crate::model::{Model, ModelError};
+use crate::modes::UndampedTorsion;
 use crate::scenario::{
     Accuracy, AccuracyPreset, EffectDecision, Integrator, NodeChoice, Recording, Scenario, Switch,
     TimeStepping,
 };
+use crate::statics::Equilibrium;
 use crate::transient::step_count;
 
 /// The plan of a scenario.
@@ -29,6 +32,13 @@ pub struct Plan {
     pub statics_cpu_time: Option<f64>,
     /// The scenario's own accuracy first, then the named ones; only the first where there is no run in time.
     pub accuracies: Vec<PlannedAccuracy>,
+    /// The torsional modes that falling friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
+    /// there is no run in time, twist takes no part or friction does not turn the string.
+    pub undamped_torsion: Option<UndampedTorsion>,
+    /// The mesh's part of the error of the equilibrium; absent where [`Plan::with_equilibrium`] was not asked or there is none.
+    pub mesh_error: Option<MeshEstimate>,
+    /// What the equilibrium shows that can be simulated but is probably not meant, in words.
+    pub warnings: Vec<String>,
 }
 
 /// What one accuracy takes.
@@ -131,7 +141,24 @@ impl Plan {
             simulated_time,
             statics_cpu_time,
             accuracies: accuracies.into_iter().map(planned).collect(),
+            undamped_torsion: None,
+            mesh_error: None,
+            warnings: Vec::new(),
         })
+    }
+
+    /// The plan with what the scenario's equilibrium tells beforehand, which takes as long as that. Where there is none, that is for the run
+    /// to say.
+    #[must_use]
+    pub fn with_equilibrium(mut self, scenario: &Scenario) -> Self {
+        let Some(model) = Model::new(scenario).ok().filter(|model| model.effects.transient) else {
+            return self;
+        };
+        let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
+        self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        let step = scenario.accuracy.time_stepping().step;
+        self.warnings.extend(self.undamped_torsion.and_then(|torsion| torsion.warning(step)));
+        self
     }
 
     /// Processor time that the point is expected to take at its own accuracy \[s\]; absent where it is not known.

@@ -5,8 +5,9 @@ use std::time::Instant;
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::ensemble::parting_time;
+use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::{Model, ModelError};
-use drillsweep_sim::modes::{Stability, stability};
+use drillsweep_sim::modes::{Stability, UndampedTorsion, stability};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::{CostReport, Recommendation, StudyError};
@@ -35,6 +36,12 @@ pub struct Computed {
     pub study: Option<CostReport>,
     /// Whether the scene is unstable by its physics, where the scenario asks for it.
     pub stability: Option<Stability>,
+    /// The torsional modes that falling friction feeds; absent without a run in time, twist or friction that turns the string.
+    pub undamped_torsion: Option<UndampedTorsion>,
+    /// The mesh's part of the error of the equilibrium; absent without a run in time.
+    pub mesh_error: Option<MeshEstimate>,
+    /// What was run that is probably not meant, in words.
+    pub warnings: Vec<String>,
     /// Versions, integrator, steps and cost.
     pub provenance: Map<String, Value>,
 }
@@ -146,6 +153,22 @@ impl Computed {
             row.insert(
                 "instability_frequency_hz".into(),
                 json!(unstable.map(|unstable| unstable.frequency_hz)),
+            );
+        }
+        if let Some(torsion) = &self.undamped_torsion {
+            row.insert("undamped_torsion_hz".into(), json!(torsion.highest_hz));
+            row.insert("undamped_torsion_growth".into(), json!(torsion.highest_growth));
+        }
+        if let Some(mesh) = &self.mesh_error {
+            let errors = mesh.estimate();
+            row.insert("mesh_error_mean_radius".into(), json!(errors.and_then(|errors| errors.mean_radius)));
+            row.insert(
+                "mesh_error_static_position".into(),
+                json!(errors.map(|errors| errors.static_position)),
+            );
+            row.insert(
+                "mesh_error_friction_coefficient".into(),
+                json!(errors.and_then(|errors| errors.friction_coefficient)),
             );
         }
         if let Some(study) = &self.study {
@@ -268,6 +291,7 @@ pub fn compute_from(
     }
     let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
     let stability = if scenario.recording.stability { judge() } else { None };
+    let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let mut provenance = Map::new();
     provenance.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
@@ -299,9 +323,32 @@ pub fn compute_from(
         provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
+    let mesh_error = records.is_some().then(|| MeshEstimate::of(&model, &equilibrium));
+    if let Some(mesh) = &mesh_error {
+        provenance.insert("mesh_error".into(), json!(mesh));
+    }
+    let mut warnings = Vec::new();
+    if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
+        provenance.insert("undamped_torsion".into(), json!(torsion));
+        warnings.extend(torsion.warning(records.effort.stepping.step));
+    }
+    if !warnings.is_empty() {
+        provenance.insert("warnings".into(), json!(warnings));
+    }
     let tables = point_tables(&model, &equilibrium, records.as_ref());
-    let computed =
-        Computed { tables, statics, transient, ensemble, histories_part_at, study, stability, provenance };
+    let computed = Computed {
+        tables,
+        statics,
+        transient,
+        ensemble,
+        histories_part_at,
+        study,
+        stability,
+        undamped_torsion,
+        mesh_error,
+        warnings,
+        provenance,
+    };
     Ok(Computation::Finished(Box::new(computed)))
 }
 
@@ -356,6 +403,30 @@ mod tests {
         assert!((2..=61).contains(&node), "{error}");
         assert_eq!(error["stability"]["stable"], false, "{error}");
         assert!(error["reason"].as_str().unwrap().contains("flutter"), "{error}");
+    }
+
+    #[test]
+    fn torsion_that_grows_to_the_end_of_the_mesh_is_told_with_the_result() {
+        let computed = |name| {
+            let mut scenario = preset(name).expect("shipped preset");
+            scenario.duration = 0.01;
+            scenario.recording.spectrum_windows.clear();
+            scenario.recording.orbit_window = None;
+            compute(&scenario, &Control::new()).expect("runs")
+        };
+        let printed = computed("paper-200m");
+        let row = printed.summary_row();
+        assert!(
+            row["undamped_torsion_hz"].as_f64().unwrap() > 4e3 && row["undamped_torsion_growth"].is_number()
+        );
+        assert!(printed.provenance["warnings"][0].as_str().unwrap().contains("stiffness_proportional"));
+        // Its contact law is a node's, so its mesh's part is not known.
+        assert!(row["mesh_error_static_position"].is_null());
+        assert_eq!(printed.provenance["mesh_error"]["state"], "unknown");
+
+        let damped = computed("paper-200m-damped");
+        assert!(damped.summary_row()["undamped_torsion_hz"].as_f64().unwrap() < 20.0);
+        assert_eq!(damped.provenance.get("warnings"), None);
     }
 
     #[test]

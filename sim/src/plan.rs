@@ -11,7 +11,7 @@ use crate::scenario::{
     TimeStepping,
 };
 use crate::statics::Equilibrium;
-use crate::transient::step_count;
+use crate::transient::{step_count, torsion_step};
 
 /// The plan of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -156,6 +156,14 @@ impl Plan {
         };
         let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
         self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        for (planned, (_, stepping)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
+            let more = stepping.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
+            if more > 1.0 {
+                planned.step /= more;
+                planned.steps = planned.steps.map(|steps| (steps as f64 * more).round() as u64);
+                planned.cpu_time = planned.cpu_time.map(|time| time * more);
+            }
+        }
         let step = scenario.accuracy.time_stepping().step;
         self.warnings.extend(self.undamped_torsion.and_then(|torsion| torsion.warning(step)));
         self

@@ -195,17 +195,26 @@ fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     angle / (std::f64::consts::TAU * step)
 }
 
-/// The longest step \[s\] of a run that is to resolve the torsion that falling friction feeds: one that adapts its steps to a tolerance of
-/// the reference or a smaller one. Where torsion grows up to the end of the mesh no step resolves it all; what lies beyond
-/// [`FINEST_TORSION_STEP`] the method damps.
+/// The longest step \[s\] of a run that is to resolve the torsion that falling friction feeds.
 fn resolving_step(model: &Model, equilibrium: &Equilibrium) -> f64 {
     let stepping = model.scenario.accuracy.time_stepping();
-    let resolves = stepping.integrator == Integrator::Esdirk4
-        && stepping.tolerance.is_some_and(|tolerance| tolerance <= AccuracyPreset::Reference.tolerance());
-    let torsion = if resolves { UndampedTorsion::about(model, equilibrium) } else { None };
-    torsion
-        .and_then(|torsion| torsion.resolving_step())
-        .map_or(f64::INFINITY, |step| step.max(FINEST_TORSION_STEP))
+    let torsion = if resolves_torsion(&stepping) { UndampedTorsion::about(model, equilibrium) } else { None };
+    torsion_step(&stepping, torsion.as_ref())
+}
+
+/// The longest step \[s\] that a stepping takes where `torsion` grows: what resolves the highest mode for one that is to resolve it, which
+/// adapts its steps to the tolerance of the reference or a smaller one, and no bound for others. Where torsion grows up to
+/// the end of the mesh no step resolves it all; what lies beyond [`FINEST_TORSION_STEP`] the method damps.
+pub(crate) fn torsion_step(stepping: &TimeStepping, torsion: Option<&UndampedTorsion>) -> f64 {
+    match torsion.and_then(UndampedTorsion::resolving_step) {
+        Some(step) if resolves_torsion(stepping) => step.max(FINEST_TORSION_STEP),
+        _ => f64::INFINITY,
+    }
+}
+
+fn resolves_torsion(stepping: &TimeStepping) -> bool {
+    stepping.integrator == Integrator::Esdirk4
+        && stepping.tolerance.is_some_and(|tolerance| tolerance <= AccuracyPreset::Reference.tolerance())
 }
 
 /// Shortest step \[s\] that torsion alone is a reason for. ESDIRK4 damps torsion above a kilohertz there; with shorter ones single elements, at

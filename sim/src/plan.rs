@@ -11,7 +11,7 @@ use crate::scenario::{
     TimeStepping,
 };
 use crate::statics::Equilibrium;
-use crate::transient::{step_count, torsion_step};
+use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
 
 /// The plan of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -128,7 +128,7 @@ impl Plan {
             PlannedAccuracy {
                 name: name.to_owned(),
                 integrator: stepping.integrator,
-                step: stepping.step,
+                step: longest_step(&model, stepping),
                 steps,
                 cpu_time: steps.and_then(cost),
             }
@@ -156,16 +156,18 @@ impl Plan {
         };
         let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
         self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));
         for (planned, (_, stepping)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
-            let more = stepping.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
+            let more = planned.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
             if more > 1.0 {
                 planned.step /= more;
                 planned.steps = planned.steps.map(|steps| (steps as f64 * more).round() as u64);
                 planned.cpu_time = planned.cpu_time.map(|time| time * more);
             }
         }
-        let step = scenario.accuracy.time_stepping().step;
-        self.warnings.extend(self.undamped_torsion.and_then(|torsion| torsion.warning(step)));
+        if let (Some(torsion), Some(own)) = (self.undamped_torsion, self.accuracies.first()) {
+            self.warnings.extend(torsion.warning(resolved_hz(own.integrator, own.step)));
+        }
         self
     }
 

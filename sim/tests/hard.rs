@@ -220,7 +220,7 @@ fn high_frequency_torsion_grows_as_its_eigenvalue_says() {
     let scene = Scene::run("hard/high-frequency-torsion");
     let torsion = UndampedTorsion::about(&scene.model, &scene.equilibrium).expect("twist takes part");
     let highest = torsion.highest_hz.expect("modes grow");
-    assert!(!torsion.up_to_the_mesh && torsion.warning(scene.records.effort.stepping.step).is_none());
+    assert!(!torsion.up_to_the_mesh && torsion.warning(scene.records.effort.resolved_hz).is_none());
     // The standing wave of a row of equal pipes with an antinode in the middle of every joint and every body: twist and torque go
     // over into each other where tan(k b / 2) = -z tan(k j / 2), with bodies of 8.9 m, joints of 0.6 m and z the ratio of their
     // polar moments (Floquet). Nine pipes are no endless row, and linear elements are (k h)^2 / 24 too stiff, 3 % here.

@@ -330,7 +330,7 @@ pub fn compute_from(
     let mut warnings = Vec::new();
     if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
         provenance.insert("undamped_torsion".into(), json!(torsion));
-        warnings.extend(torsion.warning(records.effort.stepping.step));
+        warnings.extend(torsion.warning(records.effort.resolved_hz));
     }
     if !warnings.is_empty() {
         provenance.insert("warnings".into(), json!(warnings));

@@ -24,7 +24,7 @@ const ENCLOSED: f64 = 1e-9;
 /// Share of the mesh's highest frequency from which a growing mode counts as one that the mesh ends.
 const MESH_END: f64 = 0.75;
 
-/// Steps in a period from which no method here damps a mode as fast as friction feeds it.
+/// Steps in a period with which the reference resolves a mode: no method here damps it as fast as friction feeds it.
 const STEPS_OF_A_PERIOD: f64 = 20.0;
 
 /// The torsional modes that falling friction feeds, to first order in damping.
@@ -69,17 +69,16 @@ impl UndampedTorsion {
         self.highest_hz.map(|highest| 1.0 / (STEPS_OF_A_PERIOD * highest))
     }
 
-    /// In words, that what grows is not what steps of this length \[s\] can tell; `None` where they can.
-    pub fn warning(&self, step: f64) -> Option<String> {
+    /// In words, that what grows is not what a run that resolves vibrations up to `resolved_hz` \[Hz\] can tell; `None` where it is.
+    pub fn warning(&self, resolved_hz: f64) -> Option<String> {
         let highest = self.highest_hz?;
         if self.up_to_the_mesh {
             return Some(self.to_string());
         }
-        (highest * step * STEPS_OF_A_PERIOD > 1.0).then(|| {
+        (highest > resolved_hz).then(|| {
             format!(
-                "torsional modes grow up to {highest:.0} Hz, which steps of {} ms do not resolve: they decide which torsion survives, and \
-                 lateral motion depends on it",
-                step * 1e3
+                "torsional modes grow up to {highest:.0} Hz, and steps resolve vibrations up to {resolved_hz:.0} Hz: they decide which \
+                 torsion survives, and lateral motion depends on it"
             )
         })
     }
@@ -392,10 +391,10 @@ mod tests {
             mesh_hz: mesh,
             up_to_the_mesh: highest == Some(mesh),
         };
-        assert_eq!(torsion(None, 4e3).warning(1e-3), None);
-        assert_eq!(torsion(Some(12.9), 4e3).warning(1e-3), None);
-        assert!(torsion(Some(95.7), 4e3).warning(1e-3).unwrap().contains("up to 96 Hz"));
-        assert_eq!(torsion(Some(95.7), 4e3).warning(1e-4), None);
-        assert!(torsion(Some(4e3), 4e3).warning(1e-6).unwrap().contains("where the mesh ends"));
+        assert_eq!(torsion(None, 4e3).warning(40.0), None);
+        assert_eq!(torsion(Some(12.9), 4e3).warning(40.0), None);
+        assert!(torsion(Some(95.7), 4e3).warning(40.0).unwrap().contains("up to 96 Hz"));
+        assert_eq!(torsion(Some(95.7), 4e3).warning(160.0), None);
+        assert!(torsion(Some(4e3), 4e3).warning(1e6).unwrap().contains("where the mesh ends"));
     }
 }

@@ -176,17 +176,15 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     if adapts && stepping.integrator == Integrator::Rk4 {
         return None;
     }
-    let recording = &model.scenario.recording;
-    let samples = (model.scenario.duration * recording.rate_hz).round() as u64;
-    let subdivisions = stability::expected_subdivisions(model, &stepping);
-    let grid = Grid::new(1.0 / recording.rate_hz, stepping.step / f64::from(subdivisions), 0);
+    let samples = (model.scenario.duration * model.scenario.recording.rate_hz).round() as u64;
+    let grid = expected_grid(model, stepping);
     let longest = grid.at_sample(samples).div_ceil(1 << grid.top());
     Some(if adapts { (longest as f64 * ADAPTED_STEPS).round() as u64 } else { longest })
 }
 
 /// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`] says: from the methods'
 /// amplification of an undamped oscillation.
-fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
+pub fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     let angle = match integrator {
         Integrator::Esdirk4 => esdirk::RESOLVED_ANGLE,
         Integrator::GeneralizedAlpha => generalized_alpha::RESOLVED_ANGLE,
@@ -220,6 +218,20 @@ fn resolves_torsion(stepping: &TimeStepping) -> bool {
 /// Shortest step \[s\] that torsion alone is a reason for. ESDIRK4 damps torsion above a kilohertz there; with shorter ones single elements, at
 /// some kilohertz, grow in a model without stiffness-proportional damping.
 const FINEST_TORSION_STEP: f64 = 1.25e-4;
+
+/// The longest step \[s\] that a run of the model's scenario is expected to make with a stepping of its choice.
+pub fn longest_step(model: &Model, stepping: TimeStepping) -> f64 {
+    if stepping.integrator == Integrator::Rk4 {
+        return stepping.step;
+    }
+    let grid = expected_grid(model, stepping);
+    grid.step(grid.top())
+}
+
+fn expected_grid(model: &Model, stepping: TimeStepping) -> Grid {
+    let subdivisions = stability::expected_subdivisions(model, &stepping);
+    Grid::new(1.0 / model.scenario.recording.rate_hz, stepping.step / f64::from(subdivisions), 0)
+}
 
 /// Steps of a run that adapts them for each step of the longest length that the run would have: 1.02 to 1.35 in stick-slip with the
 /// presets, 1.01 without.

@@ -134,10 +134,7 @@ impl TransientSummary {
     /// Sums up a finished run.
     pub fn new(model: &Model, records: &Records) -> Self {
         let scenario = &model.scenario;
-        let orbit_window = scenario
-            .recording
-            .orbit_window
-            .unwrap_or(TimeWindow { from: scenario.duration * 2.0 / 3.0, to: scenario.duration });
+        let orbit_window = scenario.orbit_window();
         let mut orbits = Vec::new();
         let mut spectra = Vec::new();
         for history in &records.histories {

@@ -3,7 +3,8 @@
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{
-    Accuracy, AccuracyPreset, Effect, Integrator, NodeChoice, Scenario, Switch, TimeStepping, preset,
+    Accuracy, AccuracyPreset, Effect, Integrator, NodeChoice, Scenario, Switch, TimeStepping, TimeWindow,
+    preset,
 };
 use drillsweep_sim::signal::{PeakSearch, Window, full_spectrum};
 use drillsweep_sim::statics::Equilibrium;
@@ -334,6 +335,28 @@ fn without_friction_nothing_but_the_unbalance_moves_the_string() {
         assert!((peak.frequency_hz / 2.0 - (peak.frequency_hz / 2.0).round()).abs() < 0.05, "{peaks:?}");
     }
     assert!((peaks[0].frequency_hz.abs() - 2.0).abs() < 0.1 && peaks[0].amplitude > 1e-4, "{peaks:?}");
+}
+
+#[test]
+fn a_string_at_rest_leans_on_the_wall_with_its_static_normal_forces_over_the_orbit_window() {
+    // Nothing moves it: no unbalance, no friction.
+    for (integrator, step) in
+        [(Integrator::GeneralizedAlpha, 5e-4), (Integrator::Esdirk4, 1e-3), (Integrator::Rk4, 5e-5)]
+    {
+        let mut scenario = base(0.06, integrator, step);
+        for effect in [Effect::Friction, Effect::FrictionTorque, Effect::Unbalance] {
+            scenario.effects.set(effect, Switch::Off);
+        }
+        scenario.recording.orbit_window = Some(TimeWindow { from: 0.01, to: 0.05 });
+        let model = Model::new(&scenario).expect("valid");
+        let at_rest: f64 = Equilibrium::find(&model).expect("rests").normal_force.iter().sum();
+        let impulse: f64 = run(&scenario).contacts.iter().map(|contact| contact.impulse).sum();
+        // The equilibrium is Newton's, to eight digits of the forces.
+        assert!(
+            (impulse / 0.04 / at_rest - 1.0).abs() < 1e-6,
+            "{integrator:?}: {impulse} N s of {at_rest} N"
+        );
+    }
 }
 
 #[test]

@@ -70,6 +70,14 @@ pub struct Scenario {
     pub cost_study: Option<CostStudy>,
 }
 
+impl Scenario {
+    /// The window of the orbit statistics: what `recording` says, or the last third of the run.
+    pub fn orbit_window(&self) -> TimeWindow {
+        let last_third = TimeWindow { from: self.duration * 2.0 / 3.0, to: self.duration };
+        self.recording.orbit_window.unwrap_or(last_third)
+    }
+}
+
 /// The well: a survey interpolated by minimum curvature (physics.md section 1) and one open hole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]

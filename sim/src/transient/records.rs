@@ -75,6 +75,8 @@ pub struct ContactStatistics {
     pub contact_time: f64,
     /// Largest normal force \[N\]: at ends of steps and, by the implicit methods, in their stages.
     pub largest_normal_force: f64,
+    /// Time integral of the normal force over the scenario's [orbit window](crate::scenario::Scenario::orbit_window) \[N s\].
+    pub impulse: f64,
     /// Number of captures: how often the node came to stick, sliding slower than the reference speed of friction.
     pub capture_count: u64,
     /// Time that it stuck \[s\].
@@ -89,18 +91,20 @@ impl ContactStatistics {
         self.largest_radius_squared.sqrt()
     }
 
-    /// Takes in the end of a step of `duration` seconds; a node that slides slower than `sticking_speed` \[m/s\] sticks.
+    /// Takes in the end of a step of `duration` seconds, of which `counted` count for the impulse; a node that slides slower than
+    /// `sticking_speed` \[m/s\] sticks.
     pub(super) fn observe(
         &mut self,
         [u, v]: [f64; 2],
         contact: &NodeContact,
         sticking_speed: f64,
-        duration: f64,
+        [duration, counted]: [f64; 2],
     ) {
         self.largest_radius_squared = self.largest_radius_squared.max(u * u + v * v);
         if contact.touching {
             self.contact_count += u64::from(!self.in_contact);
             self.contact_time += duration;
+            self.impulse += counted * contact.normal_force;
             self.largest_normal_force = self.largest_normal_force.max(contact.normal_force);
         }
         let sticks = contact.touching && contact.sliding_speed.abs() < sticking_speed;

@@ -1,5 +1,7 @@
 //! The loop over steps: what is recorded, booked and checked on the way.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::adaptive::{self, Tolerances};
@@ -19,7 +21,8 @@ use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stab
 use crate::control::Control;
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{DynamicSystem, Model, NodalVector};
-use crate::scenario::Integrator;
+use crate::scenario::{Integrator, Scenario};
+use crate::signal::sample_range;
 
 /// How often the longest step of a run that adapts its steps can be halved.
 const HALVINGS: u32 = 7;
@@ -47,6 +50,8 @@ pub(super) struct Run<'m, const D: usize> {
     tolerances: Option<Tolerances>,
     /// Samples from one row of the ledger to the next.
     ledger_every: u64,
+    /// Recording intervals that count for the contacts' impulse.
+    orbit_samples: Range<u64>,
     subdivisions: u32,
     /// Node that moved fastest at the last sample, from 0.
     fastest: usize,
@@ -205,6 +210,7 @@ impl<'m, const D: usize> Run<'m, D> {
             grid,
             tolerances,
             ledger_every,
+            orbit_samples: orbit_samples(scenario, samples),
             subdivisions,
             fastest: 0,
         };
@@ -295,7 +301,7 @@ impl<'m, const D: usize> Run<'m, D> {
         state.acceleration.copy_from_nodes(&right);
         state.stage_power =
             self.ledger.power(&state.velocity, &state.displacement, contact, self.forces.unbalance_at(0.0));
-        self.observe(0.0);
+        self.observe([0.0; 2]);
         Ok(())
     }
 
@@ -305,12 +311,12 @@ impl<'m, const D: usize> Run<'m, D> {
         self.forces.contact_at(&state.displacement, &state.velocity, &mut self.contact);
     }
 
-    /// Enters the present contacts into the statistics, after a step of `duration` seconds.
-    fn observe(&mut self, duration: f64) {
+    /// Enters the present contacts into the statistics, after a step of so many seconds, and the part of them in the orbit window.
+    fn observe(&mut self, durations: [f64; 2]) {
         let Progress { contacts, state, .. } = &mut self.progress;
         let (x, sticking_speed) = (&state.displacement, self.model.scenario.contact.friction_reference_speed);
         self.contact.each_node(contacts.len(), |node, contact| {
-            contacts[node].observe([x[(node, 0)], x[(node, 1)]], &contact, sticking_speed, duration);
+            contacts[node].observe([x[(node, 0)], x[(node, 1)]], &contact, sticking_speed, durations);
         });
     }
 
@@ -438,7 +444,10 @@ impl<'m, const D: usize> Run<'m, D> {
         progress.ticks += 1 << level;
         self.check_bounds()?;
         self.touch();
-        self.observe(self.grid.step(level));
+        let [from, to] =
+            [self.orbit_samples.start, self.orbit_samples.end].map(|sample| self.grid.at_sample(sample));
+        let counted = self.progress.ticks.min(to).saturating_sub(start.max(from));
+        self.observe([self.grid.step(level), self.grid.time(counted)]);
         self.note_peaks();
         self.record_step(start);
         Ok(())
@@ -502,6 +511,13 @@ impl<const D: usize> State<D> {
             adaptive_step,
         }
     }
+}
+
+/// The recording intervals of the scenario's orbit window, out of so many samples.
+fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
+    let window = scenario.orbit_window();
+    let range = sample_range(window.from, window.to, scenario.recording.rate_hz, samples as usize);
+    range.start as u64..range.end as u64
 }
 
 /// Rows of the ledger over so many samples, the one at the end included.

@@ -485,9 +485,10 @@ fn cost_study_over_rest_is_served_as_numbers_lines_and_charts() {
     let (_up, server) = listen(data.path(), &["up", "--workers", "1"]);
     let study = json!({
         "duration": 0.1,
+        "presets": [],
         "methods": [
             {"integrator": "generalized_alpha", "steps": [1e-3, 5e-4]},
-            {"integrator": "rk4", "steps": [5e-5, 1e-4]},
+            {"integrator": "rk4", "steps": [2.5e-5, 1e-4]},
         ],
     });
     let request = json!({ "preset": "paper-200m", "set": { "cost_study": study } });
@@ -509,12 +510,18 @@ fn cost_study_over_rest_is_served_as_numbers_lines_and_charts() {
     assert!(alpha[1]["steps"].as_u64() > alpha[0]["steps"].as_u64());
     assert!(error(of("rk4")[0]) < error(alpha[1]), "{report}");
     assert!(of("rk4")[1]["failure"].as_str().unwrap().contains("stability limit"), "{report}");
-    assert!(get(&path)["summary"]["cost_cpu_time_1_percent"].as_f64().unwrap() > 0.0);
+    // Its reference is two methods, and over so short a time they agree.
+    let references: Vec<_> =
+        report["references"].as_array().unwrap().iter().map(|row| &row["integrator"]).collect();
+    assert_eq!(references, ["rk4", "esdirk4"]);
+    let agreement = &report["agreements"][0];
+    assert_eq!((&agreement["quantity"], &agreement["has_reference"]), (&json!("orbit_size"), &json!(true)));
+    assert!(get(&path)["summary"]["cost_cpu_time_orbit_size_2_percent"].as_f64().unwrap() > 0.0);
 
     let text = |query: &str| {
         ureq::get(format!("{path}/cost?{query}")).call().unwrap().body_mut().read_to_vec().unwrap()
     };
-    assert_eq!(String::from_utf8(text("format=csv")).unwrap().lines().count(), 1 + 1 + 4);
+    assert_eq!(String::from_utf8(text("format=csv")).unwrap().lines().count(), 1 + 2 + 4);
     let svg = String::from_utf8(text("format=svg&measure=trajectory")).unwrap();
     assert!(svg.contains("<svg") && svg.contains("generalized-alpha"));
     assert_eq!(&text("format=png")[..8], b"\x89PNG\r\n\x1a\n");

@@ -51,9 +51,16 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
         "residual" | "energy_residual" => "J",
         "mesh_error_mean_radius" | "mesh_error_static_position" | "mesh_error_friction_coefficient" => "1",
-        "cpu_per_simulated_second" | "trajectory_error" | "orbit_size_error" | "mean_radius_error" => "1",
+        "cpu_per_simulated_second" | "speed_over_rk4" | "tolerance" => "1",
+        "trajectory_error" | "line_amplitude_error" => "1",
         "static_position_error" | "friction_coefficient_error" | "energy_error" | "estimated_error" => "1",
         name if name.starts_with("cost_step_") || name.starts_with("cost_cpu_time_") => "s",
+        name if ["_bias", "_half_width"].iter().any(|end| name.ends_with(end)) => "1",
+        "orbit_size_spread"
+        | "radius_deviation_spread"
+        | "mean_radius_spread"
+        | "contact_force_spread"
+        | "torsional_speed_spread" => "1",
         _ => return None,
     })
 }
@@ -86,7 +93,7 @@ mod tests {
         assert_eq!(unit("reference_orbit_mean_radius_49"), Some("m"));
         assert_eq!(unit("bias_orbit_mean_radius_49"), Some("1"));
         assert_eq!(unit("bias_line_frequency_hz_49_w1"), Some("Hz"));
-        assert_eq!(unit("cost_cpu_time_0_1_percent"), Some("s"));
+        assert_eq!(unit("cost_cpu_time_orbit_size_0_3_percent"), Some("s"));
         assert_eq!(unit("node"), None);
         assert_eq!(unit("49"), None);
     }

@@ -24,7 +24,7 @@ pub(crate) struct CostQuery {
     #[serde(default)]
     #[param(inline)]
     format: CostFormat,
-    /// Which error a chart shows; absent means orbit size, or the trajectory where that has no error.
+    /// Which error a chart shows; absent means the first of orbit size, radius deviation and trajectory that has any.
     #[param(inline)]
     measure: Option<ChartMeasure>,
 }
@@ -48,8 +48,10 @@ enum CostFormat {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum ChartMeasure {
-    /// Of the orbit's size.
+    /// Of the orbit's size, over the orbit window.
     OrbitSize,
+    /// Of the standard deviation of the distance from the hole's axis, over the orbit window.
+    RadiusDeviation,
     /// Of the trajectory, up to where histories part.
     Trajectory,
 }
@@ -67,8 +69,9 @@ impl CostFormat {
 
 /// What accuracy costs: a point's work-precision study
 ///
-/// Only a point whose scenario has a `cost_study` has one: methods, steps and meshes against a converged run, each
-/// with its errors and its processor time, and the cheapest way to some accuracies.
+/// Only a point whose scenario has a `cost_study` has one: accuracies, methods, steps and meshes against what two methods of
+/// different kind both reach over the windows that are read, each with its errors and its processor time, and the cheapest way
+/// to some accuracies. Where the two do not agree, it says that no reference exists.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/cost",
@@ -96,12 +99,13 @@ pub(crate) async fn show(
     }
     blocking(move || {
         let report: CostReport = serde_json::from_slice(&stored).map_err(|error| Error::internal(&error))?;
-        if report.methods.is_empty() && matches!(format, CostFormat::Svg | CostFormat::Png) {
+        if report.compared().next().is_none() && matches!(format, CostFormat::Svg | CostFormat::Png) {
             let detail = "must be json or csv: a study of effects has no chart";
             return Err(Error::parameter("format", None, detail));
         }
         let measure = match measure {
             Some(ChartMeasure::OrbitSize) => Measure::OrbitSize,
+            Some(ChartMeasure::RadiusDeviation) => Measure::RadiusDeviation,
             Some(ChartMeasure::Trajectory) => Measure::Trajectory,
             None => Measure::usual(&report),
         };

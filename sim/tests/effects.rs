@@ -160,7 +160,7 @@ fn fewer_degrees_of_freedom_resume_to_the_same_bits() {
 fn an_ablation_takes_one_effect_away_at_a_time_and_tells_what_changes() {
     let mut scenario = base(0.1, METHODS[1]);
     scenario.mud.as_mut().unwrap().flow_rate = 0.0;
-    scenario.cost_study = Some(CostStudy { duration: 0.1, effects: true, ..CostStudy::default() });
+    scenario.cost_study = Some(CostStudy { effects: true, ..CostStudy::default() });
     scenario.validate().unwrap();
     let planned = plan(&scenario).unwrap();
     let whole = planned[0].scenario.active_effects();
@@ -184,19 +184,22 @@ fn an_ablation_takes_one_effect_away_at_a_time_and_tells_what_changes() {
         .map(|planned| {
             let model = Model::new(&planned.scenario).unwrap();
             let equilibrium = Equilibrium::find(&model).map_err(|error| error.to_string())?;
-            let transient = Transient::member(&model, &equilibrium, planned.member).unwrap();
+            let transient = Transient::member(&model, &equilibrium, planned.members.start).unwrap();
             match transient.run(&Control::new()) {
-                Ok(Outcome::Finished(records)) => Ok((Measure::new(&model, &equilibrium, &records), 1.0)),
+                Ok(Outcome::Finished(records)) => {
+                    Ok((Measure::new(&model, &equilibrium, &records, planned.members.start), 1.0))
+                }
                 other => Err(format!("{other:?}")),
             }
         })
+        .map(|run| vec![run])
         .collect();
     let report = report(&scenario, &planned, &measured).unwrap();
     assert!(report.methods.is_empty() && report.recommendations.is_empty());
     let row = |effect| report.effects.iter().find(|row| row.effect == Some(effect)).unwrap();
     // Without its wall the string is buckled by the weight on bit.
     assert!(row(Effect::Contact).failure.as_ref().unwrap().contains("no equilibrium"));
-    let change = |effect| row(effect).errors.unwrap();
+    let change = |effect| row(effect).errors.clone().unwrap();
     // Buoyancy moves the string at rest; what acts on motion alone does not.
     assert!(change(Effect::Buoyancy).static_position > 1e-3);
     assert!(change(Effect::FluidAddedMass).static_position < 1e-14);

@@ -173,10 +173,11 @@ impl Computed {
         }
         if let Some(study) = &self.study {
             row.insert("histories_part_at".into(), json!(study.histories_part_at));
-            for Recommendation { orbit_size, cpu_time, .. } in &study.recommendations {
-                // 0.001 is 0.1 %; a dot in a column's name would read as a path.
-                let percent = (100.0 * orbit_size).to_string().replace('.', "_");
-                row.insert(format!("cost_cpu_time_{percent}_percent"), json!(cpu_time));
+            for Recommendation { quantity, accuracy, cpu_time, .. } in &study.recommendations {
+                // 0.003 is 0.3 %; a dot in a column's name would read as a path.
+                let percent = (100.0 * accuracy).to_string().replace('.', "_");
+                let name = format!("cost_cpu_time_{}_{percent}_percent", quantity.name());
+                row.insert(name, json!(cpu_time));
             }
         }
         row
@@ -196,7 +197,7 @@ impl Computed {
             artifacts.push(EncodedArtifact {
                 name: "cost",
                 media_type: JSON,
-                row_count: 1 + study.methods.len() + study.meshes.len(),
+                row_count: study.rows(),
                 bytes: json!(study).to_string().into_bytes(),
             });
         }

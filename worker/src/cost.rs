@@ -2,9 +2,10 @@
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
+use drillsweep_sim::plan::MachineSpeed;
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::{CostReport, Measure, PlannedRun, plan, report};
+use drillsweep_sim::study::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
 use drillsweep_sim::transient::{Outcome, Transient};
 use rayon::prelude::*;
 
@@ -14,38 +15,53 @@ use crate::compute::{ComputeError, Stopwatch};
 /// counts the simulated time of all runs, [`study_time`] in all.
 ///
 /// # Errors
-/// When the scenario is not valid, the reference run fails, or it is cancelled.
+/// When the scenario is not valid, both methods of the reference fail, or it is cancelled.
 pub fn cost_study(scenario: &Scenario, control: &Control) -> Result<CostReport, ComputeError> {
     scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let planned = plan(scenario)?;
-    // The dearest runs stand last in every method; taken one by one, they fill the cores best.
-    let runs: Vec<_> = planned
+    let members = planned.iter().flat_map(|row| row.members.clone().map(move |member| (row, member)));
+    let members: Vec<_> = members.collect();
+    // The reference's runs, the dearest, stand first; taken one by one, they fill the cores best.
+    let runs: Vec<_> = members
         .par_iter()
         .with_max_len(1)
-        .map(|planned| match run(planned, control) {
+        .map(|&(row, member)| match run(row, member, control) {
             Err(ComputeError::Cancelled) => Err(ComputeError::Cancelled),
             other => Ok(other.map_err(|error| error.to_string())),
         })
         .collect::<Result<_, _>>()?;
-    Ok(report(scenario, &planned, &runs)?)
+    let mut runs = runs.into_iter();
+    let by_row: Vec<Vec<_>> =
+        planned.iter().map(|row| runs.by_ref().take(row.members.len()).collect()).collect();
+    Ok(report(scenario, &planned, &by_row)?)
 }
 
 /// Simulated time of all runs of the scenario's cost study \[s\]; zero where it cannot be planned.
 pub fn study_time(scenario: &Scenario) -> f64 {
-    plan(scenario).map_or(0.0, |planned| planned.iter().map(|planned| planned.scenario.duration).sum())
+    let time = |row: &PlannedRow| row.members.len() as f64 * row.scenario.duration;
+    plan(scenario).map_or(0.0, |planned| planned.iter().map(time).sum())
 }
 
-fn run(planned: &PlannedRun, control: &Control) -> Result<(Measure, f64), ComputeError> {
+/// Processor time that the scenario's cost study is expected to take on a machine of this speed \[s\], and how many of its lines
+/// that leaves out, since their steps adapt themselves.
+///
+/// # Errors
+/// When the study cannot be planned.
+pub fn study_cpu_time(scenario: &Scenario, speed: &MachineSpeed) -> Result<(f64, usize), ComputeError> {
+    Ok(expected_cpu_time(&plan(scenario)?, speed))
+}
+
+fn run(planned: &PlannedRow, member: u32, control: &Control) -> Result<(Measure, f64), ComputeError> {
     let model = Model::new(&planned.scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
     let watch = Stopwatch::start();
-    match Transient::member(&model, &equilibrium, planned.member)
+    match Transient::member(&model, &equilibrium, member)
         .and_then(|run| run.run(&control.part()))
         .map_err(ComputeError::Transient)?
     {
         Outcome::Finished(records) => {
             let (_, cpu_time) = watch.elapsed();
-            Ok((Measure::new(&model, &equilibrium, &records), cpu_time))
+            Ok((Measure::new(&model, &equilibrium, &records, member), cpu_time))
         }
         Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
     }

@@ -17,5 +17,5 @@ pub use claim::{WorkerConfig, WorkerError, host_name, run};
 pub use compute::{
     Computation, ComputeError, Computed, EncodedArtifact, compute, compute_from, simulated_time_total,
 };
-pub use cost::{cost_study, study_time};
+pub use cost::{cost_study, study_cpu_time, study_time};
 pub use tables::{point_tables, summary_row};

@@ -8,7 +8,7 @@ pub use chart::{Measure, PNG_WIDTH, chart};
 pub use table::{csv, table};
 pub use text::text;
 
-pub use drillsweep_sim::study::{CostErrors, CostReport, CostRow, Recommendation};
+pub use drillsweep_sim::study::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
 
 /// A step in the unit that reads best, to three digits: `1 ms`, `0.25 ms`, `58.8 µs`.
 fn step_text(step: f64) -> String {
@@ -34,65 +34,148 @@ fn three_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use drillsweep_sim::scenario::{Integrator, TimeWindow};
-    use drillsweep_sim::study::{CostErrors, CostReport, CostRow, Recommendation};
+    use drillsweep_sim::study::{
+        Agreement, CostErrors, CostReport, CostRow, LineErrors, NodeAgreement, NodeStatistic, Quantity,
+        Recommendation, SpuriousLine, StatisticError,
+    };
 
     use super::*;
+
+    fn statistic(bias: f64) -> StatisticError {
+        let node = NodeStatistic {
+            measured_depth: Some(57.8),
+            reference: 1.0,
+            value: 1.0 + bias,
+            bias,
+            half_width: None,
+            spread: None,
+            reference_spread: None,
+        };
+        StatisticError {
+            bias,
+            half_width: None,
+            spread: None,
+            significant: None,
+            measured_depth: Some(57.8),
+            nodes: vec![node],
+        }
+    }
 
     /// A run with errors in proportion to `error`.
     pub(super) fn row(integrator: Integrator, step: f64, cpu: f64, error: f64) -> CostRow {
         CostRow {
+            name: integrator.name().to_owned(),
             effect: None,
             integrator,
             step,
+            tolerance: None,
+            contact_sweeps: 2,
             mesh_factor: 1.0,
             elements: 296,
             steps: (2.0 / step).round() as u64,
             step_subdivisions: 1,
             cpu_time: 2.0 * cpu,
             cpu_per_simulated_second: cpu,
+            speed_over_rk4: Some(4.2 / cpu),
             errors: Some(CostErrors {
-                trajectory: Some(3.0 * error),
-                orbit_size: error,
-                mean_radius: 0.1 * error,
-                line_frequency_hz: Some(0.0),
+                orbit_size: Some(statistic(error)),
+                radius_deviation: None,
+                mean_radius: Some(statistic(0.1 * error)),
+                contact_force: None,
+                torsional_speed: None,
+                lines: Some(LineErrors {
+                    frequency_hz: Some(0.0),
+                    amplitude: error.abs(),
+                    missing: 0,
+                    named: Vec::new(),
+                    spurious: Vec::new(),
+                }),
+                trajectory: Some(3.0 * error.abs()),
                 static_position: 0.0,
                 friction_coefficient: Some(0.0),
                 energy: None,
-                estimate: 5.0 * error,
+                estimate: 5.0 * error.abs(),
             }),
             failure: None,
         }
     }
 
-    /// Two methods, of which the explicit one failed with its largest step, and two meshes.
+    /// Gives a row's statistics an interval and a spread.
+    pub(super) fn with_members(row: &mut CostRow, half_width: f64, spread: f64) {
+        let Some(errors) = &mut row.errors else { return };
+        for error in [&mut errors.orbit_size, &mut errors.mean_radius].into_iter().flatten() {
+            error.half_width = Some(half_width);
+            error.spread = Some(spread);
+            error.significant = Some(error.bias.abs() > half_width);
+        }
+    }
+
+    fn agreement(quantity: Quantity, values: [f64; 2], difference: f64, bound: f64) -> Agreement {
+        Agreement {
+            quantity,
+            difference,
+            half_width: None,
+            bound,
+            has_reference: difference <= bound,
+            nodes: vec![NodeAgreement {
+                measured_depth: Some(57.8),
+                values,
+                difference,
+                has_reference: difference <= bound,
+            }],
+        }
+    }
+
+    /// Two methods that agree on orbit size but not on the radius, a preset with a spurious line, a fixed step, one run that
+    /// failed, and two meshes.
     pub(super) fn report() -> CostReport {
         let coarse = CostRow { mesh_factor: 2.0, elements: 158, ..row(Integrator::Esdirk4, 1e-3, 0.2, 0.3) };
         let fine = CostRow { mesh_factor: 0.5, elements: 585, ..row(Integrator::Esdirk4, 1e-3, 0.8, 0.04) };
+        let mut draft = CostRow { name: "draft".to_owned(), ..row(Integrator::Esdirk4, 1e-3, 0.4, 0.4) };
+        if let Some(lines) = draft.errors.as_mut().and_then(|errors| errors.lines.as_mut()) {
+            lines.spurious.push(SpuriousLine { measured_depth: 57.8, frequency_hz: 14.65, height: 0.593 });
+        }
         CostReport {
             scenario: "paper-200m".to_owned(),
             duration: 2.0,
             scenario_duration: 60.0,
-            window: TimeWindow { from: 1.0, to: 2.0 },
+            orbit_window: TimeWindow { from: 1.333, to: 2.0 },
+            spectrum_window: Some(TimeWindow { from: 1.667, to: 2.0 }),
+            members: 1,
             histories_part_at: Some(1.234),
-            reference: CostRow { errors: None, ..row(Integrator::Esdirk4, 2.5e-4, 1.6, 0.0) },
+            references: vec![
+                CostRow { name: "A".to_owned(), ..row(Integrator::Rk4, 5e-5, 4.2, -5e-4) },
+                CostRow {
+                    name: "B".to_owned(),
+                    contact_sweeps: 30,
+                    ..row(Integrator::Esdirk4, 1.25e-4, 3.2, 5e-4)
+                },
+            ],
+            agreements: vec![
+                agreement(Quantity::OrbitSize, [7.160e-4, 7.164e-4], 5e-4, 0.01),
+                agreement(Quantity::RadiusDeviation, [7.8e-5, 8.19e-5], 0.05, 0.03),
+            ],
             methods: vec![
-                row(Integrator::Esdirk4, 5e-4, 0.8, 2.5e-4),
-                row(Integrator::Esdirk4, 1e-3, 0.4, 4e-3),
+                draft,
+                row(Integrator::Esdirk4, 5e-4, 0.8, 4e-3),
                 CostRow {
                     errors: None,
+                    speed_over_rk4: None,
                     failure: Some("diverged at 0.1 s, at once".to_owned()),
                     ..row(Integrator::Rk4, 1.0 / 16000.0, 1.0, 0.0)
                 },
-                row(Integrator::Rk4, 5e-5, 4.2, 1e-3),
             ],
             meshes: vec![coarse, fine],
             effects: Vec::new(),
             recommendations: vec![Recommendation {
-                orbit_size: 0.01,
+                quantity: Quantity::OrbitSize,
+                accuracy: 0.02,
+                name: Some("esdirk4".to_owned()),
                 integrator: Some(Integrator::Esdirk4),
-                step: Some(1e-3),
-                cpu_time: Some(24.0),
-                text: "1 %: esdirk4 with 1 ms, 24 s for 60 s".to_owned(),
+                step: Some(5e-4),
+                tolerance: None,
+                cpu_time: Some(48.0),
+                text: "2 % of orbit size: esdirk4 with a step of 0.5 ms".to_owned(),
             }],
             warnings: vec!["a finer mesh meets a stiffer wall".to_owned()],
         }

@@ -1,14 +1,14 @@
 //! A cost study as a table.
 
-use drillsweep_sim::study::{CostErrors, CostReport, CostRow};
+use drillsweep_sim::study::{CostErrors, CostReport, CostRow, LineErrors, Quantity, StatisticError};
 
 use crate::table::{Column, Table};
 
-/// One row a run: its `role` (`reference`, `method`, `mesh` or `effect`), what it was, what it took, its errors against the
-/// reference, and the `failure` of one that has none.
+/// One row a line of the study: its `role` (`reference`, `method`, `mesh` or `effect`), what it was, what it took, its errors against
+/// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none.
 pub fn table(report: &CostReport) -> Table {
     let of_role = |role, rows| std::iter::repeat(role).zip(rows);
-    let runs: Vec<(&str, &CostRow)> = of_role("reference", std::slice::from_ref(&report.reference))
+    let runs: Vec<(&str, &CostRow)> = of_role("reference", report.references.as_slice())
         .chain(of_role("method", &report.methods))
         .chain(of_role("mesh", &report.meshes))
         .chain(of_role("effect", &report.effects))
@@ -24,21 +24,45 @@ pub fn table(report: &CostReport) -> Table {
         let of_run = |row: &CostRow| row.errors.as_ref().and_then(error).unwrap_or(f64::NAN);
         Column::Number(runs.iter().map(|(_, row)| of_run(row)).collect())
     };
-    Table::default()
+    let lines = |count: fn(&LineErrors) -> usize| {
+        let of_run = |row: &CostRow| {
+            let lines = row.errors.as_ref()?.lines.as_ref()?;
+            i64::try_from(count(lines)).ok()
+        };
+        Column::Integer(runs.iter().map(|(_, row)| of_run(row)).collect())
+    };
+    let mut table = Table::default()
         .with("role", Column::Text(runs.iter().map(|(role, _)| Some((*role).to_owned())).collect()))
+        .with("name", texts(|row| Some(row.name.clone())))
         .with("without_effect", texts(|row| row.effect.map(|effect| effect.name().to_owned())))
         .with("integrator", texts(|row| Some(row.integrator.name().to_owned())))
         .with("step", numbers(|row| row.step))
+        .with("tolerance", numbers(|row| row.tolerance.unwrap_or(f64::NAN)))
+        .with("contact_sweeps", counts(|row| row.contact_sweeps.into()))
         .with("mesh_factor", numbers(|row| row.mesh_factor))
         .with("elements", counts(|row| row.elements as u64))
         .with("steps", counts(|row| row.steps))
         .with("step_subdivisions", counts(|row| row.step_subdivisions.into()))
         .with("cpu_time", numbers(|row| row.cpu_time))
         .with("cpu_per_simulated_second", numbers(|row| row.cpu_per_simulated_second))
+        .with("speed_over_rk4", numbers(|row| row.speed_over_rk4.unwrap_or(f64::NAN)));
+    for &quantity in Quantity::ALL.iter().filter(|&&quantity| quantity != Quantity::Lines) {
+        let statistic = |value: fn(&StatisticError) -> Option<f64>| {
+            let of_run = |row: &CostRow| value(row.errors.as_ref()?.statistic(quantity)?);
+            Column::Number(runs.iter().map(|(_, row)| of_run(row).unwrap_or(f64::NAN)).collect())
+        };
+        let name = quantity.name();
+        table = table
+            .with(format!("{name}_bias"), statistic(|error| Some(error.bias)))
+            .with(format!("{name}_half_width"), statistic(|error| error.half_width))
+            .with(format!("{name}_spread"), statistic(|error| error.spread));
+    }
+    table
+        .with("line_frequency_error_hz", errors(|errors| errors.lines.as_ref()?.frequency_hz))
+        .with("line_amplitude_error", errors(|errors| Some(errors.lines.as_ref()?.amplitude)))
+        .with("missing_lines", lines(|lines| lines.missing as usize))
+        .with("spurious_lines", lines(|lines| lines.spurious.len()))
         .with("trajectory_error", errors(|errors| errors.trajectory))
-        .with("orbit_size_error", errors(|errors| Some(errors.orbit_size)))
-        .with("mean_radius_error", errors(|errors| Some(errors.mean_radius)))
-        .with("line_frequency_error_hz", errors(|errors| errors.line_frequency_hz))
         .with("static_position_error", errors(|errors| Some(errors.static_position)))
         .with("friction_coefficient_error", errors(|errors| errors.friction_coefficient))
         .with("energy_error", errors(|errors| errors.energy))
@@ -62,19 +86,25 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(
             lines[0],
-            "role,without_effect,integrator,step,mesh_factor,elements,steps,step_subdivisions,cpu_time,cpu_per_simulated_second,\
-             trajectory_error,orbit_size_error,mean_radius_error,line_frequency_error_hz,static_position_error,\
-             friction_coefficient_error,energy_error,estimated_error,failure"
+            "role,name,without_effect,integrator,step,tolerance,contact_sweeps,mesh_factor,elements,steps,step_subdivisions,\
+             cpu_time,cpu_per_simulated_second,speed_over_rk4,\
+             orbit_size_bias,orbit_size_half_width,orbit_size_spread,\
+             radius_deviation_bias,radius_deviation_half_width,radius_deviation_spread,\
+             mean_radius_bias,mean_radius_half_width,mean_radius_spread,\
+             contact_force_bias,contact_force_half_width,contact_force_spread,\
+             torsional_speed_bias,torsional_speed_half_width,torsional_speed_spread,\
+             line_frequency_error_hz,line_amplitude_error,missing_lines,spurious_lines,trajectory_error,\
+             static_position_error,friction_coefficient_error,energy_error,estimated_error,failure"
         );
         let roles: Vec<&str> = lines[1..].iter().filter_map(|line| line.split(',').next()).collect();
-        assert_eq!(roles, ["reference", "method", "method", "method", "method", "mesh", "mesh"]);
-        assert_eq!(lines[1], "reference,,esdirk4,0.00025,1.0,296,8000,1,3.2,1.6,,,,,,,,,");
+        assert_eq!(roles, ["reference", "reference", "method", "method", "method", "mesh", "mesh"]);
         assert_eq!(
             lines[3],
-            "method,,esdirk4,0.001,1.0,296,2000,1,0.8,0.4,0.012,0.004,0.0004,0.0,0.0,0.0,,0.02,"
+            "method,draft,,esdirk4,0.001,,2,1.0,296,2000,1,0.8,0.4,10.5,0.4,,,,,,0.04000000000000001,,,,,,,,,0.0,0.4,0,1,\
+             1.2000000000000002,0.0,0.0,,2.0,"
         );
-        assert!(lines[4].ends_with(",,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[4]);
-        assert!(lines[6].starts_with("mesh,,esdirk4,0.001,2.0,158,"), "{}", lines[6]);
+        assert!(lines[5].ends_with(",,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[5]);
+        assert!(lines[6].starts_with("mesh,esdirk4,,esdirk4,0.001,,2,2.0,158,"), "{}", lines[6]);
     }
 
     #[test]
@@ -84,6 +114,8 @@ mod tests {
         assert_eq!(units["cpu_time"], "s");
         assert_eq!(units["cpu_per_simulated_second"], "1");
         assert_eq!(units["line_frequency_error_hz"], "Hz");
-        assert_eq!(units["orbit_size_error"], "1");
+        assert_eq!(units["orbit_size_bias"], "1");
+        assert_eq!(units["radius_deviation_half_width"], "1");
+        assert_eq!(units["speed_over_rk4"], "1");
     }
 }

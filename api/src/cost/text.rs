@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use drillsweep_sim::study::{CostErrors, CostReport, CostRow};
+use drillsweep_sim::scenario::Integrator;
+use drillsweep_sim::study::{
+    Agreement, CostErrors, CostReport, CostRow, LineErrors, NodeAgreement, Quantity, StatisticError,
+};
 
 use super::{step_text, three_digits};
 
@@ -11,46 +14,45 @@ const ABSENT: &str = "-";
 
 /// The study in words and aligned columns.
 pub fn text(report: &CostReport) -> String {
-    let name = if report.scenario.is_empty() { "the scenario" } else { &report.scenario };
-    let subject = if report.effects.is_empty() { "what accuracy costs" } else { "what each effect does" };
-    let mut text = format!(
-        "{subject}: runs of {name} over {} s, orbits and lines over [{}, {}) s\n",
-        report.duration, report.window.from, report.window.to
-    );
-    let reference = &report.reference;
-    let _ = writeln!(
-        text,
-        "reference: {} with {}, {} steps, {} elements, {} CPU s ({} per simulated s)",
-        reference.integrator.name(),
-        step_text(reference.step),
-        reference.steps,
-        reference.elements,
-        three_digits(reference.cpu_time),
-        three_digits(reference.cpu_per_simulated_second)
-    );
+    let mut text = head(report);
     text.push_str(&match report.histories_part_at {
         Some(time) => format!(
-            "a disturbance of 1e-6 m has parted the reference from itself after {} s: histories are compared up to \
-             there, and beyond it only sizes and lines mean anything\n",
+            "histories have parted after {} s (by the method, or by a disturbance of 1e-6 m): they are compared up to there, and \
+             beyond it only statistics and lines mean anything\n",
             three_digits(time)
         ),
-        None => "a disturbance of 1e-6 m leaves the reference together with itself to the end: histories are compared \
-                 over the whole run\n"
-            .to_owned(),
+        None => "histories stay together to the end, and are compared over the whole run\n".to_owned(),
     });
-    if !report.methods.is_empty() {
-        text.push_str("\nmethods, errors against the reference (relative, but lines in Hz)\n");
-        text.push_str(&aligned(&method_columns(&report.methods), &report.methods));
+    text.push_str(match report.members {
+        1 => "one member each: the confidence of a bias is unknown\n",
+        _ => {
+            "biases with half the width of their 95 % confidence interval, in brackets the members' standard deviation; ~ where \
+             the interval holds zero\n"
+        }
+    });
+    if !report.agreements.is_empty() {
+        text.push_str("\nthe reference: how far A and B agree\n");
+        text.push_str(&agreement_lines(&report.agreements));
     }
-    if !report.meshes.is_empty() {
-        text.push_str("\nmeshes, errors against the finest (relative, but lines in Hz)\n");
-        text.push_str(&aligned(&mesh_columns(&report.meshes), &report.meshes));
+    let rows: Vec<&CostRow> = report.compared().collect();
+    if !rows.is_empty() {
+        text.push_str("\nmethods against the reference, A and B against each other (statistics and line heights in %)\n");
+        text.push_str(&aligned_rows(&method_columns(&rows), &rows));
+        text.push_str(&spurious_lines(&rows));
     }
-    if !report.effects.is_empty() {
+    let rows: Vec<&CostRow> = report.meshes.iter().collect();
+    if !rows.is_empty() {
         text.push_str(
-            "\neffects, what changes without each (relative, but lines in Hz) and the time it saves\n",
+            "\nmeshes at the accuracy reference, against the finest (statistics and line heights in %)\n",
         );
-        text.push_str(&aligned(&effect_columns(report), &report.effects));
+        text.push_str(&aligned_rows(&mesh_columns(&rows), &rows));
+    }
+    let rows: Vec<&CostRow> = report.effects.iter().collect();
+    if !rows.is_empty() {
+        text.push_str(
+            "\neffects, what changes without each (statistics and line heights in %) and the time it saves\n",
+        );
+        text.push_str(&aligned_rows(&effect_columns(report, &rows), &rows));
     }
     if !report.recommendations.is_empty() {
         text.push_str("\nrecommended\n");
@@ -67,34 +69,152 @@ pub fn text(report: &CostReport) -> String {
     text
 }
 
+/// What was run, over which windows, and against what.
+fn head(report: &CostReport) -> String {
+    let name = if report.scenario.is_empty() { "the scenario" } else { &report.scenario };
+    let subject = if report.effects.is_empty() { "what accuracy costs" } else { "what each effect does" };
+    let orbit = &report.orbit_window;
+    let mut text = format!(
+        "{subject}: runs of {name} over {} s, statistics over [{}, {}) s",
+        report.duration, orbit.from, orbit.to
+    );
+    if let Some(window) = &report.spectrum_window {
+        let _ = write!(text, ", lines over [{}, {}) s", window.from, window.to);
+    }
+    if report.members > 1 {
+        let _ = write!(text, ", {} members each", report.members);
+    }
+    if report.duration != report.scenario_duration {
+        let _ = write!(
+            text,
+            " (the scenario lasts {} s; orbits are of the last third, lines of the last sixth)",
+            report.scenario_duration
+        );
+    }
+    text.push('\n');
+    let stepping = |row: &CostRow| {
+        let tolerance =
+            row.tolerance.map_or_else(String::new, |tolerance| format!(" and a tolerance of {tolerance:e}"));
+        let sweeps = match row.integrator {
+            Integrator::Rk4 => String::new(),
+            _ => format!(", up to {} sweeps", row.contact_sweeps),
+        };
+        format!("{} with {}{tolerance}{sweeps}", row.integrator.name(), step_text(row.step))
+    };
+    let _ = match report.references.as_slice() {
+        [a, b] => writeln!(
+            text,
+            "reference: what two methods both reach, A: {}; B: {}; {} elements",
+            stepping(a),
+            stepping(b),
+            a.elements.max(b.elements)
+        ),
+        rows => rows.iter().try_for_each(|row| {
+            writeln!(
+                text,
+                "against the whole: {}, {} elements, {} CPU s ({} per simulated s)",
+                stepping(row),
+                row.elements,
+                three_digits(row.cpu_time),
+                three_digits(row.cpu_per_simulated_second)
+            )
+        }),
+    };
+    text
+}
+
 /// A column of a table: its head, and its cell in every row.
 struct Column {
     head: &'static str,
     cells: Vec<Option<String>>,
 }
 
-fn column(head: &'static str, rows: &[CostRow], cell: impl Fn(&CostRow) -> Option<String>) -> Column {
-    Column { head, cells: rows.iter().map(cell).collect() }
+fn agreement_lines(agreements: &[Agreement]) -> String {
+    let worst = |agreement: &Agreement| -> Option<NodeAgreement> {
+        agreement.nodes.iter().max_by(|a, b| a.difference.total_cmp(&b.difference)).cloned()
+    };
+    let cells = |head, cell: &dyn Fn(&Agreement) -> Option<String>| Column {
+        head,
+        cells: agreements.iter().map(cell).collect(),
+    };
+    let value = |agreement: &Agreement, which: usize| {
+        let value = worst(agreement)?.values[which];
+        Some(match agreement.quantity {
+            Quantity::ContactForce => format!("{} N", three_digits(value)),
+            Quantity::TorsionalSpeed => format!("{} rad/s", three_digits(value)),
+            _ => format!("{} mm", four_digits(1e3 * value)),
+        })
+    };
+    let columns = [
+        cells("quantity", &|agreement| Some(agreement.quantity.words().to_owned())),
+        cells("worst at", &|agreement| {
+            worst(agreement)?.measured_depth.map(|depth| format!("{} m", three_digits(depth)))
+        }),
+        cells("A", &|agreement| value(agreement, 0)),
+        cells("B", &|agreement| value(agreement, 1)),
+        cells("differ by", &|agreement| {
+            let interval =
+                agreement.half_width.map_or_else(String::new, |half| format!(" ± {}", percent(half)));
+            Some(format!("{}{interval} %", percent(agreement.difference)))
+        }),
+        cells("allowed", &|agreement| Some(format!("{} %", percent(agreement.bound)))),
+    ];
+    let verdict = |agreement: &Agreement| {
+        if !agreement.has_reference {
+            return "  NO REFERENCE EXISTS".to_owned();
+        }
+        let without = agreement.nodes.iter().filter(|node| !node.has_reference);
+        let depths: Vec<_> = without.filter_map(|node| node.measured_depth).map(three_digits).collect();
+        if depths.is_empty() { String::new() } else { format!("  NO REFERENCE AT {} m", depths.join(", ")) }
+    };
+    aligned(&columns, &agreements.iter().map(verdict).collect::<Vec<_>>())
 }
 
-fn errors(head: &'static str, rows: &[CostRow], error: fn(&CostErrors) -> Option<f64>) -> Column {
+fn column(head: &'static str, rows: &[&CostRow], cell: impl Fn(&CostRow) -> Option<String>) -> Column {
+    Column { head, cells: rows.iter().map(|row| cell(row)).collect() }
+}
+
+fn errors(head: &'static str, rows: &[&CostRow], error: fn(&CostErrors) -> Option<f64>) -> Column {
     column(head, rows, |row| row.errors.as_ref().and_then(error).map(error_text))
 }
 
-fn method_columns(rows: &[CostRow]) -> Vec<Column> {
+fn statistic(head: &'static str, rows: &[&CostRow], quantity: Quantity) -> Column {
+    column(head, rows, |row| row.errors.as_ref()?.statistic(quantity).map(statistic_text))
+}
+
+fn lines(head: &'static str, rows: &[&CostRow], cell: impl Fn(&LineErrors) -> Option<String>) -> Column {
+    column(head, rows, |row| cell(row.errors.as_ref()?.lines.as_ref()?))
+}
+
+fn line_columns(rows: &[&CostRow]) -> [Column; 2] {
+    [
+        lines("line Hz", rows, |lines| lines.frequency_hz.map(error_text)),
+        lines("line height", rows, |lines| Some(percent(lines.amplitude))),
+    ]
+}
+
+fn method_columns(rows: &[&CostRow]) -> Vec<Column> {
     let mut columns = run_columns(rows);
+    columns.push(column("x rk4", rows, |row| row.speed_over_rk4.map(three_digits)));
     columns.extend([
+        statistic("orbit size", rows, Quantity::OrbitSize),
+        statistic("std of radius", rows, Quantity::RadiusDeviation),
+        statistic("mean radius", rows, Quantity::MeanRadius),
+        statistic("contact force", rows, Quantity::ContactForce),
+        statistic("torsional speed", rows, Quantity::TorsionalSpeed),
+    ]);
+    columns.extend(line_columns(rows));
+    columns.extend([
+        lines("missing", rows, |lines| Some(lines.missing.to_string())),
+        lines("spurious", rows, |lines| Some(lines.spurious.len().to_string())),
         errors("history", rows, |errors| errors.trajectory),
-        errors("orbit size", rows, |errors| Some(errors.orbit_size)),
-        errors("mean radius", rows, |errors| Some(errors.mean_radius)),
-        errors("line Hz", rows, |errors| errors.line_frequency_hz),
         errors("energy", rows, |errors| errors.energy),
         errors("own estimate", rows, |errors| Some(errors.estimate)),
     ]);
     columns
 }
 
-fn mesh_columns(rows: &[CostRow]) -> Vec<Column> {
+fn mesh_columns(rows: &[&CostRow]) -> Vec<Column> {
     let mut columns = run_columns(rows);
     columns.splice(
         1..1,
@@ -103,46 +223,74 @@ fn mesh_columns(rows: &[CostRow]) -> Vec<Column> {
             column("elements", rows, |row| Some(row.elements.to_string())),
         ],
     );
-    columns.extend([
-        errors("statics", rows, |errors| Some(errors.static_position)),
-        errors("C_f", rows, |errors| errors.friction_coefficient),
-        errors("history", rows, |errors| errors.trajectory),
-        errors("orbit size", rows, |errors| Some(errors.orbit_size)),
-        errors("mean radius", rows, |errors| Some(errors.mean_radius)),
-        errors("line Hz", rows, |errors| errors.line_frequency_hz),
-    ]);
+    columns.extend(change_columns(rows));
     columns
 }
 
-fn effect_columns(report: &CostReport) -> Vec<Column> {
-    let rows = &report.effects;
-    let whole = report.reference.cpu_per_simulated_second;
+fn effect_columns(report: &CostReport, rows: &[&CostRow]) -> Vec<Column> {
+    let whole = report.references.first().map_or(0.0, |row| row.cpu_per_simulated_second);
     let saved = |row: &CostRow| {
         let share = 100.0 * (1.0 - row.cpu_per_simulated_second / whole);
         (row.failure.is_none() && share.is_finite()).then(|| format!("{share:.0} %"))
     };
-    vec![
-        column("without", rows, |row| row.effect.map(|effect| effect.name().to_owned())),
+    let mut columns = vec![column("without", rows, |row| row.effect.map(|effect| effect.name().to_owned()))];
+    columns.extend(change_columns(rows));
+    columns.push(column("time saved", rows, saved));
+    columns
+}
+
+/// What another mesh or another physics changes.
+fn change_columns(rows: &[&CostRow]) -> Vec<Column> {
+    let mut columns = vec![
         errors("statics", rows, |errors| Some(errors.static_position)),
         errors("C_f", rows, |errors| errors.friction_coefficient),
         errors("history", rows, |errors| errors.trajectory),
-        errors("orbit size", rows, |errors| Some(errors.orbit_size)),
-        errors("mean radius", rows, |errors| Some(errors.mean_radius)),
-        errors("line Hz", rows, |errors| errors.line_frequency_hz),
-        column("time saved", rows, saved),
+        statistic("orbit size", rows, Quantity::OrbitSize),
+        statistic("std of radius", rows, Quantity::RadiusDeviation),
+        statistic("mean radius", rows, Quantity::MeanRadius),
+        statistic("contact force", rows, Quantity::ContactForce),
+        statistic("torsional speed", rows, Quantity::TorsionalSpeed),
+    ];
+    columns.extend(line_columns(rows));
+    columns
+}
+
+fn run_columns(rows: &[&CostRow]) -> Vec<Column> {
+    let cut = rows.iter().any(|row| row.step_subdivisions > 1);
+    let is_implicit = |row: &CostRow| row.integrator != Integrator::Rk4;
+    let ran = |row: &CostRow, cell: String| row.failure.is_none().then_some(cell);
+    vec![
+        column("name", rows, |row| (row.name != row.integrator.name()).then(|| row.name.clone())),
+        column("method", rows, |row| Some(row.integrator.name().to_owned())),
+        column("step", rows, |row| Some(step_text(row.step))),
+        column("tolerance", rows, |row| row.tolerance.map(|tolerance| format!("{tolerance:e}"))),
+        column("sweeps", rows, |row| is_implicit(row).then(|| row.contact_sweeps.to_string())),
+        column("cut in", rows, |row| cut.then(|| row.step_subdivisions.to_string())),
+        column("steps", rows, |row| ran(row, row.steps.to_string())),
+        column("CPU s per s", rows, |row| ran(row, three_digits(row.cpu_per_simulated_second))),
     ]
 }
 
-fn run_columns(rows: &[CostRow]) -> Vec<Column> {
-    let cut = rows.iter().any(|row| row.step_subdivisions > 1);
-    vec![
-        column("method", rows, |row| Some(row.integrator.name().to_owned())),
-        column("step", rows, |row| Some(step_text(row.step))),
-        column("cut in", rows, |row| cut.then(|| row.step_subdivisions.to_string())),
-        column("CPU s per s", rows, |row| {
-            row.failure.is_none().then(|| three_digits(row.cpu_per_simulated_second))
-        }),
-    ]
+/// The spurious lines of each row, the highest named.
+fn spurious_lines(rows: &[&CostRow]) -> String {
+    let mut text = String::new();
+    for row in rows {
+        let lines = row.errors.as_ref().and_then(|errors| errors.lines.as_ref());
+        let highest =
+            lines.and_then(|lines| lines.spurious.iter().max_by(|a, b| a.height.total_cmp(&b.height)));
+        if let Some(line) = highest {
+            let _ = writeln!(
+                text,
+                "  spurious of {} with {}: up to {} % of the highest line, at {:.2} Hz, {} m",
+                row.name,
+                step_text(row.step),
+                percent(line.height),
+                line.frequency_hz,
+                three_digits(line.measured_depth)
+            );
+        }
+    }
+    text
 }
 
 /// Errors that are rounding and nothing else.
@@ -152,15 +300,60 @@ fn error_text(error: f64) -> String {
     if error < ROUNDING { "0".to_owned() } else { format!("{error:.1e}") }
 }
 
-/// The columns that have any value, the first flush left, the others flush right; then why runs failed.
-fn aligned(columns: &[Column], rows: &[CostRow]) -> String {
+/// The size of a ratio in per cent, without that sign: `39.8`, `0.12`, `1e-4`.
+fn percent(ratio: f64) -> String {
+    let percent = 100.0 * ratio.abs();
+    match percent {
+        percent if percent < 100.0 * ROUNDING => "0".to_owned(),
+        percent if percent < 0.01 => format!("{percent:.0e}"),
+        percent if percent < 1.0 => three_digits((100.0 * percent).round() / 100.0),
+        percent => three_digits(percent),
+    }
+}
+
+/// A bias in per cent, with its interval and spread where members tell them: `+39.8 ± 1.2 (2)`.
+fn statistic_text(error: &StatisticError) -> String {
+    let size = percent(error.bias);
+    let sign = match error.bias {
+        _ if size == "0" => "",
+        bias if bias < 0.0 => "-",
+        _ => "+",
+    };
+    let mut text = format!("{sign}{size}");
+    if let Some(half_width) = error.half_width {
+        let _ = write!(text, " ± {}", percent(half_width));
+    }
+    if let Some(spread) = error.spread {
+        let _ = write!(text, " ({})", percent(spread));
+    }
+    if error.significant == Some(false) {
+        text.push('~');
+    }
+    text
+}
+
+/// A length to four digits, in which two methods that agree still differ.
+fn four_digits(value: f64) -> String {
+    let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
+    let decimals = usize::try_from(4 - whole_digits).unwrap_or(0).min(12);
+    format!("{value:.decimals$}")
+}
+
+fn aligned_rows(columns: &[Column], rows: &[&CostRow]) -> String {
+    let failure =
+        |row: &&CostRow| row.failure.as_ref().map(|reason| format!("  failed: {reason}")).unwrap_or_default();
+    aligned(columns, &rows.iter().map(failure).collect::<Vec<_>>())
+}
+
+/// The columns that have any value, the first flush left, the others flush right; then what is to be said of a row.
+fn aligned(columns: &[Column], notes: &[String]) -> String {
     let columns: Vec<&Column> =
         columns.iter().filter(|column| column.cells.iter().any(Option::is_some)).collect();
     let shown = |column: &Column, row: usize| -> String {
         column.cells[row].clone().unwrap_or_else(|| ABSENT.to_owned())
     };
     let width = |column: &Column| {
-        let cells = (0..rows.len()).map(|row| shown(column, row).chars().count());
+        let cells = (0..notes.len()).map(|row| shown(column, row).chars().count());
         cells.chain([column.head.len()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = columns.iter().map(|column| width(column)).collect();
@@ -177,9 +370,8 @@ fn aligned(columns: &[Column], rows: &[CostRow]) -> String {
         text.push('\n');
     };
     line(&|column| column.head.to_owned(), "");
-    for (number, row) in rows.iter().enumerate() {
-        let failure = row.failure.as_ref().map(|reason| format!("  failed: {reason}")).unwrap_or_default();
-        line(&|column| shown(column, number), &failure);
+    for (number, note) in notes.iter().enumerate() {
+        line(&|column| shown(column, number), note);
     }
     text
 }
@@ -187,7 +379,7 @@ fn aligned(columns: &[Column], rows: &[CostRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::tests::report;
+    use crate::cost::tests::{report, with_members};
 
     #[test]
     fn columns_are_aligned_and_what_no_run_has_is_left_out() {
@@ -195,26 +387,62 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         let at = lines.iter().position(|line| line.starts_with("methods")).unwrap();
         assert_eq!(
-            lines[at + 1..at + 6],
+            lines[at + 1..at + 8],
             [
-                "  method      step  CPU s per s  history  orbit size  mean radius  line Hz  own estimate",
-                "  esdirk4   0.5 ms          0.8   7.5e-4      2.5e-4       2.5e-5        0        1.3e-3",
-                "  esdirk4     1 ms          0.4   1.2e-2      4.0e-3       4.0e-4        0        2.0e-2",
-                "  rk4      62.5 µs            -        -           -            -        -             -  \
-                 failed: diverged at 0.1 s, at once",
-                "  rk4        50 µs          4.2   3.0e-3      1.0e-3       1.0e-4        0        5.0e-3",
+                "  name    method      step  sweeps  steps  CPU s per s  x rk4  orbit size  mean radius  line Hz  line height\
+                 \x20 missing  spurious  history  own estimate",
+                "  A          rk4     50 µs       -  40000          4.2      1       -0.05        -5e-3        0         0.05\
+                 \x20       0         0   1.5e-3        2.5e-3",
+                "  B      esdirk4  0.125 ms      30  16000          3.2   1.31       +0.05        +5e-3        0         0.05\
+                 \x20       0         0   1.5e-3        2.5e-3",
+                "  draft  esdirk4      1 ms       2   2000          0.4   10.5         +40           +4        0           40\
+                 \x20       0         1    1.2e0         2.0e0",
+                "  -      esdirk4    0.5 ms       2   4000          0.8   5.25        +0.4        +0.04        0          0.4\
+                 \x20       0         0   1.2e-2        2.0e-2",
+                "  -          rk4   62.5 µs       -      -            -      -           -            -        -            -\
+                 \x20       -         -        -             -  failed: diverged at 0.1 s, at once",
+                "  spurious of draft with 1 ms: up to 59.3 % of the highest line, at 14.65 Hz, 57.8 m",
             ],
             "{text}"
         );
-        assert!(text.contains("  x 0.5       585"), "{text}");
-        let end = "recommended\n  1 %: esdirk4 with 1 ms, 24 s for 60 s\n\nwarning: a finer mesh meets a stiffer wall\n";
+        assert!(text.contains("  x 0.5           585"), "{text}");
+        let end = "recommended\n  2 % of orbit size: esdirk4 with a step of 0.5 ms\n\nwarning: a finer mesh meets a stiffer wall\n";
         assert!(text.ends_with(end), "{text}");
+    }
+
+    #[test]
+    fn the_reference_is_told_with_its_agreement() {
+        let text = text(&report());
+        for line in [
+            "what accuracy costs: runs of paper-200m over 2 s, statistics over [1.333, 2) s, lines over [1.667, 2) s (the \
+             scenario lasts 60 s; orbits are of the last third, lines of the last sixth)\n",
+            "reference: what two methods both reach, A: rk4 with 50 µs; B: esdirk4 with 0.125 ms, up to 30 sweeps; 296 \
+             elements\n",
+            "  orbit size                      57.8 m   0.7160 mm   0.7164 mm     0.05 %      1 %\n",
+            "  standard deviation of radius    57.8 m  0.07800 mm  0.08190 mm        5 %      3 %  NO REFERENCE EXISTS\n",
+            "one member each: the confidence of a bias is unknown\n",
+        ] {
+            assert!(text.contains(line), "{line}\n{text}");
+        }
+    }
+
+    #[test]
+    fn members_show_bias_interval_and_spread_side_by_side() {
+        let mut report = report();
+        report.members = 5;
+        for row in &mut report.methods {
+            with_members(row, 0.012, 0.02);
+        }
+        let text = text(&report);
+        assert!(text.contains(" 5 members each"), "{text}");
+        assert!(text.contains("  +40 ± 1.2 (2)  ") && text.contains("  +0.4 ± 1.2 (2)~  "), "{text}");
+        assert!(!text.contains("one member"));
     }
 
     #[test]
     fn the_time_of_parting_is_told_in_words() {
         let mut report = report();
-        assert!(text(&report).contains("after 1.23 s: histories are compared up to there"));
+        assert!(text(&report).contains("parted after 1.23 s"));
         report.histories_part_at = None;
         assert!(text(&report).contains("over the whole run"));
     }

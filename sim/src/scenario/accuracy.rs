@@ -154,6 +154,15 @@ impl AccuracyPreset {
             AccuracyPreset::Reference => 0.003,
         }
     }
+
+    /// The name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            AccuracyPreset::Draft => "draft",
+            AccuracyPreset::Standard => "standard",
+            AccuracyPreset::Reference => "reference",
+        }
+    }
 }
 
 /// An integrator and its step.

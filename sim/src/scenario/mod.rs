@@ -24,7 +24,8 @@ pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
-pub use study::{CostStudy, MethodSteps};
+pub(crate) use study::USUAL_STEPS;
+pub use study::{CostStudy, MethodSteps, StudyReference};
 
 use serde::{Deserialize, Serialize};
 

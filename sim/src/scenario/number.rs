@@ -7,7 +7,7 @@ use super::set::{Step, parse};
 use super::{
     Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud,
     NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, Scenario, Section,
-    SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -104,8 +104,9 @@ numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; wit
 numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
-numbers!(CostStudy: duration, methods, mesh_factors; without effects);
-numbers!(MethodSteps: steps; without integrator);
+numbers!(CostStudy: duration, reference, methods, mesh_factors; without members, presets, effects);
+numbers!(StudyReference: methods, size_agreement, deviation_agreement);
+numbers!(MethodSteps: steps, tolerance; without integrator, contact_sweeps);
 
 impl Numbers for Outputs {
     fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
@@ -183,8 +184,12 @@ mod tests {
             .and_then(|scenario| scenario.with("accuracy.spectral_radius", json!(0.8)))
             .and_then(|scenario| scenario.with("contact.reference_length", json!(0.5)))
             .and_then(|scenario| {
-                let study =
-                    json!({"methods": [{"integrator": "rk4", "steps": [5e-5]}], "mesh_factors": [2.0]});
+                let study = json!({
+                    "duration": 10.0,
+                    "reference": {"methods": [{"integrator": "esdirk4", "step": 1e-4, "tolerance": 0.01, "spectral_radius": 0.8}]},
+                    "methods": [{"integrator": "rk4", "steps": [5e-5], "tolerance": 0.01}],
+                    "mesh_factors": [2.0],
+                });
                 scenario.with("cost_study", study)
             })
             .unwrap()

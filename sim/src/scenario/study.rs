@@ -2,28 +2,62 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Integrator;
+use super::{AccuracyPreset, Integrator, TimeStepping};
 
-/// A work-precision study: instead of one run, runs of several methods and steps, and of several meshes, against a
-/// converged one.
+/// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
+/// different kind both reach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
-    /// Simulated time of each run \[s\]; it takes the place of the scenario's duration.
-    #[serde(default = "ten_seconds")]
-    pub duration: f64,
-    /// Methods and their steps; absent means all three with four steps each, those of `rk4` just below its stability
-    /// limit.
+    /// Simulated time of each run \[s\]. Absent means the scenario's own duration and windows; of any other duration orbits
+    /// are looked at over the last third, and spectra over the last sixth.
+    #[serde(default)]
+    pub duration: Option<f64>,
+    /// Members of the ensemble that each method runs: with 5 or more, bias (difference of means, with a confidence interval) can
+    /// be told from spread. One alone has no spread.
+    #[serde(default = "one")]
+    pub members: u32,
+    /// What the others are compared with.
+    #[serde(default)]
+    pub reference: StudyReference,
+    /// Named accuracies to compare, as they stand; all three unless said otherwise.
+    #[serde(default = "all_presets")]
+    pub presets: Vec<AccuracyPreset>,
+    /// Methods and their steps to compare besides; absent means `generalized_alpha` with 0.5, 0.25 and 0.125 ms and `esdirk4`
+    /// with 1, 0.5 and 0.25 ms, as far as they divide the recording interval. The reference's two methods are always shown.
     #[serde(default)]
     pub methods: Option<Vec<MethodSteps>>,
-    /// Factors on the mesh's target element lengths, each a run of its own; empty means none.
+    /// Factors on the mesh's target element lengths, each a run of its own at the accuracy `reference`; empty means none.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
     /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
     /// switched off in turn.
     #[serde(default)]
     pub effects: bool,
+}
+
+/// Fixed steps \[s\] that are compared where a study names none.
+pub(crate) const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
+    [(Integrator::GeneralizedAlpha, [5e-4, 2.5e-4, 1.25e-4]), (Integrator::Esdirk4, [1e-3, 5e-4, 2.5e-4])];
+
+/// The reference of a study: two methods of different kind. What both reach is the reference; a statistic in which they differ
+/// by more than is allowed has none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct StudyReference {
+    /// The two methods; absent means `rk4` with 0.05 ms, or just below its stability limit where that is less, and `esdirk4`
+    /// with 0.125 ms and up to 30 contact sweeps.
+    #[serde(default)]
+    pub methods: Option<Vec<TimeStepping>>,
+    /// Relative difference of orbit size, mean radius and contact force up to which the two agree.
+    #[serde(default = "one_percent")]
+    pub size_agreement: f64,
+    /// Relative difference of standard deviations (of the radius, of torsional speed) and of lines' amplitudes up to which the
+    /// two agree.
+    #[serde(default = "three_percent")]
+    pub deviation_agreement: f64,
 }
 
 /// One method and the steps to try it with.
@@ -33,16 +67,69 @@ pub struct CostStudy {
 pub struct MethodSteps {
     /// The method.
     pub integrator: Integrator,
-    /// Steps \[s\]; each must divide the recording interval.
+    /// Steps \[s\], by the rules of `accuracy.step`.
     pub steps: Vec<f64>,
+    /// Contact sweeps a solve, 2 or more (implicit methods).
+    #[serde(default = "two")]
+    pub contact_sweeps: u32,
+    /// Relative error tolerance of the adaptive step, by the rules of `accuracy.tolerance`; absent means fixed steps.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+}
+
+impl MethodSteps {
+    /// A method with fixed steps \[s\] and two contact sweeps.
+    pub fn fixed(integrator: Integrator, steps: Vec<f64>) -> Self {
+        Self { integrator, steps, contact_sweeps: two(), tolerance: None }
+    }
+
+    /// The steppings that it stands for.
+    pub fn steppings(&self) -> impl Iterator<Item = TimeStepping> {
+        let Self { integrator, ref steps, contact_sweeps, tolerance } = *self;
+        steps.iter().map(move |&step| TimeStepping {
+            contact_sweeps,
+            tolerance,
+            ..TimeStepping::fixed(integrator, step)
+        })
+    }
 }
 
 impl Default for CostStudy {
     fn default() -> Self {
-        Self { duration: ten_seconds(), methods: None, mesh_factors: Vec::new(), effects: false }
+        Self {
+            duration: None,
+            members: one(),
+            reference: StudyReference::default(),
+            presets: all_presets(),
+            methods: None,
+            mesh_factors: Vec::new(),
+            effects: false,
+        }
     }
 }
 
-fn ten_seconds() -> f64 {
-    10.0
+impl Default for StudyReference {
+    fn default() -> Self {
+        Self { methods: None, size_agreement: one_percent(), deviation_agreement: three_percent() }
+    }
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn two() -> u32 {
+    2
+}
+
+fn one_percent() -> f64 {
+    0.01
+}
+
+fn three_percent() -> f64 {
+    0.03
+}
+
+fn all_presets() -> Vec<AccuracyPreset> {
+    vec![AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference]
 }

@@ -4,6 +4,7 @@ mod hole;
 mod loads;
 mod report;
 mod string;
+mod study;
 mod time;
 
 use super::{Problems, Scenario, Warning};

@@ -53,6 +53,21 @@ impl Report {
         }
     }
 
+    /// The problems at a path, and those elsewhere.
+    pub(super) fn split(self, path: &str) -> (Self, Self) {
+        let of = |problems| Self { problems, warnings: Vec::new() };
+        let (at, elsewhere) = self.problems.into_iter().partition(|problem| problem.path == path);
+        (of(at), of(elsewhere))
+    }
+
+    /// Takes over the problems of another report, their paths beginning with `to` in place of `from`.
+    pub(super) fn take_problems(&mut self, other: Self, from: &str, to: &str) {
+        for problem in other.problems {
+            let rest = problem.path.strip_prefix(from).unwrap_or_default();
+            self.problems.push(Problem { path: format!("{to}{rest}"), ..problem });
+        }
+    }
+
     /// The warnings, or all problems if there are any.
     pub(super) fn finish(self) -> Result<Vec<Warning>, Problems> {
         if self.problems.is_empty() { Ok(self.warnings) } else { Err(Problems(self.problems)) }

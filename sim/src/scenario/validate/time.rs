@@ -1,10 +1,11 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
+use super::study;
 use crate::scenario::accuracy::TOLERANCES;
 use crate::scenario::{
-    Accuracy, AccuracyTarget, CostStudy, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
-    TimeStepping, TimeWindow,
+    Accuracy, AccuracyTarget, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TimeStepping,
+    TimeWindow,
 };
 use crate::string::StringMesh;
 
@@ -12,7 +13,7 @@ use crate::string::StringMesh;
 const SAME_TIME: f64 = 1e-9;
 
 /// Fewer samples than this have no spectrum or orbit to speak of.
-const FEWEST_SAMPLES: f64 = 8.0;
+pub(super) const FEWEST_SAMPLES: f64 = 8.0;
 
 /// Samples of one run that are kept at most.
 const MOST_SAMPLES: f64 = 1e7;
@@ -22,10 +23,7 @@ const MOST_SAMPLES: f64 = 1e7;
 const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
 
 /// Runs of one point at most.
-const LARGEST_ENSEMBLE: u32 = 64;
-
-/// Runs of one cost study at most.
-const MOST_STUDY_RUNS: usize = 64;
+pub(super) const LARGEST_ENSEMBLE: u32 = 64;
 
 /// Smallest step \[s\] at which the implicit methods damp what friction drives in torsional modes of single elements.
 const FINEST_UNDAMPED_STEP: f64 = 1e-4;
@@ -45,7 +43,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
     );
     if let Some(study) = &scenario.cost_study {
-        check_study(report, scenario, study);
+        study::check(report, scenario, study);
     }
     check_samples(report, scenario);
     for (i, window) in recording.spectrum_windows.iter().enumerate() {
@@ -107,7 +105,7 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
     }
 }
 
-fn check_accuracy(report: &mut Report, scenario: &Scenario) {
+pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
     let stepping = scenario.accuracy.time_stepping();
     report.positive(stepping.step, "accuracy.step");
     let rate = scenario.recording.rate_hz;
@@ -208,65 +206,6 @@ fn check_tolerance(report: &mut Report, scenario: &Scenario) {
     }
 }
 
-fn check_study(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
-    let rate = scenario.recording.rate_hz;
-    report.positive(study.duration, "cost_study.duration");
-    report.require(
-        is_whole(study.duration * rate) && study.duration * rate >= 10.0 * FEWEST_SAMPLES,
-        "cost_study.duration",
-        study.duration,
-        format!(
-            "must be a whole multiple of the recording interval, {} s, and at least {} of them",
-            1.0 / rate,
-            10.0 * FEWEST_SAMPLES
-        ),
-    );
-    report.require(
-        scenario.active_effects().transient,
-        "cost_study",
-        "effects.transient off",
-        "needs the run in time",
-    );
-    report.require(
-        !study.effects || (study.methods.is_none() && study.mesh_factors.is_empty()),
-        "cost_study.effects",
-        "true",
-        "is a study of its own: give neither methods nor mesh_factors with it",
-    );
-    let mut runs = study.mesh_factors.len();
-    for (i, method) in study.methods.iter().flatten().enumerate() {
-        runs += method.steps.len();
-        for (j, &step) in method.steps.iter().enumerate() {
-            report.number(
-                step,
-                format!("cost_study.methods[{i}].steps[{j}]"),
-                |step| step > 0.0 && is_whole(1.0 / (rate * step)),
-                format!("must be a part of the recording interval, {} s", 1.0 / rate),
-            );
-        }
-    }
-    report.require(
-        study.methods.as_ref().is_none_or(|methods| methods.iter().any(|method| !method.steps.is_empty())),
-        "cost_study.methods",
-        "no step",
-        "must name at least one method with one step",
-    );
-    report.require(
-        runs <= MOST_STUDY_RUNS,
-        "cost_study",
-        format!("{runs} runs"),
-        format!("must have at most {MOST_STUDY_RUNS} runs"),
-    );
-    for (i, &factor) in study.mesh_factors.iter().enumerate() {
-        report.number(
-            factor,
-            format!("cost_study.mesh_factors[{i}]"),
-            |factor| (0.1..=10.0).contains(&factor),
-            "must be 0.1 to 10",
-        );
-    }
-}
-
 /// The run must hold a whole number of recording intervals, and not too many.
 fn check_samples(report: &mut Report, scenario: &Scenario) {
     let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
@@ -350,7 +289,7 @@ fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
     }
 }
 
-fn is_whole(ratio: f64) -> bool {
+pub(super) fn is_whole(ratio: f64) -> bool {
     ratio.round() >= 1.0 && (ratio - ratio.round()).abs() <= SAME_TIME * ratio
 }
 

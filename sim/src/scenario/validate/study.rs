@@ -1,0 +1,185 @@
+//! Rules of cost studies.
+
+use super::report::Report;
+use super::time::{FEWEST_SAMPLES, LARGEST_ENSEMBLE, check_accuracy, is_whole};
+use crate::scenario::{Accuracy, CostStudy, Scenario, TimeStepping, USUAL_STEPS};
+
+/// Runs of one cost study at most.
+const MOST_RUNS: usize = 256;
+
+/// Fewest samples of a run whose windows are parts of its duration: a sixth of them still has a spectrum.
+const FEWEST_SAMPLES_OF_A_RUN: f64 = 10.0 * FEWEST_SAMPLES;
+
+pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
+    let rate = scenario.recording.rate_hz;
+    if let Some(duration) = study.duration {
+        report.positive(duration, "cost_study.duration");
+        report.require(
+            is_whole(duration * rate) && duration * rate >= FEWEST_SAMPLES_OF_A_RUN,
+            "cost_study.duration",
+            duration,
+            format!(
+                "must be a whole multiple of the recording interval, {} s, and at least {FEWEST_SAMPLES_OF_A_RUN} of them",
+                1.0 / rate
+            ),
+        );
+    }
+    report.require(
+        (1..=LARGEST_ENSEMBLE).contains(&study.members),
+        "cost_study.members",
+        study.members,
+        format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
+    );
+    report.require(
+        scenario.active_effects().transient,
+        "cost_study",
+        "effects.transient off",
+        "needs the run in time",
+    );
+    report.require(
+        !study.effects || (study.methods.is_none() && study.mesh_factors.is_empty()),
+        "cost_study.effects",
+        "true",
+        "is a study of its own: give neither methods nor mesh_factors with it",
+    );
+    check_reference(report, scenario, study);
+    let mut rows = study.presets.len() + study.mesh_factors.len();
+    if study.methods.is_none() {
+        rows += USUAL_STEPS.iter().map(|(_, steps)| steps.len()).sum::<usize>();
+    }
+    for (i, method) in study.methods.iter().flatten().enumerate() {
+        rows += method.steps.len();
+        for (j, stepping) in method.steppings().enumerate() {
+            let mut found = Report::default();
+            check_accuracy(&mut found, &with_stepping(scenario, stepping));
+            let of_method = format!("cost_study.methods[{i}]");
+            let of_step = format!("{of_method}.steps[{j}]");
+            let (steps, others) = found.split("accuracy.step");
+            report.take_problems(steps, "accuracy.step", &of_step);
+            // What is said of the method itself is said once.
+            if j == 0 {
+                report.take_problems(others, "accuracy", &of_method);
+            }
+        }
+    }
+    let fixed = study.methods.as_ref().is_none_or(|methods| methods.iter().any(|m| !m.steps.is_empty()));
+    report.require(
+        study.effects || fixed || !study.presets.is_empty() || !study.mesh_factors.is_empty(),
+        "cost_study.methods",
+        "no step",
+        "must name at least one method with one step where presets and mesh_factors are empty",
+    );
+    let runs = rows.saturating_add(2).saturating_mul(study.members as usize);
+    report.require(
+        runs <= MOST_RUNS,
+        "cost_study",
+        format!("{runs} runs"),
+        format!("must have at most {MOST_RUNS} runs, those of the reference and all members included"),
+    );
+    for (i, &factor) in study.mesh_factors.iter().enumerate() {
+        report.number(
+            factor,
+            format!("cost_study.mesh_factors[{i}]"),
+            |factor| (0.1..=10.0).contains(&factor),
+            "must be 0.1 to 10",
+        );
+    }
+}
+
+fn check_reference(report: &mut Report, scenario: &Scenario, study: &CostStudy) {
+    const PATH: &str = "cost_study.reference";
+    let reference = &study.reference;
+    for (bound, name) in
+        [(reference.size_agreement, "size_agreement"), (reference.deviation_agreement, "deviation_agreement")]
+    {
+        report.number(
+            bound,
+            format!("{PATH}.{name}"),
+            |bound| bound > 0.0 && bound < 1.0,
+            "must be greater than 0 and less than 1",
+        );
+    }
+    let Some(methods) = &reference.methods else { return };
+    let of_different_kind = matches!(methods.as_slice(), [a, b] if a.integrator != b.integrator);
+    let names: Vec<_> = methods.iter().map(|method| method.integrator.name()).collect();
+    report.require(
+        of_different_kind,
+        format!("{PATH}.methods"),
+        names.join(", "),
+        "must be two different integrators: what one alone reaches may be its own doing",
+    );
+    for (i, &stepping) in methods.iter().enumerate() {
+        let mut found = Report::default();
+        check_accuracy(&mut found, &with_stepping(scenario, stepping));
+        report.take_problems(found, "accuracy", &format!("{PATH}.methods[{i}]"));
+    }
+}
+
+fn with_stepping(scenario: &Scenario, stepping: TimeStepping) -> Scenario {
+    Scenario { accuracy: Accuracy::Explicit(stepping), cost_study: None, ..scenario.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::testing::{problem, warnings};
+    use crate::scenario::{CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping};
+
+    fn with(study: CostStudy) -> impl Fn(&mut Scenario) {
+        move |scenario| scenario.cost_study = Some(study.clone())
+    }
+
+    #[test]
+    fn a_study_runs_as_long_as_its_scenario_or_a_whole_number_of_samples() {
+        assert_eq!(warnings(with(CostStudy::default())), []);
+        let lasting = |duration| with(CostStudy { duration: Some(duration), ..CostStudy::default() });
+        assert_eq!(warnings(lasting(0.08)), []);
+        for duration in [0.079, 1.0005] {
+            problem("cost_study.duration", lasting(duration));
+        }
+    }
+
+    #[test]
+    fn a_reference_is_of_two_kinds() {
+        let of = |methods: &[TimeStepping]| {
+            let reference = StudyReference { methods: Some(methods.to_vec()), ..StudyReference::default() };
+            with(CostStudy { reference, ..CostStudy::default() })
+        };
+        let fixed = TimeStepping::fixed;
+        let (rk4, esdirk4) = (fixed(Integrator::Rk4, 5e-5), fixed(Integrator::Esdirk4, 2.5e-4));
+        assert_eq!(warnings(of(&[rk4, esdirk4])), []);
+        for methods in [vec![], vec![rk4], vec![rk4, fixed(Integrator::Rk4, 2.5e-5)], vec![rk4, esdirk4, rk4]]
+        {
+            problem("cost_study.reference.methods", of(&methods));
+        }
+        let once = TimeStepping { contact_sweeps: 1, ..esdirk4 };
+        problem("cost_study.reference.methods[1].contact_sweeps", of(&[rk4, once]));
+        for bound in [0.0, 1.0] {
+            let reference = StudyReference { deviation_agreement: bound, ..StudyReference::default() };
+            let study = CostStudy { reference, ..CostStudy::default() };
+            problem("cost_study.reference.deviation_agreement", with(study));
+        }
+    }
+
+    #[test]
+    fn methods_keep_to_the_rules_of_accuracy() {
+        let of = |method| with(CostStudy { methods: Some(vec![method]), ..CostStudy::default() });
+        let fixed = |steps: &[f64]| MethodSteps::fixed(Integrator::Esdirk4, steps.to_vec());
+        assert_eq!(warnings(of(fixed(&[1e-3, 5e-4]))), []);
+        problem("cost_study.methods[0].steps[1]", of(fixed(&[1e-3, -5e-4])));
+        let once = MethodSteps { contact_sweeps: 1, ..fixed(&[1e-3, 5e-4]) };
+        problem("cost_study.methods[0].contact_sweeps", of(once));
+        // Nothing but the reference is no study; its presets alone are one.
+        let none = CostStudy { methods: Some(Vec::new()), ..CostStudy::default() };
+        assert_eq!(warnings(with(none.clone())), []);
+        problem("cost_study.methods", with(CostStudy { presets: Vec::new(), ..none }));
+    }
+
+    #[test]
+    fn a_study_has_so_many_runs() {
+        let of = |members| with(CostStudy { members, ..CostStudy::default() });
+        assert_eq!(warnings(of(20)), []);
+        problem("cost_study.members", of(0));
+        let many = CostStudy { members: 64, mesh_factors: vec![2.0; 3], ..CostStudy::default() };
+        assert!(problem("cost_study", with(many)).got.contains("896 runs"));
+    }
+}

@@ -132,7 +132,8 @@ mod tests {
 
     #[test]
     fn expected_times_are_those_of_the_points_that_are_not_known() {
-        let request = json!({"preset": "paper-200m", "set": {"accuracy": "draft"},
+        let request = json!({"preset": "paper-200m",
+            "set": {"accuracy": {"integrator": "generalized_alpha", "step": 5e-4}},
             "axes": {"flow_rate": {"from": 0.01, "to": 0.06, "count": 100}}});
         let expansion = || expand(&serde_json::from_value(request.clone()).unwrap()).unwrap();
         let speed = json!({"statics_per_node": 0.0, "start_per_node": [0.0, 0.0, 0.0, 0.0], "step_per_node":
@@ -145,7 +146,7 @@ mod tests {
         assert_eq!(planned.wall_time, planned.cpu_time.map(|time| 0.5 * time));
         assert_eq!((planned.total, planned.known, planned.points.len()), (100, 40, 100));
         let plan = planned.plan.clone().unwrap();
-        assert_eq!(plan.accuracies[0].name, "draft");
+        assert_eq!(plan.accuracies[0].name, "explicit");
         // The base case as printed has no damping that grows with frequency.
         assert!(plan.undamped_torsion.unwrap().up_to_the_mesh && plan.warnings.len() == 1);
 

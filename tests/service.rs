@@ -268,7 +268,7 @@ fn outputs_decide_which_tables_are_kept_and_change_no_number() {
 fn sweep_over_rest_gives_the_numbers_of_a_run_without_a_server() {
     let data = tempfile::tempdir().unwrap();
     let (_up, server) = listen(data.path(), &["up", "--workers", "2"]);
-    let id = submit(&server, 0.5, &json!({}));
+    let id = submit(&server, 0.5, &json!({"accuracy": "draft"}));
     let sweep = wait(&server, &id, completed);
     assert_eq!(sweep["counts"]["succeeded"], 2, "{sweep}");
 

@@ -405,7 +405,7 @@ mod tests {
             ],
             "{text}"
         );
-        assert!(text.contains("  x 0.5           585"), "{text}");
+        assert!(text.contains("  x 0.5         585"), "{text}");
         let end = "recommended\n  2 % of orbit size: esdirk4 with a step of 0.5 ms\n\nwarning: a finer mesh meets a stiffer wall\n";
         assert!(text.ends_with(end), "{text}");
     }

@@ -20,6 +20,10 @@ presets! {
     "paper-200m": "Base case of Tran et al. 2019: 200 m string in a curved 3D hole, with mud",
     "paper-200m-dry": "The same without mud, hence without buoyancy",
     "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s: torsion above the lowest modes decays",
+    "closed/fast-heavy-mud": "The damped base case with 0.04 m3/s of mud of 2100 kg/m3: its largest orbits",
+    "closed/building-well": "The damped base case in a well that builds from 25 to 60 degrees",
+    "closed/near-horizontal": "The damped base case in a well of 85 to 90 degrees, hardly bent",
+    "closed/string-1000m": "Stick-slip of a damped string of 1,000 m in a well that builds from vertical to 50 degrees",
     "hard/tight-gauge": "Gauges of 0.01 mm in a wall of 1e9 N/m: a stiff pin with next to no play",
     "hard/stiff-contact-10": "Contact ten times as stiff and damped: the sweeps over contacts need shorter steps",
     "hard/stiff-contact-100": "Contact a hundred times as stiff and damped",
@@ -62,6 +66,7 @@ pub fn preset(name: &str) -> Option<Scenario> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::TimeWindow;
 
     #[test]
     fn every_preset_parses_under_its_own_name() {
@@ -90,6 +95,20 @@ mod tests {
         damped.damping = printed.damping;
         damped.name.clone_from(&printed.name);
         assert_eq!(printed, damped);
+    }
+
+    #[test]
+    fn closed_scenes_have_the_damped_cases_damping_run_and_window() {
+        let damped = preset("paper-200m-damped").unwrap();
+        let closed: Vec<_> = PRESETS.iter().filter(|(name, _)| name.starts_with("closed/")).collect();
+        assert_eq!(closed.len(), 4);
+        for (name, _) in closed {
+            let scene = preset(name).unwrap();
+            assert_eq!(scene.damping, damped.damping, "{name}");
+            assert_eq!((scene.duration, scene.orbit_window()), (60.0, TimeWindow { from: 40.0, to: 60.0 }));
+            assert_eq!((&scene.operation, &scene.contact), (&damped.operation, &damped.contact), "{name}");
+            assert_eq!(scene.recording.nodes.len(), 3, "{name}");
+        }
     }
 
     #[test]

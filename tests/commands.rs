@@ -205,3 +205,38 @@ fn a_sample_of_points_is_verified_by_the_reference() {
     let refused = run(&server, &["submit", "paper-200m", "--verify", "1.5"]);
     assert!(String::from_utf8(refused.stderr).unwrap().contains("/verify"));
 }
+
+#[test]
+fn several_scenarios_are_studied_by_one_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("cost");
+    let study = ["--presets", "draft", "--methods", "[]", "--threads", "1", "--format", "json"];
+    let output_argument = ["--output", output.to_str().unwrap()];
+    let scenarios = ["cost", "paper-200m-damped", "closed/building-well"];
+    let found = json("", &[&scenarios[..], &SHORT[2..], &study, &output_argument].concat());
+    let reports = found["reports"].as_array().unwrap();
+    let names: Vec<_> = reports.iter().map(|report| report["scenario"].as_str().unwrap()).collect();
+    assert_eq!(names, &scenarios[1..]);
+    assert!(reports.iter().all(|report| report["duration"] == 0.2));
+    let lines: Vec<_> = found["summary"].as_array().unwrap().iter().map(|row| row["name"].clone()).collect();
+    assert_eq!(lines, ["A", "B", "draft", "A", "B", "draft"]);
+    assert_eq!(found["summary"][5]["scenario"], "closed/building-well");
+    assert!(found["summary"][5]["promise"]["verdict"].is_string());
+    let read = |name: &str| std::fs::read_to_string(output.join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&read("summary.json")).unwrap(), found["summary"]);
+    assert_eq!(read("summary.csv").lines().count(), 1 + 6);
+    for (report, folder) in reports.iter().zip(["paper-200m-damped", "closed-building-well"]) {
+        assert_eq!(serde_json::from_str::<Value>(&read(&format!("{folder}/cost.json"))).unwrap(), *report);
+        assert_eq!(read(&format!("{folder}/cost.csv")).lines().count(), 1 + 3);
+    }
+
+    // What is not valid is refused before anything runs.
+    let unwritten = folder.path().join("unwritten");
+    let output_argument = ["--output", unwritten.to_str().unwrap()];
+    let refused = run(
+        "",
+        &[&["cost", "paper-200m", "paper-200m-dry", "--set", "mud.density=-1"][..], &output_argument]
+            .concat(),
+    );
+    assert!(!refused.status.success() && !unwritten.exists());
+}

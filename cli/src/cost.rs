@@ -1,13 +1,15 @@
 //! What accuracy costs for a scenario, measured on this machine.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use drillsweep_api::cost::{Measure, PNG_WIDTH, chart, csv, text};
+use drillsweep_api::cost::{Measure, PNG_WIDTH, chart, csv, summary, summary_csv, summary_text, text};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::CostReport;
 use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
+use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 
 use crate::print;
@@ -15,9 +17,10 @@ use crate::simulate::{parse_set, read_scenario, with_progress};
 
 #[derive(Args)]
 pub(crate) struct CostArguments {
-    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
-    scenario: String,
-    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
+    /// Presets by name (see `drillsweep scenario`) or scenario files (.toml or .json); several are studied one after the other.
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<String>,
+    /// Change a field of every scenario, such as `mud.flow_rate=0.04` or `mud=null`.
     #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
     set: Vec<(String, Value)>,
     /// Seconds of simulated time of each run in place of the scenario's own; orbits are then looked at over the last third,
@@ -43,13 +46,17 @@ pub(crate) struct CostArguments {
     /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.
     #[arg(long, conflicts_with_all = ["methods", "mesh_factors"])]
     effects: bool,
-    /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png.
+    /// Simulations at once; absent means all cores. Side by side they disturb each other's processor time: 1 measures best.
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+    /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png; of several scenarios a folder each, with
+    /// summary.csv and summary.json of all beside them.
     #[arg(long)]
     output: Option<PathBuf>,
     /// What the chart shows: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
     #[arg(long)]
     measure: Option<Measure>,
-    /// What is printed.
+    /// What is printed: of several scenarios every report and a table of all (text), that table (csv), or both (json).
     #[arg(long, default_value = "text")]
     format: Format,
 }
@@ -61,9 +68,74 @@ enum Format {
     Json,
 }
 
-/// Runs the study and prints it.
+/// Runs the studies and prints them.
+///
+/// # Errors
+/// When a scenario is not valid, before any is run; and in the end, when a study failed.
 pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
-    let mut scenario = read_scenario(&arguments.scenario)?;
+    let scenarios: Vec<Scenario> = arguments
+        .scenarios
+        .iter()
+        .map(|name| studied(arguments, name).with_context(|| name.clone()))
+        .collect::<Result<_, _>>()?;
+    announce(&scenarios)?;
+    let pool =
+        ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let run = |scenario: &Scenario| {
+        with_progress(study_time(scenario), |control| pool.install(|| cost_study(scenario, control)))
+    };
+    if let [scenario] = scenarios.as_slice() {
+        let report = run(scenario)?;
+        if let Some(directory) = &arguments.output {
+            write(&report, directory, arguments.measure)?;
+        }
+        match arguments.format {
+            Format::Text => print(text(&report).trim_end()),
+            Format::Csv => print(csv(&report).trim_end()),
+            Format::Json => print(&serde_json::to_string_pretty(&report)?),
+        }
+        return Ok(());
+    }
+    let folders = folder_names(scenarios.iter().map(|scenario| scenario.name.as_str()));
+    let (mut reports, mut failed) = (Vec::new(), Vec::new());
+    for (scenario, folder) in scenarios.iter().zip(&folders) {
+        // One that fails after hours does not take the others with it.
+        let report = match run(scenario) {
+            Ok(report) => report,
+            Err(error) => {
+                tracing::error!("{}: {error:#}", scenario.name);
+                failed.push(scenario.name.as_str());
+                continue;
+            }
+        };
+        if let Format::Text = arguments.format {
+            print(&text(&report));
+        }
+        reports.push(report);
+        if let (Some(directory), Some(report)) = (&arguments.output, reports.last()) {
+            write(report, &directory.join(folder), arguments.measure)?;
+            // What is there stays, should a later one be interrupted.
+            write_summary(&reports, directory)?;
+        }
+    }
+    let rows = summary(&reports);
+    match arguments.format {
+        Format::Text => print(summary_text(&rows).trim_end()),
+        Format::Csv => print(summary_csv(&rows).trim_end()),
+        Format::Json => {
+            print(&serde_json::to_string_pretty(&json!({ "reports": reports, "summary": rows }))?);
+        }
+    }
+    if failed.is_empty() { Ok(()) } else { bail!("no study of {}", failed.join(", ")) }
+}
+
+/// The scenario of this name with the study that the arguments ask for.
+fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
+    let mut scenario = read_scenario(name)?;
+    if scenario.name.is_empty() {
+        let stem = Path::new(name).file_stem();
+        scenario.name = stem.map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    }
     for (path, value) in arguments.set.iter().cloned() {
         scenario = scenario.with(&path, value)?;
     }
@@ -85,30 +157,57 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
         scenario = scenario.with(path, value)?;
     }
     scenario.validate()?;
-    announce(&scenario)?;
-    let report = with_progress(study_time(&scenario), |control| cost_study(&scenario, control))?;
-    if let Some(directory) = &arguments.output {
-        write(&report, directory, arguments.measure)?;
-    }
-    match arguments.format {
-        Format::Text => print(text(&report).trim_end()),
-        Format::Csv => print(csv(&report).trim_end()),
-        Format::Json => print(&serde_json::to_string_pretty(&report)?),
+    Ok(scenario)
+}
+
+/// Says what the studies will take, measured by some short runs on this machine.
+fn announce(scenarios: &[Scenario]) -> anyhow::Result<()> {
+    let speed = calibrate()?;
+    for scenario in scenarios {
+        let (cpu_time, adaptive) = study_cpu_time(scenario, &speed)?;
+        let others = match adaptive {
+            0 => String::new(),
+            lines => format!(", without the {lines} of its lines whose steps adapt themselves"),
+        };
+        tracing::info!(
+            "{}: {} s of simulated time, about {cpu_time:.0} s of processor time{others}",
+            scenario.name,
+            study_time(scenario)
+        );
     }
     Ok(())
 }
 
-/// Says what the study will take, measured by some short runs on this machine.
-fn announce(scenario: &Scenario) -> anyhow::Result<()> {
-    let (cpu_time, adaptive) = study_cpu_time(scenario, &calibrate()?)?;
-    let others = match adaptive {
-        0 => String::new(),
-        lines => format!(", without the {lines} of its lines whose steps adapt themselves"),
-    };
-    tracing::info!(
-        "{} s of simulated time, about {cpu_time:.0} s of processor time{others}",
-        study_time(scenario)
-    );
+/// A folder's name for each scenario: its own, with `-` for what no file system likes, and a number where another one has it already.
+fn folder_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut folders: Vec<String> = Vec::new();
+    for name in names {
+        let is_plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+        let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
+        let plain = match plain.trim_start_matches('.') {
+            "" => "scenario",
+            plain => plain,
+        };
+        let mut folder = plain.to_owned();
+        let mut number = 2;
+        while folders.contains(&folder) {
+            folder = format!("{plain}-{number}");
+            number += 1;
+        }
+        folders.push(folder);
+    }
+    folders
+}
+
+fn write_summary(reports: &[CostReport], directory: &Path) -> anyhow::Result<()> {
+    let rows = summary(reports);
+    let files = [
+        ("summary.csv", summary_csv(&rows).into_bytes()),
+        ("summary.json", serde_json::to_vec_pretty(&rows)?),
+    ];
+    for (name, bytes) in files {
+        write_file(&directory.join(name), &bytes)?;
+    }
     Ok(())
 }
 
@@ -121,12 +220,62 @@ fn write(report: &CostReport, directory: &Path, measure: Option<Measure>) -> any
         files.extend([("cost.svg", chart.svg().into_bytes()), ("cost.png", chart.png(PNG_WIDTH)?)]);
     }
     for (name, bytes) in files {
-        let path = directory.join(name);
-        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        write_file(&directory.join(name), &bytes)?;
     }
     Ok(())
 }
 
+fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
+}
+
 fn json_value(text: &str) -> Result<Value, serde_json::Error> {
     serde_json::from_str(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: CostArguments,
+    }
+
+    fn arguments(line: &[&str]) -> Result<CostArguments, clap::Error> {
+        Line::try_parse_from(["cost"].iter().chain(line)).map(|line| line.arguments)
+    }
+
+    #[test]
+    fn changes_apply_to_every_scenario() {
+        let arguments =
+            arguments(&["paper-200m", "paper-200m-damped", "--set", "duration=61", "--members", "5"])
+                .unwrap();
+        let scenarios = arguments.scenarios.iter().map(|name| studied(&arguments, name).unwrap());
+        let scenarios: Vec<_> = scenarios.collect();
+        assert_eq!(scenarios.len(), 2);
+        for scenario in &scenarios {
+            assert_eq!((scenario.duration, scenario.cost_study.as_ref().unwrap().members), (61.0, 5));
+        }
+        assert_eq!(arguments.threads, None, "all cores");
+    }
+
+    #[test]
+    fn there_is_at_least_one_scenario_and_one_thread() {
+        assert!(arguments(&[]).is_err());
+        assert!(arguments(&["paper-200m", "--threads", "0"]).is_err());
+        assert_eq!(arguments(&["paper-200m", "--threads", "1"]).unwrap().threads, NonZeroUsize::new(1));
+    }
+
+    #[test]
+    fn every_scenario_has_a_folder_of_its_own_below_the_output() {
+        let names = ["closed/string-1000m", "base", "base", "../..", "", "base-2"];
+        assert_eq!(
+            folder_names(names.into_iter()),
+            ["closed-string-1000m", "base", "base-2", "-..", "scenario", "base-2-2"]
+        );
+    }
 }

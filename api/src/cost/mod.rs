@@ -1,10 +1,12 @@
 //! What a cost study found, for people: a text for terminals, a table, and a picture.
 
 mod chart;
+mod summary;
 mod table;
 mod text;
 
 pub use chart::{Measure, PNG_WIDTH, chart};
+pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_csv, summary_text};
 pub use table::{csv, table};
 pub use text::text;
 

@@ -124,16 +124,16 @@ fn head(report: &CostReport) -> String {
 }
 
 /// A column of a table: its head, and its cell in every row.
-struct Column {
-    head: &'static str,
-    cells: Vec<Option<String>>,
+pub(super) struct Cells {
+    pub(super) head: &'static str,
+    pub(super) cells: Vec<Option<String>>,
 }
 
 fn agreement_lines(agreements: &[Agreement]) -> String {
     let worst = |agreement: &Agreement| -> Option<NodeAgreement> {
         agreement.nodes.iter().max_by(|a, b| a.difference.total_cmp(&b.difference)).cloned()
     };
-    let cells = |head, cell: &dyn Fn(&Agreement) -> Option<String>| Column {
+    let cells = |head, cell: &dyn Fn(&Agreement) -> Option<String>| Cells {
         head,
         cells: agreements.iter().map(cell).collect(),
     };
@@ -170,30 +170,30 @@ fn agreement_lines(agreements: &[Agreement]) -> String {
     aligned(&columns, &agreements.iter().map(verdict).collect::<Vec<_>>())
 }
 
-fn column(head: &'static str, rows: &[&CostRow], cell: impl Fn(&CostRow) -> Option<String>) -> Column {
-    Column { head, cells: rows.iter().map(|row| cell(row)).collect() }
+fn column(head: &'static str, rows: &[&CostRow], cell: impl Fn(&CostRow) -> Option<String>) -> Cells {
+    Cells { head, cells: rows.iter().map(|row| cell(row)).collect() }
 }
 
-fn errors(head: &'static str, rows: &[&CostRow], error: fn(&CostErrors) -> Option<f64>) -> Column {
+fn errors(head: &'static str, rows: &[&CostRow], error: fn(&CostErrors) -> Option<f64>) -> Cells {
     column(head, rows, |row| row.errors.as_ref().and_then(error).map(error_text))
 }
 
-fn statistic(head: &'static str, rows: &[&CostRow], quantity: Quantity) -> Column {
+fn statistic(head: &'static str, rows: &[&CostRow], quantity: Quantity) -> Cells {
     column(head, rows, |row| row.errors.as_ref()?.statistic(quantity).map(statistic_text))
 }
 
-fn lines(head: &'static str, rows: &[&CostRow], cell: impl Fn(&LineErrors) -> Option<String>) -> Column {
+fn lines(head: &'static str, rows: &[&CostRow], cell: impl Fn(&LineErrors) -> Option<String>) -> Cells {
     column(head, rows, |row| cell(row.errors.as_ref()?.lines.as_ref()?))
 }
 
-fn line_columns(rows: &[&CostRow]) -> [Column; 2] {
+fn line_columns(rows: &[&CostRow]) -> [Cells; 2] {
     [
         lines("line Hz", rows, |lines| lines.frequency_hz.map(error_text)),
         lines("line height", rows, |lines| Some(percent(lines.amplitude))),
     ]
 }
 
-fn method_columns(rows: &[&CostRow]) -> Vec<Column> {
+fn method_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let mut columns = run_columns(rows);
     columns.push(column("x rk4", rows, |row| row.speed_over_rk4.map(three_digits)));
     columns.extend([
@@ -214,7 +214,7 @@ fn method_columns(rows: &[&CostRow]) -> Vec<Column> {
     columns
 }
 
-fn mesh_columns(rows: &[&CostRow]) -> Vec<Column> {
+fn mesh_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let mut columns = run_columns(rows);
     columns.splice(
         1..1,
@@ -227,7 +227,7 @@ fn mesh_columns(rows: &[&CostRow]) -> Vec<Column> {
     columns
 }
 
-fn effect_columns(report: &CostReport, rows: &[&CostRow]) -> Vec<Column> {
+fn effect_columns(report: &CostReport, rows: &[&CostRow]) -> Vec<Cells> {
     let whole = report.references.first().map_or(0.0, |row| row.cpu_per_simulated_second);
     let saved = |row: &CostRow| {
         let share = 100.0 * (1.0 - row.cpu_per_simulated_second / whole);
@@ -240,7 +240,7 @@ fn effect_columns(report: &CostReport, rows: &[&CostRow]) -> Vec<Column> {
 }
 
 /// What another mesh or another physics changes.
-fn change_columns(rows: &[&CostRow]) -> Vec<Column> {
+fn change_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let mut columns = vec![
         errors("statics", rows, |errors| Some(errors.static_position)),
         errors("C_f", rows, |errors| errors.friction_coefficient),
@@ -255,7 +255,7 @@ fn change_columns(rows: &[&CostRow]) -> Vec<Column> {
     columns
 }
 
-fn run_columns(rows: &[&CostRow]) -> Vec<Column> {
+fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let cut = rows.iter().any(|row| row.step_subdivisions > 1);
     let is_implicit = |row: &CostRow| row.integrator != Integrator::Rk4;
     let ran = |row: &CostRow, cell: String| row.failure.is_none().then_some(cell);
@@ -301,7 +301,7 @@ fn error_text(error: f64) -> String {
 }
 
 /// The size of a ratio in per cent, without that sign: `39.8`, `0.12`, `1e-4`.
-fn percent(ratio: f64) -> String {
+pub(super) fn percent(ratio: f64) -> String {
     let percent = 100.0 * ratio.abs();
     match percent {
         percent if percent < 100.0 * ROUNDING => "0".to_owned(),
@@ -311,15 +311,20 @@ fn percent(ratio: f64) -> String {
     }
 }
 
-/// A bias in per cent, with its interval and spread where members tell them: `+39.8 ± 1.2 (2)`.
-fn statistic_text(error: &StatisticError) -> String {
-    let size = percent(error.bias);
-    let sign = match error.bias {
+/// A ratio in per cent with its sign, unless that is nothing but rounding.
+pub(super) fn signed_percent(ratio: f64) -> String {
+    let size = percent(ratio);
+    let sign = match ratio {
         _ if size == "0" => "",
-        bias if bias < 0.0 => "-",
+        ratio if ratio < 0.0 => "-",
         _ => "+",
     };
-    let mut text = format!("{sign}{size}");
+    format!("{sign}{size}")
+}
+
+/// A bias in per cent, with its interval and spread where members tell them: `+39.8 ± 1.2 (2)`.
+fn statistic_text(error: &StatisticError) -> String {
+    let mut text = signed_percent(error.bias);
     if let Some(half_width) = error.half_width {
         let _ = write!(text, " ± {}", percent(half_width));
     }
@@ -333,32 +338,32 @@ fn statistic_text(error: &StatisticError) -> String {
 }
 
 /// A length to four digits, in which two methods that agree still differ.
-fn four_digits(value: f64) -> String {
+pub(super) fn four_digits(value: f64) -> String {
     let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
     let decimals = usize::try_from(4 - whole_digits).unwrap_or(0).min(12);
     format!("{value:.decimals$}")
 }
 
-fn aligned_rows(columns: &[Column], rows: &[&CostRow]) -> String {
+fn aligned_rows(columns: &[Cells], rows: &[&CostRow]) -> String {
     let failure =
         |row: &&CostRow| row.failure.as_ref().map(|reason| format!("  failed: {reason}")).unwrap_or_default();
     aligned(columns, &rows.iter().map(failure).collect::<Vec<_>>())
 }
 
 /// The columns that have any value, the first flush left, the others flush right; then what is to be said of a row.
-fn aligned(columns: &[Column], notes: &[String]) -> String {
-    let columns: Vec<&Column> =
+pub(super) fn aligned(columns: &[Cells], notes: &[String]) -> String {
+    let columns: Vec<&Cells> =
         columns.iter().filter(|column| column.cells.iter().any(Option::is_some)).collect();
-    let shown = |column: &Column, row: usize| -> String {
+    let shown = |column: &Cells, row: usize| -> String {
         column.cells[row].clone().unwrap_or_else(|| ABSENT.to_owned())
     };
-    let width = |column: &Column| {
+    let width = |column: &Cells| {
         let cells = (0..notes.len()).map(|row| shown(column, row).chars().count());
         cells.chain([column.head.len()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = columns.iter().map(|column| width(column)).collect();
     let mut text = String::new();
-    let mut line = |cell: &dyn Fn(&Column) -> String, end: &str| {
+    let mut line = |cell: &dyn Fn(&Cells) -> String, end: &str| {
         for (number, (column, width)) in columns.iter().zip(&widths).enumerate() {
             let cell = cell(column);
             let _ = match number {

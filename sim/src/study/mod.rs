@@ -18,7 +18,7 @@ mod report;
 mod tests;
 
 pub use measure::Measure;
-pub use plan::{PlannedRow, Role, expected_cpu_time, plan};
+pub use plan::{PlannedRow, RK4_STEP, Role, expected_cpu_time, plan};
 pub use report::report;
 
 use serde::{Deserialize, Serialize};
@@ -145,6 +145,11 @@ impl CostReport {
     /// Number of lines, those of the reference included.
     pub fn rows(&self) -> usize {
         self.references.len() + self.methods.len() + self.meshes.len() + self.effects.len()
+    }
+
+    /// The run of RK4 with fixed steps that speeds are told from, that nearest to [`RK4_STEP`]; absent where none came to its end.
+    pub fn rk4(&self) -> Option<&CostRow> {
+        report::rk4(self.references.iter().chain(&self.methods))
     }
 
     /// The lines of a work-precision comparison: the reference's two methods and all others; none of an ablation.

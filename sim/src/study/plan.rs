@@ -12,8 +12,8 @@ use crate::scenario::{
 use crate::statics::Equilibrium;
 use crate::transient::{recorded_nodes, rk4_stability_limit};
 
-/// Step of the reference's RK4 \[s\], where that is stable.
-pub(super) const RK4_STEP: f64 = 5e-5;
+/// Step of the reference's RK4 \[s\], where that is stable; speeds are told against it.
+pub const RK4_STEP: f64 = 5e-5;
 
 /// Part of RK4's stability limit, found about the equilibrium, that a step may have.
 const BELOW_LIMIT: f64 = 0.95;

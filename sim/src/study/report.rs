@@ -186,15 +186,23 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
     times.filter_map(|(a, b)| parting_time(&a.histories, &b.histories, a.rate_hz)).reduce(f64::min)
 }
 
+/// The run of RK4 whose fixed step is nearest to the usual one.
+pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a CostRow> {
+    let is_fixed = |row: &&CostRow| {
+        row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
+    };
+    let distance = |row: &CostRow| (row.step / RK4_STEP).ln().abs();
+    rows.filter(is_fixed).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
 /// Enters how many times faster than RK4 with its usual step each line is. RK4's cost is its steps', so that any fixed step tells
 /// it; the nearest is taken.
 fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow]) {
-    let rk4 = references
-        .iter()
-        .chain(methods.iter())
-        .filter(|row| row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none())
-        .min_by(|a, b| (a.step / RK4_STEP).ln().abs().total_cmp(&(b.step / RK4_STEP).ln().abs()));
-    let Some(per_step) = rk4.map(|rk4| rk4.cpu_per_simulated_second * rk4.step) else { return };
+    let Some(per_step) =
+        rk4(references.iter().chain(methods.iter())).map(|rk4| rk4.cpu_per_simulated_second * rk4.step)
+    else {
+        return;
+    };
     for row in references.iter_mut().chain(methods) {
         let speed = per_step / RK4_STEP / row.cpu_per_simulated_second;
         row.speed_over_rk4 = (row.failure.is_none() && speed.is_finite()).then_some(speed);

@@ -42,6 +42,6 @@ pub use service::{
 };
 pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState, SweepVerification};
 pub use table::{Column, Table};
-pub use verify::{Promise, sample};
+pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

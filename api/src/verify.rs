@@ -1,6 +1,6 @@
 //! Verifying a sample of a sweep's points: how many, which of them, and what their accuracy promises.
 
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset};
+use drillsweep_sim::scenario::{Accuracy, Promise};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -40,34 +40,10 @@ pub fn sample(verify: f64, total: usize, verified: usize, added: usize) -> Vec<u
     (0..number).map(part).collect()
 }
 
-/// What an accuracy promises of a run's statistics: the largest bias against the converged values, relative.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Promise {
-    /// Of orbit sizes.
-    pub orbit_size: f64,
-    /// Of standard deviations of the radius.
-    pub radius_deviation: f64,
-}
-
-impl Promise {
-    /// What an accuracy promises; an integrator and step in full promise nothing.
-    pub fn of(accuracy: &Accuracy) -> Option<Self> {
-        let orbit_size = accuracy.statistics_tolerance()?;
-        let radius_deviation = match accuracy {
-            Accuracy::Preset(AccuracyPreset::Draft) => 0.15,
-            Accuracy::Preset(AccuracyPreset::Standard) => 0.05,
-            Accuracy::Preset(AccuracyPreset::Reference) => 0.01,
-            // As the standard's.
-            Accuracy::Target(_) | Accuracy::Explicit(_) => 2.5 * orbit_size,
-        };
-        Some(Self { orbit_size, radius_deviation })
-    }
-
-    /// What the scenario of this JSON text promises; nothing where another release has written it otherwise.
-    pub fn of_scenario(json: &str) -> Option<Self> {
-        let scenario: Value = serde_json::from_str(json).ok()?;
-        Self::of(&Accuracy::deserialize(scenario.get("accuracy")?).ok()?)
-    }
+/// What the scenario of this JSON text promises; nothing where another release has written it otherwise.
+pub fn promise_of_scenario(json: &str) -> Option<Promise> {
+    let scenario: Value = serde_json::from_str(json).ok()?;
+    Accuracy::deserialize(scenario.get("accuracy")?).ok()?.promise()
 }
 
 #[cfg(test)]

@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 use anyhow::bail;
 use clap::Args;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::soak::{SceneEnd, run, scene};
+use drillsweep_sim::scenario::{AccuracyPreset, Integrator, Scenario};
+use drillsweep_sim::soak::{SceneEnd, at_accuracy, run, run_and_refine, scene};
+use drillsweep_sim::study::finer::{Difference, Verdict};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
@@ -33,6 +35,12 @@ pub(crate) struct SoakArguments {
     /// Seconds of wall time after which a scene counts as hung.
     #[arg(long, default_value_t = 120.0)]
     limit: f64,
+    /// Run the scenes at this accuracy for 0.4 s, in place of their own accuracy and duration.
+    #[arg(long, value_parser = ["draft", "standard", "reference"])]
+    accuracy: Option<String>,
+    /// Run every scene with a finer step besides, and report how many that says otherwise of.
+    #[arg(long)]
+    finer: bool,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
@@ -41,9 +49,32 @@ pub(crate) struct SoakArguments {
     show: Option<u64>,
 }
 
+impl SoakArguments {
+    fn scene(&self, index: u64) -> Scenario {
+        let scene = scene(self.seed, index);
+        let presets = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
+        match presets.into_iter().find(|preset| self.accuracy.as_deref() == Some(preset.name())) {
+            Some(preset) => at_accuracy(scene, preset),
+            None => scene,
+        }
+    }
+
+    fn run(&self, index: u64, control: &Control) -> Ending {
+        let scene = self.scene(index);
+        if !self.finer {
+            return Ending::Scene(run(&scene, control), None);
+        }
+        let (end, verdict) = run_and_refine(&scene, control);
+        let stepping = scene.accuracy.time_stepping();
+        let adapts = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
+        Ending::Scene(end, verdict.map(|verdict| (adapts, verdict)))
+    }
+}
+
 /// How one scene ended, as the report counts it.
 enum Ending {
-    Scene(SceneEnd),
+    /// With what a finer step says, and whether the scene's accuracy is a tolerance on statistics, where that was asked.
+    Scene(SceneEnd, Option<(bool, Verdict)>),
     Panicked(String),
     Hung,
 }
@@ -57,7 +88,7 @@ type Watch = Mutex<Option<(u64, Instant, Arc<Control>)>>;
 /// When a scene broke the contract, panicked or hung.
 pub(crate) fn soak(arguments: &SoakArguments) -> anyhow::Result<()> {
     if let Some(index) = arguments.show {
-        print(scene(arguments.seed, index).to_toml().trim_end());
+        print(arguments.scene(index).to_toml().trim_end());
         return Ok(());
     }
     let started = Instant::now();
@@ -82,7 +113,7 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
     let mut report = Report::default();
     std::thread::scope(|scope| -> anyhow::Result<()> {
         for watch in &watches {
-            let (sender, next, seed) = (sender.clone(), &next, arguments.seed);
+            let (sender, next) = (sender.clone(), &next);
             scope.spawn(move || {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
@@ -91,11 +122,14 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
                     }
                     let control = Arc::new(Control::new());
                     set(watch, Some((index, Instant::now(), control.clone())));
-                    let ending = catch_unwind(AssertUnwindSafe(|| run(&scene(seed, index), &control)));
+                    let ending = catch_unwind(AssertUnwindSafe(|| arguments.run(index, &control)));
                     set(watch, None);
                     let ending = match ending {
-                        Ok(SceneEnd::Cancelled) => Ending::Hung,
-                        Ok(end) => Ending::Scene(end),
+                        Ok(
+                            Ending::Scene(SceneEnd::Cancelled, _)
+                            | Ending::Scene(_, Some((_, Verdict::Cancelled))),
+                        ) => Ending::Hung,
+                        Ok(ending) => ending,
                         Err(panic) => Ending::Panicked(message(&*panic)),
                     };
                     if sender.send((index, ending)).is_err() {
@@ -163,32 +197,122 @@ struct Report {
     ledgers_out_of_bound: u64,
     panics: u64,
     hangs: u64,
+    /// What a finer step says of the scenes that ask for a tolerance on statistics, and of those whose steps are given.
+    finer: [FinerCounts; 2],
     /// What broke the contract.
     faults: Vec<(u64, String)>,
 }
 
+/// What a finer step says of scenes with a result.
+#[derive(Default)]
+struct FinerCounts {
+    agree: u64,
+    at_rest: u64,
+    no_result: u64,
+    /// Scenes that a finer step says otherwise of, and what differs most.
+    differ: Vec<(u64, Difference)>,
+    /// Those of which a start beside says otherwise as well.
+    sensitive: Vec<(u64, Difference)>,
+}
+
+/// So many of the scenes that differ are named, the worst first.
+const NAMED: usize = 5;
+
+impl FinerCounts {
+    fn add(&mut self, index: u64, verdict: &Verdict) {
+        match *verdict {
+            Verdict::Agrees(_) => self.agree += 1,
+            Verdict::Differs(difference) => insert(&mut self.differ, index, difference),
+            Verdict::Sensitive { finer, .. } => insert(&mut self.sensitive, index, finer),
+            Verdict::AtRest => self.at_rest += 1,
+            Verdict::NoResult(_) | Verdict::Cancelled => self.no_result += 1,
+        }
+    }
+
+    fn to_json(&self) -> serde_json::Value {
+        let scenes = |scenes: &[(u64, Difference)]| -> Vec<serde_json::Value> {
+            let scene = |(index, difference): &(u64, Difference)| {
+                json!({
+                    "scene": index,
+                    "quantity": difference.quantity,
+                    "measured_depth": difference.measured_depth,
+                    "values": difference.values,
+                    "difference": difference.relative,
+                    "allowed": difference.allowed,
+                })
+            };
+            scenes.iter().map(scene).collect()
+        };
+        json!({
+            "agree": self.agree,
+            "differ": scenes(&self.differ),
+            "sensitive": scenes(&self.sensitive),
+            "at_rest": self.at_rest,
+            "no_result": self.no_result,
+        })
+    }
+
+    fn text(&self, of: &str) -> Result<String, std::fmt::Error> {
+        let mut text = String::new();
+        writeln!(text, "a finer step, of the scenes {of}:")?;
+        writeln!(text, "{:>7} says the same", self.agree)?;
+        for (scenes, verdict) in [
+            (&self.differ, "says otherwise"),
+            (&self.sensitive, "says otherwise, and so does a start a micrometre beside"),
+        ] {
+            writeln!(text, "{:>7} {verdict}", scenes.len())?;
+            for (index, difference) in scenes.iter().take(NAMED) {
+                let Difference { quantity, measured_depth, values: [own, finer], relative, allowed } =
+                    difference;
+                let place = measured_depth.map_or_else(String::new, |depth| format!(" at {depth:.2} m"));
+                writeln!(
+                    text,
+                    "          scene {index}: {}{place} is {own:.3e}, by the finer step {finer:.3e}: {:.1} % apart, promised are {:.1} %",
+                    quantity.words(),
+                    100.0 * relative,
+                    100.0 * allowed
+                )?;
+            }
+        }
+        writeln!(text, "{:>7} nothing moves", self.at_rest)?;
+        writeln!(text, "{:>7} has no result", self.no_result)?;
+        Ok(text)
+    }
+}
+
+/// Adds a scene, the worst first, and of equals the first.
+fn insert(scenes: &mut Vec<(u64, Difference)>, index: u64, difference: Difference) {
+    let place = scenes.partition_point(|(other, than)| {
+        than.share().total_cmp(&difference.share()).reverse().then(other.cmp(&index)).is_lt()
+    });
+    scenes.insert(place, (index, difference));
+}
+
 impl Report {
     fn add(&mut self, index: u64, ending: Ending) {
+        if let Ending::Scene(_, Some((adapts, verdict))) = &ending {
+            self.finer[usize::from(!adapts)].add(index, verdict);
+        }
         match ending {
-            Ending::Scene(SceneEnd::Finite { ledger }) => {
+            Ending::Scene(SceneEnd::Finite { ledger }, _) => {
                 self.finite += 1;
                 self.loose_ledgers += u64::from(ledger > 0.1);
                 if ledger > self.worst_ledger.0 {
                     self.worst_ledger = (ledger, index);
                 }
             }
-            Ending::Scene(SceneEnd::Failed { cause, reason }) => {
+            Ending::Scene(SceneEnd::Failed { cause, reason }, _) => {
                 let (count, examples) = self.failed.entry(cause).or_default();
                 *count += 1;
                 if examples.len() < 3 {
                     examples.push((index, reason));
                 }
             }
-            Ending::Scene(SceneEnd::Broken { reason }) => {
+            Ending::Scene(SceneEnd::Broken { reason }, _) => {
                 self.ledgers_out_of_bound += u64::from(reason.starts_with("the ledger"));
                 self.faults.push((index, reason));
             }
-            Ending::Scene(SceneEnd::Cancelled) | Ending::Hung => {
+            Ending::Scene(SceneEnd::Cancelled, _) | Ending::Hung => {
                 self.hangs += 1;
                 self.faults.push((index, "hung".to_owned()));
             }
@@ -200,6 +324,10 @@ impl Report {
     }
 
     fn to_json(&self, arguments: &SoakArguments) -> serde_json::Value {
+        let [tolerance, given] = &self.finer;
+        let finer = arguments
+            .finer
+            .then(|| json!({"tolerance": tolerance.to_json(), "given_steps": given.to_json()}));
         json!({
             "seed": arguments.seed,
             "first": arguments.first,
@@ -210,6 +338,7 @@ impl Report {
             "panics": self.panics,
             "hangs": self.hangs,
             "worst_ledger": self.worst_ledger.0,
+            "finer": finer,
             "faults": self.faults.iter().map(|(index, reason)| json!({"scene": index, "reason": reason})).collect::<Vec<_>>(),
         })
     }
@@ -234,6 +363,11 @@ impl Report {
         writeln!(text, "{:>7} ledgers out of bound", self.ledgers_out_of_bound)?;
         writeln!(text, "{:>7} panics", self.panics)?;
         writeln!(text, "{:>7} hangs", self.hangs)?;
+        if arguments.finer {
+            let [tolerance, given] = &self.finer;
+            text += &tolerance.text("that ask for a tolerance on statistics")?;
+            text += &given.text("whose steps are given")?;
+        }
         for (index, reason) in &self.faults {
             writeln!(text, "  scene {index}: {reason}")?;
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::Promise;
+use drillsweep_api::promise_of_scenario;
 use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::{self, Findings, VerifiedPoint};
 use drillsweep_store::{Store, TableRecord};
@@ -36,7 +36,7 @@ impl Verified {
         blocking(move || {
             let points: Vec<VerifiedPoint> =
                 records.iter().map(convert::verified_point).collect::<Result<_>>()?;
-            let promise = scenario.and_then(|scenario| Promise::of_scenario(&scenario.base_json));
+            let promise = scenario.and_then(|scenario| promise_of_scenario(&scenario.base_json));
             let findings = Findings::new(&points, promise);
             Ok(Self { points, findings })
         })

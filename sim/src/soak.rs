@@ -1,21 +1,27 @@
 //! Scenes drawn at random over wide ranges, and what a run of one must keep to.
 //!
 //! Every scene ends in one of two ways: with a result whose numbers are all finite and whose energy ledger closes within its bound,
-//! or with a typed failure that says where, when and why. Scene i of a seed is always the same one.
+//! or with a typed failure that says where, when and why. Of a result it can be asked besides [whether a finer step says
+//! otherwise](crate::study::finer). Scene i of a seed is always the same one.
 
 use crate::control::Control;
 use crate::model::Model;
 use crate::scenario::{
-    Accuracy, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator, Material, Mesh, Mud,
-    NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario, Section, SectionKind,
-    SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass, Well,
+    Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator,
+    Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario,
+    Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass, Well,
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
+use crate::study::Measure;
+use crate::study::finer::{self, Verdict};
 use crate::transient::{DivergenceReason, Outcome, Records, Transient, TransientError};
 
 /// Samples of a scene's run.
 const SAMPLES: f64 = 40.0;
+
+/// How long a scene runs at the accuracy of a preset \[s\].
+const PRESET_DURATION: f64 = 0.4;
 
 /// Elements of a scene at most, before places that ask for nodes of their own.
 const MOST_ELEMENTS: f64 = 120.0;
@@ -46,23 +52,44 @@ pub enum SceneEnd {
 
 /// Runs a scene and judges how it ended.
 pub fn run(scenario: &Scenario, control: &Control) -> SceneEnd {
-    if let Err(problems) = scenario.validate() {
-        return SceneEnd::Broken { reason: format!("refused: {problems}") };
+    match simulate(scenario, control) {
+        Ok((_, _, records)) => judge(&records),
+        Err(end) => end,
     }
+}
+
+/// Runs a scene and judges how it ended; where it has a result, also whether a finer step says otherwise.
+pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Option<Verdict>) {
+    let (model, equilibrium, records) = match simulate(scenario, control) {
+        Ok(run) => run,
+        Err(end) => return (end, None),
+    };
+    let end = judge(&records);
+    if !matches!(end, SceneEnd::Finite { .. }) {
+        return (end, None);
+    }
+    let own = Measure::new(&model, &equilibrium, &records, 0);
+    let verdict = finer::ask(&own, &model, &equilibrium, control);
+    (end, Some(verdict))
+}
+
+/// The scene at the accuracy of a preset, for as long as a random string takes to swing a few times.
+pub fn at_accuracy(scenario: Scenario, preset: AccuracyPreset) -> Scenario {
+    let recording = Recording { rate_hz: 1000.0, ..scenario.recording };
+    Scenario { accuracy: Accuracy::Preset(preset), duration: PRESET_DURATION, recording, ..scenario }
+}
+
+fn simulate(scenario: &Scenario, control: &Control) -> Result<(Model, Equilibrium, Box<Records>), SceneEnd> {
     let failed = |cause, reason: String| SceneEnd::Failed { cause, reason };
-    let model = match Model::new(scenario) {
-        Ok(model) => model,
-        Err(error) => return failed("no model", error.to_string()),
-    };
-    let equilibrium = match Equilibrium::find(&model) {
-        Ok(equilibrium) => equilibrium,
-        Err(error) => return failed(statics_cause(&error), error.to_string()),
-    };
+    scenario.validate().map_err(|problems| SceneEnd::Broken { reason: format!("refused: {problems}") })?;
+    let model = Model::new(scenario).map_err(|error| failed("no model", error.to_string()))?;
+    let equilibrium =
+        Equilibrium::find(&model).map_err(|error| failed(statics_cause(&error), error.to_string()))?;
     let ended = Transient::new(&model, &equilibrium).and_then(|transient| transient.run(control));
     match ended {
-        Ok(Outcome::Finished(records)) => judge(&records),
-        Ok(Outcome::Cancelled | Outcome::Suspended(_)) => SceneEnd::Cancelled,
-        Err(error) => failed(transient_cause(&error), error.to_string()),
+        Ok(Outcome::Finished(records)) => Ok((model, equilibrium, records)),
+        Ok(Outcome::Cancelled | Outcome::Suspended(_)) => Err(SceneEnd::Cancelled),
+        Err(error) => Err(failed(transient_cause(&error), error.to_string())),
     }
 }
 

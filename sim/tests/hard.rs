@@ -10,6 +10,8 @@ use drillsweep_sim::modes::{
 };
 use drillsweep_sim::scenario::{Accuracy, Integrator, PRESETS, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::study::Measure;
+use drillsweep_sim::study::finer::{Verdict, ask};
 use drillsweep_sim::transient::{EnergyRow, Outcome, Records, Transient};
 
 /// A hard scene, run.
@@ -128,6 +130,38 @@ fn every_hard_scene_ships_with_its_reason() {
         assert!(description.len() > 12, "{name}");
         assert_eq!(preset(name).expect("resolves").validate(), Ok(vec![]), "{name}");
     }
+}
+
+/// Scenes that are asked over a part of their time, and that \[s\]: the grown torsion of all of it takes half a minute.
+const ASKED_OVER: [(&str, f64); 1] = [("hard/high-frequency-torsion", 0.5)];
+
+#[test]
+fn a_finer_step_says_the_same_of_every_hard_scene() {
+    let verdict = |name: &str| {
+        let mut scenario = preset(name).expect("shipped preset");
+        if let Some((_, duration)) = ASKED_OVER.iter().find(|(asked, _)| *asked == name) {
+            scenario.duration = *duration;
+            scenario.recording.orbit_window = None;
+            scenario.recording.spectrum_windows.clear();
+        }
+        let scene = Scene::of(&scenario);
+        let own = Measure::new(&scene.model, &scene.equilibrium, &scene.records, 0);
+        ask(&own, &scene.model, &scene.equilibrium, &Control::new())
+    };
+    let hard = || PRESETS.iter().map(|(name, _)| *name).filter(|name| name.starts_with("hard/"));
+    let verdicts: Vec<_> = std::thread::scope(|scope| {
+        let runs: Vec<_> = hard().map(|name| scope.spawn(move || (name, verdict(name)))).collect();
+        runs.into_iter().map(|run| run.join().expect("runs")).collect()
+    });
+    let otherwise: Vec<_> = verdicts
+        .iter()
+        .filter(|(_, verdict)| !matches!(verdict, Verdict::Agrees(_) | Verdict::AtRest))
+        .collect();
+    assert!(otherwise.is_empty(), "{otherwise:#?}");
+    // Those that are there to stand still, flutter that has grown to three micrometres only, and no others.
+    let at_rest = verdicts.iter().filter(|(_, verdict)| *verdict == Verdict::AtRest).map(|(name, _)| *name);
+    let still = ["no-rotation", "near-buckling", "torque-near-greenhill", "flow-flutter"];
+    assert_eq!(at_rest.collect::<Vec<_>>(), still.map(|name| format!("hard/{name}")));
 }
 
 #[test]

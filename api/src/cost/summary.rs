@@ -3,14 +3,13 @@
 
 use std::fmt::Write as _;
 
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator};
+use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
 use drillsweep_sim::study::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
 use serde::Serialize;
 
 use super::text::{Cells, aligned, four_digits, percent, signed_percent};
 use super::{step_text, three_digits};
 use crate::table::{Column, Table};
-use crate::verify::Promise;
 
 /// Named accuracies.
 const PRESETS: [AccuracyPreset; 3] =
@@ -103,7 +102,7 @@ impl PromiseCheck {
     /// The promise of a named accuracy's line; nothing for other lines.
     fn of(report: &CostReport, row: &CostRow) -> Option<Self> {
         let preset = PRESETS.into_iter().find(|preset| preset.name() == row.name)?;
-        let promise = Promise::of(&Accuracy::Preset(preset))?;
+        let promise = Accuracy::Preset(preset).promise()?;
         let allowed = [
             (Quantity::OrbitSize, promise.orbit_size),
             (Quantity::RadiusDeviation, promise.radius_deviation),
@@ -259,7 +258,7 @@ pub fn summary_text(rows: &[SummaryRow]) -> String {
             .to_owned();
     text.push_str(&aligned(&columns, &failures));
     let promises = PRESETS.into_iter().filter_map(|preset| {
-        let Promise { orbit_size, radius_deviation } = Promise::of(&Accuracy::Preset(preset))?;
+        let Promise { orbit_size, radius_deviation } = Accuracy::Preset(preset).promise()?;
         Some(format!("{} {} and {} %", preset.name(), percent(orbit_size), percent(radius_deviation)))
     });
     let _ = writeln!(

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use drillsweep_sim::scenario::Promise;
 use indexmap::{IndexMap, IndexSet};
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -10,7 +11,6 @@ use utoipa::ToSchema;
 
 use crate::point::{PointError, PointState};
 use crate::table::{Column, Table};
-use crate::verify::Promise;
 
 /// Lengths below this \[m\] are what rounding and the iteration of the equilibrium leave of no motion at all: they have no bias.
 const LEAST_LENGTH: f64 = 1e-9;

@@ -71,6 +71,28 @@ impl Accuracy {
             Accuracy::Explicit(_) => None,
         }
     }
+
+    /// What the choice promises of statistics; absent where integrator and step are given, which promise nothing.
+    pub fn promise(&self) -> Option<Promise> {
+        let orbit_size = self.statistics_tolerance()?;
+        let radius_deviation = match self {
+            Accuracy::Preset(AccuracyPreset::Draft) => 0.15,
+            Accuracy::Preset(AccuracyPreset::Standard) => 0.05,
+            Accuracy::Preset(AccuracyPreset::Reference) => 0.01,
+            // As the standard's.
+            Accuracy::Target(_) | Accuracy::Explicit(_) => 2.5 * orbit_size,
+        };
+        Some(Promise { orbit_size, radius_deviation })
+    }
+}
+
+/// What an accuracy promises of a run's statistics: the largest bias against the converged values, relative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Promise {
+    /// Of orbit sizes.
+    pub orbit_size: f64,
+    /// Of standard deviations of the radius.
+    pub radius_deviation: f64,
 }
 
 /// Written out, because an untagged enum would not say which field of the explicit form is wrong.
@@ -198,6 +220,16 @@ impl TimeStepping {
     /// A method with a fixed step \[s\] and two contact sweeps.
     pub fn fixed(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, contact_sweeps: two(), tolerance: None, spectral_radius: None }
+    }
+
+    /// The same method, finer: half the step, and the tolerance that belongs to it. The longest step of `esdirk4` goes with the root of
+    /// its tolerance; that of `rk4` is of a local error of order 5.
+    pub fn finer(&self) -> Self {
+        let tolerance = self.tolerance.map(|tolerance| match self.integrator {
+            Integrator::Rk4 => tolerance / 32.0,
+            Integrator::Esdirk4 | Integrator::GeneralizedAlpha => (0.25 * tolerance).max(*TOLERANCES.start()),
+        });
+        Self { step: 0.5 * self.step, tolerance, ..*self }
     }
 }
 

@@ -17,7 +17,7 @@ mod set;
 mod study;
 mod validate;
 
-pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, TimeStepping};
+pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TimeStepping};
 pub use decide::EffectDecision;
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use outputs::{OrbitOutputs, Outputs};

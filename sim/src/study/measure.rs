@@ -18,6 +18,8 @@ pub struct Measure {
     pub(super) elements: usize,
     pub(super) steps: u64,
     pub(super) subdivisions: u32,
+    /// The longest step made \[s\].
+    pub(super) longest_step: f64,
     pub(super) rate_hz: f64,
     /// Lateral histories of the recorded nodes; none of members beyond the second.
     pub(super) histories: Vec<NodeHistory>,
@@ -78,6 +80,7 @@ impl Measure {
             elements: model.elements.len(),
             steps: records.effort.steps,
             subdivisions: records.effort.subdivisions,
+            longest_step: records.effort.step_range[1],
             rate_hz: records.rate_hz,
             histories: kept.iter().map(lateral).collect(),
             nodes: records.histories.iter().map(node).collect(),

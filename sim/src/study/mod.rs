@@ -9,6 +9,7 @@
 //! equations' own. Where they do not agree, there is nothing to compare with, and the report says so.
 
 mod compare;
+pub mod finer;
 mod interval;
 mod measure;
 mod plan;

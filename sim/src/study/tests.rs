@@ -35,6 +35,7 @@ fn run(circles: &[(f64, f64)], twist: f64, contact_force: f64) -> Measure {
         elements: 10,
         steps: 1000,
         subdivisions: 1,
+        longest_step: 1e-3,
         rate_hz: RATE_HZ,
         nodes: vec![NodeMeasure::new(50.0, &history, RATE_HZ, WINDOW, Some(WINDOW))],
         histories: vec![history],

@@ -33,7 +33,7 @@ pub(super) struct StepError {
 }
 
 /// Motion below this part of the hole's radius counts as this much.
-const SMALLEST_MOTION: f64 = 1e-4;
+pub(crate) const SMALLEST_MOTION: f64 = 1e-4;
 
 /// The embedded method is of order 3: a local error falls with the fourth power of the step.
 const LOCAL_ORDER: f64 = 4.0;

@@ -21,6 +21,7 @@ mod rk4;
 mod run;
 mod stability;
 
+pub(crate) use adaptive::SMALLEST_MOTION;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use energy::EnergyRow;
 pub use error::ErrorEstimate;

@@ -220,6 +220,10 @@ fn step_end<const D: usize>(
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
+    use nalgebra::Matrix3;
+
     use super::*;
 
     #[test]
@@ -232,5 +236,37 @@ mod tests {
             assert!(((1.0 + alpha_m) / (2.0 - alpha_m) - radius).abs() < 1e-14);
             assert!((beta - 0.25 * (0.5 + gamma).powi(2)).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn the_resolved_angle_is_the_largest_one_that_is_right_to_a_thousandth() {
+        // x'' = -w^2 x over a step of one second. Chung and Hulbert (1993), equations (1) to (5): Newmark's formulas, and the balance
+        // between the two levels, as a matrix that takes displacement, velocity and acceleration over a step.
+        let errors = |angle: f64| {
+            let (square, rho) = (angle * angle, SPECTRAL_RADIUS);
+            let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+            let (beta, gamma) = (0.25 * (1.0 - alpha_m + alpha_f).powi(2), 0.5 - alpha_m + alpha_f);
+            #[rustfmt::skip]
+            let after = Matrix3::new(
+                1.0, 0.0, -beta,
+                0.0, 1.0, -gamma,
+                square * (1.0 - alpha_f), 0.0, 1.0 - alpha_m,
+            );
+            #[rustfmt::skip]
+            let before = Matrix3::new(
+                1.0, 1.0, 0.5 - beta,
+                0.0, 1.0, 1.0 - gamma,
+                -square * alpha_f, 0.0, -alpha_m,
+            );
+            let step = after.try_inverse().unwrap() * before;
+            // Of the three eigenvalues one is real, and the oscillation is the pair.
+            let values = step.complex_eigenvalues();
+            let turning = values.iter().max_by(|a, b| a.im.total_cmp(&b.im)).unwrap();
+            [(turning.arg() / angle - 1.0).abs(), (turning.norm().ln() * TAU / angle).abs()]
+        };
+        let [period, amplitude] = errors(RESOLVED_ANGLE);
+        assert!(period < 1e-3 && amplitude < 1e-3, "{period} {amplitude}");
+        let [period, _] = errors(1.1 * RESOLVED_ANGLE);
+        assert!(period > 1e-3, "{period}");
     }
 }

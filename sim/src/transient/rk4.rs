@@ -11,7 +11,7 @@ use super::run::{Books, State};
 use crate::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
 use crate::model::{DynamicSystem, NodalVector};
 
-/// Angle \[rad\] of an oscillation in a step up to which its amplitude is right to a thousandth in each period: it loses
+/// Angle \[rad\] of an oscillation in a step up to which its amplitude is right to a thousandth in each period, and the period too: it loses
 /// angle^6 / 144 a step.
 pub(super) const RESOLVED_ANGLE: f64 = 0.45;
 
@@ -229,5 +229,28 @@ fn axpy<const D: usize>(y: &mut NodalField<D>, a: f64, x: &NodalField<D>) {
         for dof in 0..D {
             y[dof] = a.mul_add(x[dof], y[dof]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use nalgebra::Complex;
+
+    use super::*;
+
+    #[test]
+    fn the_resolved_angle_is_the_largest_one_that_is_right_to_a_thousandth() {
+        // One step multiplies exp(i t) by the Taylor polynomial of degree 4 (Hairer and Wanner 1996, section IV.2).
+        let errors = |angle: f64| {
+            let z = Complex::new(0.0, angle);
+            let step = (0..4).rev().fold(Complex::from(1.0), |sum, k| 1.0 + sum * z / f64::from(k + 1));
+            [(step.arg() / angle - 1.0).abs(), (step.norm().ln() * TAU / angle).abs()]
+        };
+        let [period, amplitude] = errors(RESOLVED_ANGLE);
+        assert!(period < 1e-3 && amplitude < 1e-3, "{period} {amplitude}");
+        let [_, amplitude] = errors(1.1 * RESOLVED_ANGLE);
+        assert!(amplitude > 1e-3, "{amplitude}");
     }
 }

@@ -9,7 +9,7 @@ use drillsweep_sim::scenario::{
 };
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{Outcome, Records, Transient};
+use drillsweep_sim::transient::{ContactStatistics, Outcome, Records, Transient};
 
 /// The paper's string without its tool joints, on a coarse mesh, with damping that closes the model. It begins to stick and slip after some
 /// ten seconds; what is read is the last third of the run.
@@ -188,5 +188,39 @@ fn samples_within_a_step_are_as_good_as_those_at_its_ends() {
     let ends = motion(250.0, 4e-3);
     for (ends, long) in ends.iter().zip(&long) {
         assert!(ends.u.iter().enumerate().all(|(k, u)| *u == long.u[4 * k]), "node {}", ends.node + 1);
+    }
+}
+
+/// What the wall did is read at the ends of steps, from the law: with steps longer than the recording interval it is still what short
+/// steps find, sticking nodes and impacts included.
+#[test]
+fn contacts_of_long_steps_are_those_of_short_ones() {
+    let mut scenario = preset("hard/stick-slip").expect("shipped preset");
+    (scenario.duration, scenario.recording.orbit_window) = (3.0, None);
+    let contacts = |accuracy: Accuracy| {
+        let scenario = Scenario { accuracy, ..scenario.clone() };
+        let model = Model::new(&scenario).expect("has a model");
+        let equilibrium = Equilibrium::find(&model).expect("rests");
+        match Transient::new(&model, &equilibrium).expect("sets up").run(&Control::new()) {
+            Ok(Outcome::Finished(records)) => (records.contacts, records.effort.step_range[1]),
+            other => panic!("did not finish: {other:?}"),
+        }
+    };
+    let (long, longest) = contacts(Accuracy::Preset(AccuracyPreset::Standard));
+    assert_eq!(longest, 4e-3);
+    let fine = TimeStepping { contact_sweeps: 20, ..TimeStepping::fixed(Integrator::Esdirk4, 2.5e-4) };
+    let (short, _) = contacts(Accuracy::Explicit(fine));
+    type Of = fn(&ContactStatistics) -> f64;
+    let statistics: [(&str, Of); 4] = [
+        ("impulse", |contact| contact.impulse),
+        ("contact time", |contact| contact.contact_time),
+        ("stick time", |contact| contact.stick_time),
+        ("largest force", |contact| contact.largest_normal_force),
+    ];
+    for (name, of) in statistics {
+        // Node by node, relative to the whole string's.
+        let apart: f64 = long.iter().zip(&short).map(|(long, short)| (of(long) - of(short)).abs()).sum();
+        let apart = apart / short.iter().map(of).sum::<f64>();
+        assert!(apart < AccuracyPreset::Standard.tolerance(), "{name}: {apart}");
     }
 }

@@ -1005,19 +1005,21 @@ mod tests {
 
     #[test]
     fn every_numeric_field_is_an_axis_by_its_path() {
-        let expansion = expansion(json!({"preset": "paper-200m", "axes": {
+        let set = json!({"contact.law": "per_length"});
+        let expansion = expansion(json!({"preset": "paper-200m", "set": set, "axes": {
             "operation.rotation_speed_rpm": {"values": [90, 120]},
-            "contact.reference_length": {"from": 0.5, "to": 1, "count": 2},
+            "contact.stiffness_per_length": {"from": 1e7, "to": 2e7, "count": 2},
             "ensemble": {"values": [4]},
             "accuracy.step": {"values": [1e-3, 5e-4]}
         }}));
         assert_eq!(expansion.points.len(), 8);
         for point in &expansion.points {
-            let [speed, length, members, step] = point.values[..] else { panic!("{point:?}") };
+            let [speed, stiffness, members, step] = point.values[..] else { panic!("{point:?}") };
             let scenario = preset("paper-200m")
                 .unwrap()
                 .with("operation.rotation_speed_rpm", json!(speed))
-                .and_then(|scenario| scenario.with("contact.reference_length", json!(length)))
+                .and_then(|scenario| scenario.with("contact.law", json!("per_length")))
+                .and_then(|scenario| scenario.with("contact.stiffness_per_length", json!(stiffness)))
                 .and_then(|scenario| scenario.with("ensemble", json!(members as u32)))
                 .and_then(|scenario| scenario.with("accuracy.step", json!(step)))
                 .unwrap();
@@ -1033,7 +1035,7 @@ mod tests {
             names,
             [
                 "operation.rotation_speed_rpm",
-                "contact.reference_length",
+                "contact.stiffness_per_length",
                 "ensemble",
                 "accuracy.step",
                 "flow_rate",

@@ -8,7 +8,7 @@ use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dyn
 use drillsweep_sim::linalg::{
     Block, BlockTridiagonal, BlockVector, Factor, MatrixPair, NodalField, SkewPart, Symmetric,
 };
-use drillsweep_sim::scenario::{ActiveEffects, Adhesion, ContactLaw};
+use drillsweep_sim::scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
 const ROWS: usize = 296;
 
@@ -71,18 +71,21 @@ fn solve(bencher: Bencher) {
 #[divan::bench]
 fn contact(bencher: Bencher) {
     let law = ContactLaw {
+        law: WallLaw::PerNode,
         stiffness: 1e7,
         damping: 1e4,
+        stiffness_per_length: None,
+        damping_per_length: None,
         stiffness_sharpness: 7e7,
         damping_sharpness: 7e4,
         adhesion: Adhesion::Allowed,
         static_friction: 0.3,
         dynamic_friction: 0.2,
         friction_reference_speed: 0.033,
-        reference_length: None,
     };
     let law = ContactParameters::<f64>::new(&law, &ActiveEffects::ALL);
-    let node = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
+    let node =
+        ContactNode { clearance: 0.04, contact_radius: 0.0635, stiffness_share: 1.0, damping_share: 1.0 };
     let (mut x, v, mut force) = (vector(0.2), vector(0.3), vector(0.4));
     for (row, x) in x.iter_mut().enumerate() {
         let radius = if row % 2 == 0 { 0.04005 } else { 0.035 };

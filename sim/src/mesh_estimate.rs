@@ -8,7 +8,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
-use crate::scenario::{NodeChoice, Scenario};
+use crate::scenario::{NodeChoice, Scenario, WallLaw};
 use crate::statics::Equilibrium;
 
 /// Strings of more elements are not refined: their equilibria take seconds.
@@ -46,9 +46,9 @@ impl MeshEstimate {
     pub fn of(model: &Model, equilibrium: &Equilibrium) -> Self {
         let unknown = |reason: &str| MeshEstimate::Unknown { reason: reason.to_owned() };
         let touches = equilibrium.normal_force.iter().any(|&force| force > 0.0);
-        if touches && model.scenario.contact.reference_length.is_none() {
+        if touches && model.scenario.contact.law == WallLaw::PerNode {
             return unknown(
-                "contact stiffness is a node's, so it need not converge; contact.reference_length makes it the length's",
+                "contact stiffness is a node's, so it need not converge; contact.law = \"per_length\" makes it the length's",
             );
         }
         if model.elements.len() > MOST_ELEMENTS {
@@ -203,7 +203,7 @@ mod tests {
         };
         let mut scenario = preset("paper-200m").unwrap();
         let MeshEstimate::Unknown { reason } = estimate(&scenario) else { panic!("is not known") };
-        assert!(reason.contains("contact.reference_length"));
+        assert!(reason.contains("per_length"));
         // Where nothing touches there is no such wall.
         scenario = preset("hard/on-axis").unwrap();
         scenario.effects.set(Effect::Contact, Switch::On);

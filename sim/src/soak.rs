@@ -9,7 +9,8 @@ use crate::model::Model;
 use crate::scenario::{
     Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator,
     Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario,
-    Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass, Well,
+    Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass,
+    WallLaw, Well,
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
@@ -317,17 +318,27 @@ fn draw_mud(draw: &mut Draw) -> Option<Mud> {
 
 fn draw_contact(draw: &mut Draw) -> ContactLaw {
     let static_friction = if draw.chance(0.1) { 0.0 } else { draw.between(0.02, 0.9) };
-    ContactLaw {
+    let mut law = ContactLaw {
+        law: WallLaw::PerNode,
         stiffness: draw.log(1e5, 1e10),
         damping: draw.or_zero(0.1, 10.0, 1e6),
+        stiffness_per_length: None,
+        damping_per_length: None,
         stiffness_sharpness: draw.log(1e4, 1e9),
         damping_sharpness: draw.log(1e3, 1e7),
         adhesion: if draw.chance(0.3) { Adhesion::None } else { Adhesion::Allowed },
         static_friction,
         dynamic_friction: static_friction * draw.between(0.0, 1.0),
         friction_reference_speed: draw.log(1e-3, 0.3),
-        reference_length: draw.chance(0.3).then(|| draw.log(0.1, 10.0)),
+    };
+    if draw.chance(0.3) {
+        // What a node has belongs to this length.
+        let length = draw.log(0.1, 10.0);
+        law.law = WallLaw::PerLength;
+        (law.stiffness_per_length, law.damping_per_length) =
+            (Some(law.stiffness / length), Some(law.damping / length));
     }
+    law
 }
 
 fn draw_mesh(draw: &mut Draw, string: &DrillString) -> Mesh {

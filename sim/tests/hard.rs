@@ -52,7 +52,7 @@ impl Scene {
         let contact = &scenario.contact;
         for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts).skip(1) {
             // Half the stiffness at least, and the damper's part of the force is on the way in.
-            let deepest = contacts.largest_normal_force / (0.5 * contact.stiffness * node.contact_share);
+            let deepest = contacts.largest_normal_force / (0.5 * contact.stiffness * node.stiffness_share);
             let penetration = contacts.largest_radius() - node.clearance;
             assert!(penetration <= deepest + 1e-9, "{}: {penetration} m for {contacts:?}", scenario.name);
         }

@@ -4,7 +4,7 @@ use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{
     Accuracy, AccuracyPreset, Effect, Integrator, NodeChoice, Scenario, Switch, TimeStepping, TimeWindow,
-    preset,
+    WallLaw, preset,
 };
 use drillsweep_sim::signal::{PeakSearch, Window, full_spectrum};
 use drillsweep_sim::statics::Equilibrium;
@@ -384,9 +384,9 @@ fn members_of_an_ensemble_differ_by_next_to_nothing_before_they_part() {
 
 #[test]
 fn stiffness_by_length_makes_the_wall_the_same_for_every_mesh() {
-    let statics = |factor: f64, reference_length: Option<f64>| {
+    let statics = |factor: f64, law: WallLaw| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
-        scenario.contact.reference_length = reference_length;
+        scenario.contact.law = law;
         scenario.mesh.drillpipe *= factor;
         scenario.mesh.collar *= factor;
         let model = Model::new(&scenario).expect("valid");
@@ -400,10 +400,10 @@ fn stiffness_by_length_makes_the_wall_the_same_for_every_mesh() {
             .collect();
         penetrations.iter().sum::<f64>() / penetrations.len() as f64
     };
-    let change = |reference_length| statics(0.5, reference_length) / statics(1.0, reference_length);
+    let change = |law| statics(0.5, law) / statics(1.0, law);
     // A node's stiffness: half the load on each of twice as many nodes. By length: the same penetration.
-    assert!((change(None) - 0.5).abs() < 0.05, "{}", change(None));
-    assert!((change(Some(0.5)) - 1.0).abs() < 0.05, "{}", change(Some(0.5)));
+    assert!((change(WallLaw::PerNode) - 0.5).abs() < 0.05, "{}", change(WallLaw::PerNode));
+    assert!((change(WallLaw::PerLength) - 1.0).abs() < 0.05, "{}", change(WallLaw::PerLength));
 }
 
 #[test]

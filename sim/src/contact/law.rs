@@ -53,7 +53,7 @@ impl<L: Lane> ContactParameters<L> {
         let share = |is_on: bool| L::splat(if is_on { 1.0 } else { 0.0 });
         ContactParameters {
             stiffness: Saturating::new(law.stiffness, law.stiffness_sharpness),
-            damping: Saturating::new(law.damping, law.damping_sharpness),
+            damping: Saturating::new(law.unit_damping(), law.damping_sharpness),
             least_normal_force: L::splat(match law.adhesion {
                 Adhesion::Allowed => f64::NEG_INFINITY,
                 Adhesion::None => 0.0,
@@ -68,23 +68,16 @@ impl<L: Lane> ContactParameters<L> {
         }
     }
 
-    /// Stiffness K_c(P) \[N/m\], (11).
+    /// Stiffness K_c(P) \[N/m\], (11), of a node with the whole of the law's.
     #[inline(always)]
     pub fn stiffness(&self, penetration: L) -> L {
         self.stiffness.at(penetration)
     }
 
-    /// Damping C_c(P) \[N s/m\], (11).
+    /// Damping C_c(P) \[N s/m\], (11), of a node with the whole of the law's.
     #[inline(always)]
     pub fn damping(&self, penetration: L) -> L {
         self.damping.at(penetration)
-    }
-
-    /// Normal force F_n \[N\] of a node that touches (P > 0), (10): positive pushes the string off the wall.
-    /// `elastic` is its part K_c P.
-    #[inline(always)]
-    pub fn normal_force(&self, penetration: L, penetration_rate: L, elastic: L) -> L {
-        self.limited(self.damping(penetration).mul_add(penetration_rate, elastic))
     }
 
     /// A normal force \[N\] that does not pull where the law has no adhesion.
@@ -146,7 +139,7 @@ impl<L: Lane> ContactParameters<L> {
         self.static_friction
     }
 
-    /// Energy \[J\] stored by the contact stiffness, the integral of K_c(p) p from 0 to P; zero out of contact.
+    /// Energy \[J\] stored by the contact stiffness of such a node, the integral of K_c(p) p from 0 to P; zero out of contact.
     pub fn potential_energy(&self, penetration: L) -> L {
         let p = penetration.max(L::splat(0.0));
         self.stiffness.first_moment(p)

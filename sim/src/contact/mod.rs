@@ -25,6 +25,8 @@ pub struct ContactNode<L> {
     pub clearance: L,
     /// Radius R_e at which the string touches the wall \[m\].
     pub contact_radius: L,
-    /// Share of the law's stiffness and damping that the node has: 1, or by the length of string that it stands for.
-    pub share: L,
+    /// The node's largest stiffness over that of the law.
+    pub stiffness_share: L,
+    /// The node's largest damping over that of the law.
+    pub damping_share: L,
 }

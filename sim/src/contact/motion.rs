@@ -81,8 +81,8 @@ pub fn implicit_contact<L: Lane>(
 ) -> ContactForce<L> {
     let Yielding { lateral, surface, speed, normal: normal_before, friction: friction_before } = *yielding;
     let normal = |normal: L, penetration: L| {
-        let slope =
-            law.damping(penetration).mul_add(speed, law.stiffness(penetration)) * node.share * lateral;
+        let stiffness = law.stiffness(penetration) * node.stiffness_share;
+        let slope = (law.damping(penetration) * node.damping_share).mul_add(speed, stiffness) * lateral;
         law.limited(slope.mul_add(normal_before, normal) / (slope + L::splat(1.0)))
     };
     let friction_speed = |sliding_speed: L, normal: L| {
@@ -122,9 +122,9 @@ fn contact_force<L: Lane>(
     let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));
     let sliding_speed = (rotation_speed + theta_z_rate).mul_add(node.contact_radius, whirl_speed);
 
-    let whole = law.stiffness(penetration) * penetration;
-    let elastic = whole * node.share;
-    let normal = law.normal_force(penetration, penetration_rate, whole) * node.share;
+    let elastic = law.stiffness(penetration) * penetration * node.stiffness_share;
+    let damping = law.damping(penetration) * node.damping_share;
+    let normal = law.limited(damping.mul_add(penetration_rate, elastic));
     let normal = normal_force(normal, penetration);
     let friction = if law.has_friction {
         law.friction_coefficient(friction_speed(sliding_speed, normal.abs())) * normal.abs()

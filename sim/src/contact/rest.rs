@@ -45,8 +45,8 @@ pub fn static_contact(
     let (normal_u, normal_v) = (u / radius, v / radius);
 
     // The force is -F_n d with the direction d = n + mu t. d turns with n; F_n changes along n only.
-    let normal = law.stiffness(penetration) * penetration * node.share;
-    let slope = law.elastic_slope(penetration) * node.share;
+    let normal = law.stiffness(penetration) * penetration * node.stiffness_share;
+    let slope = law.elastic_slope(penetration) * node.stiffness_share;
     let direction = [normal_u - tangential * normal_v, normal_v + tangential * normal_u];
     let turned = [-normal_v - tangential * normal_u, normal_u - tangential * normal_v];
     let derivative = |along: f64, across: f64, row: usize| {

@@ -29,9 +29,9 @@ pub fn sliding_tangent(
         return None;
     }
     let (normal, tangent) = ([u / radius, v / radius], [-v / radius, u / radius]);
-    let force = law.stiffness(penetration) * penetration * node.share;
-    let slope = law.elastic_slope(penetration) * node.share;
-    let damping = law.damping(penetration) * node.share;
+    let force = law.stiffness(penetration) * penetration * node.stiffness_share;
+    let slope = law.elastic_slope(penetration) * node.stiffness_share;
+    let damping = law.damping(penetration) * node.damping_share;
     let sliding_speed = rotation_speed * node.contact_radius;
     let friction = law.friction_coefficient(sliding_speed);
     let friction_slope = force * law.friction_slope(sliding_speed);
@@ -73,7 +73,8 @@ mod tests {
         let mut contact = preset("paper-200m").unwrap().contact;
         (contact.stiffness_sharpness, contact.damping_sharpness) = (3e3, 2e3);
         let law = ContactParameters::<f64>::new(&contact, &ActiveEffects::ALL);
-        let node = ContactNode { clearance: 0.027, contact_radius: 0.081, share: 0.7 };
+        let node =
+            ContactNode { clearance: 0.027, contact_radius: 0.081, stiffness_share: 0.7, damping_share: 1.9 };
         let (u, v) = (0.0274 * 0.6, -0.0274 * 0.8);
         for rotation_speed in [12.566, 0.3, -2.0, 0.0] {
             let force = |x: [f64; 3], rate: [f64; 3]| {

@@ -2,19 +2,21 @@ use std::f64::consts::{PI, TAU};
 
 use super::*;
 use crate::linalg::{Four, Lane};
-use crate::scenario::{ActiveEffects, Adhesion, ContactLaw};
+use crate::scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
 /// The law of the 200 m base case (physics.md section 9).
 const BASE: ContactLaw = ContactLaw {
+    law: WallLaw::PerNode,
     stiffness: 1e7,
     damping: 1e4,
+    stiffness_per_length: None,
+    damping_per_length: None,
     stiffness_sharpness: 7e7,
     damping_sharpness: 7e4,
     adhesion: Adhesion::Allowed,
     static_friction: 0.3,
     dynamic_friction: 0.2,
     friction_reference_speed: 0.033,
-    reference_length: None,
 };
 
 /// A law soft enough that differences and quadratures resolve its arctangents.
@@ -22,7 +24,8 @@ const SOFT: ContactLaw = ContactLaw { stiffness_sharpness: 1e4, damping_sharpnes
 
 const FRICTIONLESS: ContactLaw = ContactLaw { static_friction: 0.0, dynamic_friction: 0.0, ..BASE };
 
-const NODE: ContactNode<f64> = ContactNode { clearance: 0.04, contact_radius: 0.0635, share: 1.0 };
+const NODE: ContactNode<f64> =
+    ContactNode { clearance: 0.04, contact_radius: 0.0635, stiffness_share: 1.0, damping_share: 1.0 };
 
 fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
     ContactParameters::new(law, &ActiveEffects::ALL)
@@ -73,6 +76,23 @@ fn the_damper_pulls_only_with_adhesion() {
     let arriving = LateralMotion { u_rate: 1.0, ..leaving };
     let pushed = dynamic_contact(&parameters(&clamped), &NODE, &arriving, 0.0);
     assert_close(pushed.normal, elastic_force(&BASE, 1e-4) + damping(&BASE, 1e-4), 1e-12);
+}
+
+#[test]
+fn a_node_has_its_own_shares_of_stiffness_and_damping() {
+    let motion = LateralMotion { u: 0.0402, v: 0.0, u_rate: 0.3, v_rate: 0.0, theta_z_rate: 0.0 };
+    let node = ContactNode { stiffness_share: 0.3, damping_share: 2.0, ..NODE };
+    let force = dynamic_contact(&parameters(&FRICTIONLESS), &node, &motion, 12.0);
+    let (elastic, damped) = (0.3 * elastic_force(&BASE, 2e-4), 2.0 * damping(&BASE, 2e-4) * 0.3);
+    assert_close(force.elastic, elastic, 1e-11);
+    assert_close(force.normal, elastic + damped, 1e-11);
+    let at_rest = static_contact(&parameters(&FRICTIONLESS), &node, 0.0402, 0.0, 12.0);
+    assert_close(at_rest.normal, elastic, 1e-11);
+    // Where a node has no damping a length may have some: shares are then of 1 N s/m.
+    let undamped = ContactLaw { law: WallLaw::PerLength, damping: 0.0, ..FRICTIONLESS };
+    let node = ContactNode { stiffness_share: 0.3, damping_share: 2e4, ..NODE };
+    let force = dynamic_contact(&parameters(&undamped), &node, &motion, 12.0);
+    assert_close(force.normal, elastic + damped, 1e-11);
 }
 
 /// Physics.md section 6: friction uses |F_n|, so a pulling wall still brakes.
@@ -393,7 +413,8 @@ fn a_lane_has_the_bits_of_a_node_alone() {
     let node = ContactNode {
         clearance: Four::splat(NODE.clearance),
         contact_radius: Four::splat(0.0635),
-        share: Four::splat(1.0),
+        stiffness_share: Four::splat(1.0),
+        damping_share: Four::splat(1.0),
     };
     let motion = LateralMotion {
         u: Four::new(radii.map(|r| 0.6 * r)),

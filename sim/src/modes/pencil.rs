@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::contact::{ContactNode, ContactParameters, sliding_tangent};
+use crate::contact::{ContactParameters, sliding_tangent};
 use crate::linalg::{BlockTridiagonal, DOFS};
 use crate::model::{Model, NodalVector, clear_held};
 use crate::statics::Equilibrium;
@@ -78,11 +78,7 @@ pub(super) fn add_contact(
     }
     let law = ContactParameters::new(&model.scenario.contact, &model.effects);
     for (node, data) in model.mesh.nodes.iter().enumerate().skip(1) {
-        let site = ContactNode {
-            clearance: data.clearance,
-            contact_radius: data.contact_radius,
-            share: data.contact_share,
-        };
+        let site = data.site();
         let [u, v, ..] = equilibrium.displacement[node];
         let Some(tangent) = sliding_tangent(&law, &site, u, v, model.rotation_speed) else { continue };
         for (i, row) in [0, 1, 5].into_iter().enumerate() {

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactNode, ContactParameters, sliding_tangent};
+use crate::contact::{ContactParameters, sliding_tangent};
 use crate::model::Model;
 use crate::statics::Equilibrium;
 
@@ -166,11 +166,7 @@ impl Chain {
         }
         let law = ContactParameters::new(&model.scenario.contact, effects);
         for (i, data) in model.mesh.nodes.iter().enumerate().skip(1) {
-            let site = ContactNode {
-                clearance: data.clearance,
-                contact_radius: data.contact_radius,
-                share: data.contact_share,
-            };
+            let site = data.site();
             let [u, v, ..] = equilibrium.displacement[i];
             if let Some(tangent) = sliding_tangent(&law, &site, u, v, model.rotation_speed) {
                 chain.rubbing[i - 1] = tangent.damping[2][2];

@@ -29,8 +29,8 @@ impl Scenario {
     /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-    /// as integrator and step, with every effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the
-    /// encoding, so keys of different versions of the program must not be compared.
+    /// as integrator and step, with what a length of wall has by default, with every effect decided, and with -0.0 written as 0.0.
+    /// Any change of the scenario's fields changes the encoding, so keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
         let active = self.active_effects();
         // Taken apart in full, so that a new field cannot be forgotten.
@@ -55,7 +55,7 @@ impl Scenario {
             string,
             mud,
             operation,
-            contact,
+            contact: contact.written_out(),
             damping,
             mesh,
             duration,
@@ -110,6 +110,12 @@ mod tests {
         other.string.unbalance[3].phase_deg = -0.0;
         assert_eq!(other.canonical_bytes(), bytes);
         assert_eq!(Scenario::from_json(&paper().to_json()).unwrap().canonical_bytes(), bytes);
+        let by_length = paper().with("contact.law", Value::from("per_length")).unwrap();
+        let written = by_length
+            .with("contact.stiffness_per_length", Value::from(2e7))
+            .and_then(|scenario| scenario.with("contact.damping_per_length", Value::from(2e4)));
+        assert_eq!(written.unwrap().canonical_bytes(), by_length.canonical_bytes());
+        assert_ne!(by_length.canonical_bytes(), bytes);
     }
 
     #[test]

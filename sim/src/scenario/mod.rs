@@ -291,10 +291,21 @@ pub enum TopCondition {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ContactLaw {
-    /// Largest stiffness k_c of one node \[N/m\].
+    /// Whether stiffness and damping are a node's or a length's.
+    #[serde(default)]
+    pub law: WallLaw,
+    /// Largest stiffness k_c of one node \[N/m\]; with the law `per_length` of a gauge.
     pub stiffness: f64,
-    /// Largest damping c_c of one node \[N s/m\].
+    /// Largest damping c_c of one node \[N s/m\]; with the law `per_length` of a gauge.
     pub damping: f64,
+    /// Largest stiffness of a metre of string \[N/m2\], with the law `per_length` only; absent means 2e7, the paper's 1e7 N/m on
+    /// collar nodes 0.5 m apart.
+    #[serde(default)]
+    pub stiffness_per_length: Option<f64>,
+    /// Largest damping of a metre of string \[N s/m2\], with the law `per_length` only; absent means 2e4, the paper's 1e4 N s/m on
+    /// collar nodes 0.5 m apart.
+    #[serde(default)]
+    pub damping_per_length: Option<f64>,
     /// Sharpness lambda_k of the stiffness' arctangent \[1/m\].
     pub stiffness_sharpness: f64,
     /// Sharpness lambda_c of the damping's arctangent \[1/m\].
@@ -308,12 +319,48 @@ pub struct ContactLaw {
     pub dynamic_friction: f64,
     /// Reference speed v_ref of the regularised friction \[m/s\]; its slope at rest is 1 / v_ref.
     pub friction_reference_speed: f64,
-    /// Length of string \[m\] that stiffness and damping belong to: a node has its share by the length that touches the wall through
-    /// it, half of each adjoining element of the larger diameter, so that a finer mesh meets the same wall. Gauges, which are
-    /// places, keep the whole of them. Absent means that every node has the whole of them, as in the paper, and a finer mesh meets a
-    /// stiffer wall.
-    #[serde(default)]
-    pub reference_length: Option<f64>,
+}
+
+impl ContactLaw {
+    /// Stiffness of a metre of string \[N/m2\] with the law `per_length`.
+    pub fn stiffness_of_a_metre(&self) -> f64 {
+        self.stiffness_per_length.unwrap_or(2e7)
+    }
+
+    /// Damping of a metre of string \[N s/m2\] with the law `per_length`.
+    pub fn damping_of_a_metre(&self) -> f64 {
+        self.damping_per_length.unwrap_or(2e4)
+    }
+
+    /// The law with what a length has by default written out.
+    fn written_out(self) -> Self {
+        let by_length = self.law == WallLaw::PerLength;
+        Self {
+            stiffness_per_length: by_length.then(|| self.stiffness_of_a_metre()),
+            damping_per_length: by_length.then(|| self.damping_of_a_metre()),
+            ..self
+        }
+    }
+
+    /// The damping \[N s/m\] that nodes' shares of the law's damping are of: that of a node, or 1 N s/m where gauges have none and a length
+    /// has.
+    pub(crate) fn unit_damping(&self) -> f64 {
+        if self.law == WallLaw::PerLength && self.damping == 0.0 { 1.0 } else { self.damping }
+    }
+}
+
+/// What stiffness and damping of the wall belong to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum WallLaw {
+    /// The paper's: every node has `stiffness` and `damping`, so a finer mesh meets a stiffer wall.
+    #[default]
+    PerNode,
+    /// A node has `stiffness_per_length` and `damping_per_length` times the length of string that touches the wall through it, half
+    /// of each adjoining element of the node's contact diameter, so every mesh meets the same wall: under a uniform load w it gives way by
+    /// w / `stiffness_per_length`. Gauges, which are places, have `stiffness` and `damping`.
+    PerLength,
 }
 
 /// What happens when the contact's damper would pull.

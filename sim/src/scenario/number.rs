@@ -96,8 +96,8 @@ numbers!(UnbalanceMass: measured_depth, mass, radius, phase_deg);
 numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pressure_drop, back_pressure;
     without regime, rotation_factor, viscosity_eccentricity);
 numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit; without top);
-numbers!(ContactLaw: stiffness, damping, stiffness_sharpness, damping_sharpness, static_friction, dynamic_friction,
-    friction_reference_speed, reference_length; without adhesion);
+numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
+    static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
 numbers!(Mesh: drillpipe, tool_joint, collar, stabilizer, bit);
 numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; without stability);
@@ -182,7 +182,8 @@ mod tests {
             .unwrap()
             .with("accuracy.tolerance", json!(0.01))
             .and_then(|scenario| scenario.with("accuracy.spectral_radius", json!(0.8)))
-            .and_then(|scenario| scenario.with("contact.reference_length", json!(0.5)))
+            .and_then(|scenario| scenario.with("contact.stiffness_per_length", json!(1e7)))
+            .and_then(|scenario| scenario.with("contact.damping_per_length", json!(1e4)))
             .and_then(|scenario| {
                 let study = json!({
                     "duration": 10.0,
@@ -255,7 +256,8 @@ mod tests {
             "string.sections[8].length",
             "string.sections[1].count",
             "accuracy.step",
-            "contact.reference_length",
+            "contact.law",
+            "contact.stiffness_per_length",
             "mud.densit",
             "mud[0]",
         ] {

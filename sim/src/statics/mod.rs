@@ -9,7 +9,7 @@ mod overload;
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 
-use crate::contact::{ContactNode, ContactParameters, StaticContactForce, static_contact};
+use crate::contact::{ContactParameters, StaticContactForce, static_contact};
 use crate::linalg::SingularBlock;
 use crate::model::{GRAVITY, Model, NodalVector, element_values};
 use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
@@ -274,11 +274,7 @@ fn contact_at(
         return None;
     }
     let data = &model.mesh.nodes[node];
-    let site = ContactNode {
-        clearance: data.clearance,
-        contact_radius: data.contact_radius,
-        share: data.contact_share,
-    };
+    let site = data.site();
     let contact = static_contact(law, &site, displacement[0], displacement[1], model.rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
 }

@@ -1,7 +1,8 @@
 //! Elements and nodes.
 
 use super::boundaries;
-use crate::scenario::{NodeChoice, Scenario};
+use crate::contact::ContactNode;
+use crate::scenario::{ContactLaw, NodeChoice, Scenario, WallLaw};
 
 /// A string of more elements than this is refused.
 pub const MAX_ELEMENTS: usize = 20_000;
@@ -98,14 +99,28 @@ pub struct MeshNode {
     pub clearance: f64,
     /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
-    /// Share of the contact law's stiffness and damping: 1 where these are a node's or the node is a gauge, which is a
-    /// place and not a length; else the length that touches the wall through the node, half of each adjoining element of its contact
-    /// radius, over the law's reference length.
-    pub contact_share: f64,
+    /// The node's largest contact stiffness over that of the law, `contact.stiffness`: 1 where stiffness is a node's or the node is a
+    /// gauge, which is a place and not a length; else that of the length that touches the wall through the node, half of each adjoining
+    /// element of its contact diameter.
+    pub stiffness_share: f64,
+    /// The same of the damping, `contact.damping`; over 1 N s/m where that is zero and a length's need not be.
+    pub damping_share: f64,
     /// Whether the clearance is a gauge's.
     pub is_gauge: bool,
     /// The masses put here.
     pub unbalance: Vec<NodeUnbalance>,
+}
+
+impl MeshNode {
+    /// What contact needs to know of the node.
+    pub fn site(&self) -> ContactNode<f64> {
+        ContactNode {
+            clearance: self.clearance,
+            contact_radius: self.contact_radius,
+            stiffness_share: self.stiffness_share,
+            damping_share: self.damping_share,
+        }
+    }
 }
 
 /// The mesh of a string: nodes from the top down and the elements between them.
@@ -148,11 +163,8 @@ impl StringMesh {
             node.contact_radius = 0.5 * scenario.well.hole_diameter - node.clearance;
             node.is_gauge = true;
         }
-        if let Some(reference_length) = scenario.contact.reference_length {
-            let lengths: Vec<f64> = (0..mesh.nodes.len()).map(|node| mesh.touching_length(node)).collect();
-            for (node, length) in mesh.nodes.iter_mut().zip(lengths).filter(|(node, _)| !node.is_gauge) {
-                node.contact_share = length / reference_length;
-            }
+        if scenario.contact.law == WallLaw::PerLength {
+            mesh.put_wall_by_length(&scenario.contact);
         }
         for mass in &string.unbalance {
             let index = mesh.nearest_node(mass.measured_depth);
@@ -161,6 +173,21 @@ impl StringMesh {
                 .push(NodeUnbalance { moment: mass.mass * mass.radius, phase: mass.phase_deg.to_radians() });
         }
         Ok(mesh)
+    }
+
+    /// Gives the nodes their shares of a wall whose stiffness and damping are a length's.
+    fn put_wall_by_length(&mut self, contact: &ContactLaw) {
+        for index in 0..self.nodes.len() {
+            let (stiffness, damping) = if self.nodes[index].is_gauge {
+                (contact.stiffness, contact.damping)
+            } else {
+                let length = self.touching_length(index);
+                (length * contact.stiffness_of_a_metre(), length * contact.damping_of_a_metre())
+            };
+            let node = &mut self.nodes[index];
+            node.stiffness_share = stiffness / contact.stiffness;
+            node.damping_share = damping / contact.unit_damping();
+        }
     }
 
     /// Length of string \[m\] that touches the wall through a node: half of each adjoining element of the diameter that the node
@@ -262,7 +289,8 @@ fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<
                 measured_depth: elements.get(i).map_or(length, |below| below.top),
                 clearance: 0.5 * (hole_diameter - outer_diameter),
                 contact_radius: 0.5 * outer_diameter,
-                contact_share: 1.0,
+                stiffness_share: 1.0,
+                damping_share: 1.0,
                 is_gauge: false,
                 unbalance: Vec::new(),
             }
@@ -346,14 +374,16 @@ mod tests {
     #[test]
     fn shares_are_those_of_the_length_that_touches() {
         let mut scenario = paper();
-        assert!(paper_mesh().nodes.iter().all(|node| node.contact_share == 1.0), "a node's law");
-        scenario.contact.reference_length = Some(0.5);
+        let whole = |node: &MeshNode| (node.stiffness_share, node.damping_share) == (1.0, 1.0);
+        assert!(paper_mesh().nodes.iter().all(whole), "a node's law");
+        scenario.contact.law = WallLaw::PerLength;
+        scenario.contact.damping_per_length = Some(1e4);
         for factor in [1.0, 0.25] {
             scenario.mesh.drillpipe = 1.5 * factor;
             scenario.mesh.tool_joint = 0.3 * factor;
             scenario.mesh.collar = 0.5 * factor;
             let mesh = StringMesh::new(&scenario).unwrap();
-            let length = |depth: f64| mesh.nodes[mesh.nearest_node(depth)].contact_share * 0.5;
+            let length = |depth: f64| mesh.nodes[mesh.nearest_node(depth)].stiffness_share * 1e7 / 2e7;
             // The end of a tool joint has half of the joint's element and nothing of the body's, nor of the collar's, which is slimmer.
             for (depth, expected) in [(4.0, 0.15), (4.3, 0.15), (13.5, 0.3), (89.5, 0.15), (90.5, 0.5)] {
                 assert!((length(depth) - expected * factor).abs() < 1e-12, "at {depth} m: {}", length(depth));
@@ -361,10 +391,10 @@ mod tests {
             let body = mesh.elements[mesh.nearest_node(8.0)].length;
             assert!((length(8.0) - body).abs() < 1e-12);
             // Gauges are places: the whole of the law, whatever the mesh.
-            assert!(mesh.nodes.iter().all(|node| !node.is_gauge || node.contact_share == 1.0));
+            assert!(mesh.nodes.iter().all(|node| !node.is_gauge || whole(node)));
             // All joints together touch with their own length, 9 pairs of 0.3 m.
             let joints = mesh.nodes.iter().filter(|node| (node.contact_radius - 0.08095).abs() < 1e-9);
-            let touching: f64 = joints.map(|node| node.contact_share * 0.5).sum();
+            let touching: f64 = joints.map(|node| node.damping_share * 1e4 / 1e4).sum();
             assert!((touching - 18.0 * 0.3).abs() < 1e-9, "{touching} m");
         }
     }

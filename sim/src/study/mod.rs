@@ -126,8 +126,8 @@ pub struct CostReport {
     pub agreements: Vec<Agreement>,
     /// Presets, methods and steps.
     pub methods: Vec<CostRow>,
-    /// Meshes, at the accuracy `reference`, against the finest. Contact stiffness is a node's unless the contact law has a
-    /// `reference_length`: then a finer mesh is another, stiffer wall, and these rows need not converge.
+    /// Meshes, at the accuracy `reference`, against the finest. With the contact law `per_node` a finer
+    /// mesh is another, stiffer wall, and these rows need not converge.
     pub meshes: Vec<CostRow>,
     /// The scenario without one effect at a time, against the whole: what stands as an error is what the effect changes.
     pub effects: Vec<CostRow>,

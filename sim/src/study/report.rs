@@ -5,7 +5,7 @@ use super::measure::Measure;
 use super::plan::{PlannedRow, RK4_STEP, Role};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
 use crate::ensemble::parting_time;
-use crate::scenario::{Integrator, Scenario};
+use crate::scenario::{Integrator, Scenario, WallLaw};
 
 /// Energy residual, relative to the contacts' net work, from which on a reference is doubted.
 const UNSOUND_RESIDUAL: f64 = 0.01;
@@ -147,10 +147,10 @@ pub fn report(
         ));
     }
     warn_of_references(&reference_rows, &agreements, &mut warnings);
-    if !base.contact.reference_length.is_some_and(|length| length > 0.0) && !meshes.is_empty() {
+    if base.contact.law == WallLaw::PerNode && !meshes.is_empty() {
         warnings.push(
             "contact stiffness and damping are a node's, so a finer mesh meets a stiffer wall and need not converge; \
-             contact.reference_length makes them the length's"
+             contact.law = \"per_length\" makes them the length's"
                 .to_owned(),
         );
     }

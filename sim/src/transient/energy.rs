@@ -99,7 +99,7 @@ pub(super) struct Ledger<const D: usize> {
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
     forms: Forms<3, D>,
     contact: ContactParameters<f64>,
-    /// Clearance \[m\] and share of the contact law of every node.
+    /// Clearance \[m\] and share of the contact law's stiffness of every node.
     walls: Vec<(f64, f64)>,
     with_contact: bool,
     /// Whether the last degree of freedom is the twist.
@@ -126,7 +126,7 @@ impl<const D: usize> Ledger<D> {
                 &system.stiffness,
             ),
             contact: ContactParameters::new(&model.scenario.contact, &model.effects),
-            walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.contact_share)).collect(),
+            walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.stiffness_share)).collect(),
             with_contact: model.effects.contact,
             has_twist: system.has_twist(),
             rotation_speed: system.rotation_speed,

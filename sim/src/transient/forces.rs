@@ -162,7 +162,8 @@ impl<const D: usize> Forces<D> {
             ContactNode {
                 clearance: lanes(|node| node.clearance, f64::INFINITY),
                 contact_radius: lanes(|node| node.contact_radius, 0.0),
-                share: lanes(|node| node.contact_share, 0.0),
+                stiffness_share: lanes(|node| node.stiffness_share, 0.0),
+                damping_share: lanes(|node| node.damping_share, 0.0),
             }
         });
         Self {

@@ -94,7 +94,7 @@ fn sweep_factor(
     }
     let contact = &model.scenario.contact;
     let law = ContactParameters::<f64>::new(contact, &model.effects);
-    let wall = contact.stiffness + coefficients.velocity * contact.damping;
+    let (stiffness, damping) = (contact.stiffness, coefficients.velocity * contact.unit_damping());
     let matrix = coefficients.matrix(system);
     let inverse = matrix.inverse_diagonal()?;
     // Of every node: the slopes of its force laterally and about its axis, and its own compliances.
@@ -108,7 +108,7 @@ fn sweep_factor(
             let radius = node.contact_radius;
             let slope = law.friction_slope(model.rotation_speed * radius).max(0.0);
             let friction = coefficients.velocity * force * slope;
-            let lateral = wall * node.contact_share + friction;
+            let lateral = stiffness * node.stiffness_share + damping * node.damping_share + friction;
             let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
             [
                 (lateral, own(0.5 * (inverse[(0, 0)] + inverse[(1, 1)]))),
@@ -167,8 +167,10 @@ fn sweep_factor(
 /// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and from the fastest decay
 /// that its contacts' dampers make.
 pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
-    let (stiffness, damping) = (model.scenario.contact.stiffness, model.scenario.contact.damping);
+    let contact = &model.scenario.contact;
+    let stiffness = |node: &MeshNode| contact.stiffness * node.stiffness_share;
     let frequency = largest_ratio(model, system, &system.stiffness, stiffness)?.sqrt();
+    let damping = |node: &MeshNode| contact.unit_damping() * node.damping_share;
     let decay = largest_ratio(model, system, &system.structural_damping, damping)?;
     Ok(RK4_IMAGINARY_LIMIT / frequency.max(decay))
 }
@@ -178,7 +180,7 @@ fn largest_ratio(
     model: &Model,
     system: &DynamicSystem,
     matrix: &BlockTridiagonal<f64>,
-    closed: f64,
+    closed: impl Fn(&MeshNode) -> f64,
 ) -> Result<f64, SingularBlock> {
     let mass = mass_factor(system)?;
     let n = model.node_count();
@@ -195,8 +197,8 @@ fn largest_ratio(
         matrix.multiply_into(&x, &mut product);
         if model.effects.contact {
             for ((product, x), node) in product.iter_mut().zip(&x).zip(&model.mesh.nodes).skip(1) {
-                product[0] += closed * node.contact_share * x[0];
-                product[1] += closed * node.contact_share * x[1];
+                product[0] += closed(node) * x[0];
+                product[1] += closed(node) * x[1];
             }
         }
         largest = dot(&x, &product) / mass_norm(&system.mass, &x);

@@ -1,7 +1,7 @@
 //! Rules of mud, operation, contact and damping.
 
 use super::report::Report;
-use crate::scenario::{ContactLaw, Mud, Operation, Scenario};
+use crate::scenario::{ContactLaw, Mud, Operation, Scenario, WallLaw};
 
 /// Mud densities \[kg/m3\] outside this range are unheard of: another unit is probably meant.
 const USUAL_MUD_DENSITY: std::ops::RangeInclusive<f64> = 500.0..=3000.0;
@@ -15,9 +15,6 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     }
     check_operation(report, &scenario.operation);
     check_contact(report, &scenario.contact);
-    if let Some(length) = scenario.contact.reference_length {
-        report.positive(length, "contact.reference_length");
-    }
     report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
     report.not_negative(scenario.damping.stiffness_proportional, "damping.stiffness_proportional");
 }
@@ -79,6 +76,18 @@ fn check_operation(report: &mut Report, operation: &Operation) {
 fn check_contact(report: &mut Report, contact: &ContactLaw) {
     report.positive(contact.stiffness, "contact.stiffness");
     report.not_negative(contact.damping, "contact.damping");
+    if let Some(stiffness) = contact.stiffness_per_length
+        && belongs(report, contact, "stiffness", stiffness)
+    {
+        let message = "must be greater than 0 N/m2, of a metre of string";
+        report.number(stiffness, "contact.stiffness_per_length", |stiffness| stiffness > 0.0, message);
+    }
+    if let Some(damping) = contact.damping_per_length
+        && belongs(report, contact, "damping", damping)
+    {
+        let message = "must be 0 N s/m2 or greater, of a metre of string";
+        report.number(damping, "contact.damping_per_length", |damping| damping >= 0.0, message);
+    }
     report.positive(contact.stiffness_sharpness, "contact.stiffness_sharpness");
     report.positive(contact.damping_sharpness, "contact.damping_sharpness");
     report.not_negative(contact.static_friction, "contact.static_friction");
@@ -97,10 +106,22 @@ fn check_contact(report: &mut Report, contact: &ContactLaw) {
     report.positive(contact.friction_reference_speed, "contact.friction_reference_speed");
 }
 
+/// Whether the value of a length belongs to the law; reports one that nothing reads.
+fn belongs(report: &mut Report, contact: &ContactLaw, field: &str, value: f64) -> bool {
+    let belongs = contact.law == WallLaw::PerLength;
+    report.require(
+        belongs || !value.is_finite(),
+        format!("contact.{field}_per_length"),
+        value,
+        format!("belongs to contact.law = \"per_length\"; with \"per_node\" every node has contact.{field}"),
+    );
+    belongs
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::report::testing::{problem, warnings};
-    use crate::scenario::Mud;
+    use crate::scenario::{Mud, Scenario, WallLaw};
 
     fn mud_problem(field: &str, change: impl Fn(&mut Mud)) -> String {
         problem(&format!("mud.{field}"), |s| change(s.mud.as_mut().unwrap())).message
@@ -169,6 +190,30 @@ mod tests {
         problem("contact.friction_reference_speed", |s| s.contact.friction_reference_speed = 0.0);
         problem("contact.static_friction", |s| s.contact.static_friction = -0.3);
         problem("contact.dynamic_friction", |s| s.contact.dynamic_friction = -0.2);
+    }
+
+    #[test]
+    fn stiffness_and_damping_of_a_length_belong_to_the_law_per_length() {
+        let set = |s: &mut Scenario, stiffness, damping| {
+            (s.contact.stiffness_per_length, s.contact.damping_per_length) = (stiffness, damping);
+        };
+        let by_length = |s: &mut Scenario| s.contact.law = WallLaw::PerLength;
+        assert_eq!(warnings(by_length), []);
+        for bad in [0.0, -2e7] {
+            let found = problem("contact.stiffness_per_length", |s| {
+                by_length(s);
+                set(s, Some(bad), Some(0.0));
+            });
+            assert!(found.message.contains("N/m2"), "{found}");
+        }
+        let found = problem("contact.damping_per_length", |s| {
+            by_length(s);
+            set(s, None, Some(-2e4));
+        });
+        assert!(found.message.contains("N s/m2"), "{found}");
+        let found = problem("contact.stiffness_per_length", |s| set(s, Some(2e7), None));
+        assert!(found.message.contains("per_node") && found.message.contains("contact.stiffness"), "{found}");
+        problem("contact.damping_per_length", |s| set(s, None, Some(2e4)));
     }
 
     #[test]

@@ -50,7 +50,11 @@ pub fn unit(column: &str) -> Option<&'static str> {
         "kinetic" | "stored" | "work_unbalance" | "work_rotation" | "work_flow" | "contact_work" => "J",
         "dissipated_structure" | "dissipated_fluid" | "dissipated_friction" | "dissipated_contact" => "J",
         "residual" | "energy_residual" => "J",
-        "mesh_error_mean_radius" | "mesh_error_static_position" | "mesh_error_friction_coefficient" => "1",
+        "time_error"
+        | "relative_spread"
+        | "mesh_error_mean_radius"
+        | "mesh_error_static_position"
+        | "mesh_error_friction_coefficient" => "1",
         "cpu_per_simulated_second" | "speed_over_rk4" | "tolerance" => "1",
         "trajectory_error" | "line_amplitude_error" => "1",
         "static_position_error" | "friction_coefficient_error" | "energy_error" | "estimated_error" => "1",

@@ -9,6 +9,7 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use drillsweep_sim::control::Control;
+use drillsweep_sim::errors::ResultErrors;
 use drillsweep_sim::scenario::{PRESETS, Scenario, preset};
 use drillsweep_worker::{Computed, compute, simulated_time_total};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -220,19 +221,11 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             "error of a lateral displacement: {:.1e} of the motion ({:.1e} m), estimated, as long as histories do not part",
             transient.error_estimate.relative, transient.error_estimate.displacement
         )?;
-        match (computed.ensemble.is_empty(), computed.histories_part_at) {
-            (true, _) => writeln!(text, "one run, so no spread is known (--set ensemble=8 gives it)")?,
-            (false, Some(time)) => writeln!(
-                text,
-                "{} runs that start 1e-6 m apart part at {time:.2} s: beyond, only statistics mean something",
-                1 + computed.ensemble.len()
-            )?,
-            (false, None) => {
-                writeln!(text, "{} runs that start 1e-6 m apart stay together", 1 + computed.ensemble.len())?;
-            }
+        if let Some(ResultErrors { time, mesh, spread }) = &computed.errors {
+            writeln!(text, "{time}\n{mesh}\n{spread}")?;
         }
-        if let Some(estimate) = &computed.mesh_error {
-            writeln!(text, "{estimate}")?;
+        if let Some(time) = computed.histories_part_at {
+            writeln!(text, "the runs part at {time:.2} s: beyond, only statistics mean something")?;
         }
         for warning in &computed.warnings {
             writeln!(text, "warning: {warning}")?;

@@ -3,6 +3,8 @@
 //! Impacts and sliding make neighbouring histories part. From then on neither their course nor the error of an
 //! integrator along it means anything; sizes, lines and counts do, with the spread that the members show.
 
+use std::ops::Range;
+
 use crate::model::{Model, NodalVector};
 use crate::transient::NodeHistory;
 
@@ -10,7 +12,7 @@ use crate::transient::NodeHistory;
 pub const DISTURBANCE: f64 = 1e-6;
 
 /// Distance at which two histories count as parted, relative to the size of the motion.
-const PARTED: f64 = 0.1;
+pub(crate) const PARTED: f64 = 0.1;
 
 /// Half waves along the string that a disturbance is made of: smooth, so that it starts no vibration of its own.
 const HALF_WAVES: usize = 6;
@@ -57,6 +59,17 @@ pub fn parting_time(a: &[NodeHistory], b: &[NodeHistory], rate_hz: f64) -> Optio
     };
     let parted = |&k: &usize| motion > 0.0 && distance(k) > PARTED * PARTED * motion;
     (0..samples).find(parted).map(|k| k as f64 / rate_hz)
+}
+
+/// Root mean square distance over some samples between two members, of each recorded node \[m\].
+pub fn distances(a: &[NodeHistory], b: &[NodeHistory], samples: &Range<usize>) -> Vec<f64> {
+    let of_node = |(a, b): (&NodeHistory, &NodeHistory)| {
+        let square = |k: usize| (a.u[k] - b.u[k]).powi(2) + (a.v[k] - b.v[k]).powi(2);
+        let ends = samples.start.min(samples.end)..samples.end.min(a.u.len()).min(b.u.len());
+        let count = ends.len().max(1) as f64;
+        (ends.map(square).sum::<f64>() / count).sqrt()
+    };
+    a.iter().zip(b).map(of_node).collect()
 }
 
 /// Mean and standard deviation of a statistic over the members; nothing without any.

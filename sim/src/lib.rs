@@ -11,6 +11,7 @@ pub mod beam;
 pub mod contact;
 pub mod control;
 pub mod ensemble;
+pub mod errors;
 pub mod linalg;
 pub mod mesh_estimate;
 pub mod model;

@@ -47,6 +47,8 @@ pub struct TransientSummary {
     pub spectra: Vec<SpectrumSummary>,
     /// Frequency \[Hz\] up to which the longest step resolves a vibration.
     pub resolved_hz: f64,
+    /// Steps of the shortest length that left more than the tolerance.
+    pub unresolved_steps: u64,
     /// Contacts of all nodes together.
     pub contact_count: u64,
     /// How often nodes came to stick, all together.
@@ -182,6 +184,7 @@ impl TransientSummary {
             orbits,
             spectra,
             resolved_hz: records.effort.resolved_hz,
+            unresolved_steps: records.effort.unresolved_steps,
             capture_count: records.contacts.iter().map(|contact| contact.capture_count).sum(),
             contact_count: records.contacts.iter().map(|contact| contact.contact_count).sum(),
             largest_normal_force: records

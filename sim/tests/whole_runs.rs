@@ -2,138 +2,35 @@
 //! different kind reach.
 
 use drillsweep_sim::control::Control;
+use drillsweep_sim::errors::TimeError;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{
-    Accuracy, AccuracyPreset, Adhesion, Integrator, NodeChoice, Scenario, Section, SectionKind,
-    SurveyStation, TimeStepping, TimeWindow, preset,
-};
-use drillsweep_sim::signal::{orbit_statistics, sample_range};
+use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{ContactStatistics, Outcome, Records, Transient};
+use drillsweep_sim::transient::{ContactStatistics, Outcome, Transient};
+use whole_run_scenes::{WholeRun, apart, reduced, scenes};
 
-/// The paper's string without its tool joints, on a coarse mesh, with damping that closes the model. It begins to stick and slip after some
-/// ten seconds; what is read is the last third of the run.
-fn reduced() -> Scenario {
-    let section = |kind, length, outer_diameter, inner_diameter| Section {
-        kind,
-        count: 1,
-        length,
-        outer_diameter,
-        inner_diameter,
-        tool_joint: None,
-    };
-    let mut scenario = preset("paper-200m").expect("shipped preset");
-    scenario.string.sections = vec![
-        section(SectionKind::Drillpipe, 93.5, 0.127, 0.108),
-        section(SectionKind::Collar, 106.5, 0.159, 0.071),
-    ];
-    (scenario.mesh.drillpipe, scenario.mesh.collar) = (4.0, 2.2);
-    scenario.damping.stiffness_proportional = 3e-5;
-    scenario.duration = 30.0;
-    scenario.recording.rate_hz = 500.0;
-    scenario.recording.nodes = vec![NodeChoice::Depth(40.0), NodeChoice::Depth(150.0)];
-    scenario.recording.spectrum_windows.clear();
-    scenario.recording.orbit_window = Some(TimeWindow { from: 20.0, to: 30.0 });
-    scenario
-}
+mod whole_run_scenes;
 
 /// Scenes whose friction is as steep as printed or steeper, walls as printed or ten times as hard.
-fn scenes() -> Vec<(&'static str, Scenario)> {
-    let scene = |name: &'static str, change: &dyn Fn(&mut Scenario)| {
-        let mut scenario = reduced();
-        change(&mut scenario);
-        (name, scenario)
-    };
-    let well = |stations: [[f64; 3]; 3]| {
-        stations
-            .map(|[measured_depth, inclination_deg, azimuth_deg]| SurveyStation {
-                measured_depth,
-                inclination_deg,
-                azimuth_deg,
-            })
-            .to_vec()
-    };
-    vec![
-        scene("base case", &|_| {}),
-        scene("heavy mud, fast flow", &|scenario| {
-            let mud = scenario.mud.as_mut().expect("mud");
-            (mud.flow_rate, mud.density) = (0.04, 2100.0);
-        }),
-        scene("friction steeper", &|scenario| scenario.contact.friction_reference_speed = 0.02),
-        scene("no adhesion", &|scenario| scenario.contact.adhesion = Adhesion::None),
-        scene("hard wall", &|scenario| {
-            (scenario.contact.stiffness, scenario.contact.damping) = (1e8, 1e5);
-        }),
-        scene("building well", &|scenario| {
-            scenario.well.survey = well([[0.0, 25.0, 0.0], [100.0, 40.0, 10.0], [200.0, 60.0, 15.0]]);
-        }),
-    ]
-}
-
-/// What is read of a recorded node.
-#[derive(Debug, Clone, Copy)]
-struct Read {
-    /// Orbit size, standard deviation of the radius and mean radius \[m\].
-    size: f64,
-    deviation: f64,
-    radius: f64,
-    /// Standard deviation of the torsional speed \[rad/s\].
-    torsion: f64,
-}
-
-fn read(scenario: &Scenario, accuracy: Accuracy) -> (Vec<Read>, Records) {
-    let scenario = Scenario { accuracy, ..scenario.clone() };
-    scenario.validate().expect("valid");
-    let model = Model::new(&scenario).expect("has a model");
-    let equilibrium = Equilibrium::find(&model).expect("rests");
-    let records = match Transient::new(&model, &equilibrium).expect("sets up").run(&Control::new()) {
-        Ok(Outcome::Finished(records)) => *records,
-        other => panic!("did not finish: {other:?}"),
-    };
-    let read = records.histories.iter().map(|history| {
-        let samples = sample_range(20.0, 30.0, records.rate_hz, history.u.len());
-        let orbit =
-            orbit_statistics(&history.u[samples.clone()], &history.v[samples.clone()]).expect("samples");
-        let speeds = &history.theta_z_rate[samples];
-        let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
-        let variance = speeds.iter().map(|speed| (speed - mean).powi(2)).sum::<f64>() / speeds.len() as f64;
-        Read {
-            size: orbit.orbit_radius_rms,
-            deviation: orbit.radius_deviation,
-            radius: orbit.mean_radius,
-            torsion: variance.sqrt(),
-        }
-    });
-    (read.collect(), records)
-}
-
-/// The largest relative difference of any node: of orbit size, of the standard deviation of the radius, of mean radius, of torsional speed.
-fn apart(a: &[Read], b: &[Read]) -> [f64; 4] {
-    let parts = |read: &Read| [read.size, read.deviation, read.radius, read.torsion];
-    a.iter().zip(b).fold([0.0; 4], |most, (a, b)| {
-        let (a, b) = (parts(a), parts(b));
-        std::array::from_fn(|i| most[i].max((a[i] / b[i] - 1.0).abs()))
-    })
-}
+const HELD_TO_PROMISES: [&str; 6] =
+    ["base case", "heavy mud, fast flow", "friction steeper", "no adhesion", "hard wall", "building well"];
 
 #[test]
 fn presets_keep_their_promises_over_whole_runs() {
     let failures: Vec<String> = std::thread::scope(|scope| {
-        let workers: Vec<_> = scenes()
-            .into_iter()
-            .map(|(name, scenario)| scope.spawn(move || check(name, &scenario)))
-            .collect();
+        let held = scenes().into_iter().filter(|(name, _)| HELD_TO_PROMISES.contains(name));
+        let workers: Vec<_> =
+            held.map(|(name, scenario)| scope.spawn(move || check(name, &scenario))).collect();
+        assert_eq!(workers.len(), HELD_TO_PROMISES.len());
         workers.into_iter().flat_map(|worker| worker.join().expect("runs")).collect()
     });
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
 fn check(name: &str, scenario: &Scenario) -> Vec<String> {
-    let explicit = Accuracy::Explicit;
-    let (rk4, _) = read(scenario, explicit(TimeStepping::fixed(Integrator::Rk4, 1e-4)));
-    let fine = TimeStepping { contact_sweeps: 20, ..TimeStepping::fixed(Integrator::Esdirk4, 5e-4) };
-    let (fine, records) = read(scenario, explicit(fine));
-    assert!(records.contacts.iter().any(|node| node.capture_count > 0), "{name}: nothing sticks");
+    let (rk4, fine) = (WholeRun::by_rk4(scenario), WholeRun::by_esdirk4(scenario, 5e-4));
+    let captures = |run: &WholeRun| run.records.contacts.iter().any(|node| node.capture_count > 0);
+    assert!(captures(&fine), "{name}: nothing sticks");
     let mut failures = Vec::new();
     // A reference exists where two methods agree within a third of the tightest promise.
     let agreement = apart(&fine, &rk4);
@@ -146,15 +43,39 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
         (AccuracyPreset::Reference, 0.003, 0.01),
     ] {
         assert_eq!(preset.tolerance(), size);
-        let (got, records) = read(scenario, Accuracy::Preset(preset));
-        let error = apart(&got, &rk4);
+        let run = WholeRun::of(scenario, Accuracy::Preset(preset), 0);
+        let error = apart(&run, &rk4);
         // Means and torsion are no harder than orbits.
         if !(error[0] <= size && error[1] <= deviation && error[2] <= size && error[3] <= size) {
-            failures.push(format!("{name}: {preset:?} errs by {error:.5?} ({:?})", records.effort));
+            failures.push(format!("{name}: {preset:?} errs by {error:.5?} ({:?})", run.records.effort));
         }
-        assert!(records.effort.unresolved_steps == 0, "{name}: {:?}", records.effort);
+        assert!(run.records.effort.unresolved_steps == 0, "{name}: {:?}", run.records.effort);
+        let told = run.time_error(&[]);
+        let covers = told.statistics().is_some_and(|estimate| {
+            error[0] <= estimate + agreement[0] && error[1] <= estimate + agreement[1]
+        });
+        if !(covers && matches!(told, TimeError::Conditional { .. })) {
+            failures.push(format!("{name}: {preset:?} errs by {error:.5?} and says {told:?}"));
+        }
     }
     failures
+}
+
+/// A scene that multiplies disturbances is told from one that does not by an ensemble, and only so.
+#[test]
+fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
+    let standard = Accuracy::Preset(AccuracyPreset::Standard);
+    let runs = |name: &str| {
+        let (_, scenario) = scenes().into_iter().find(|(found, _)| *found == name).expect("is there");
+        [0, 1].map(|member| WholeRun::of(&scenario, standard, member))
+    };
+    let [run, other] = runs("damping 1e-4 s");
+    assert!(matches!(run.time_error(&[other]), TimeError::Estimated { statistics, .. } if statistics < 0.02));
+    // Without mud the orbit of this one is a third off.
+    let [run, other] = runs("dry");
+    assert!(matches!(run.time_error(&[]), TimeError::Conditional { .. }));
+    let told = run.time_error(&[other]);
+    assert!(matches!(told, TimeError::Unknown { .. }), "{told:?}");
 }
 
 /// Records are apart from steps: with steps longer than the recording interval every sample is still that of the converged motion.

@@ -4,11 +4,13 @@ use std::time::Instant;
 
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::ensemble::parting_time;
+use drillsweep_sim::ensemble::{distances, parting_time};
+use drillsweep_sim::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::{Model, ModelError};
 use drillsweep_sim::modes::{Stability, UndampedTorsion, stability};
 use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::signal::sample_range;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::{CostReport, Recommendation, StudyError};
 use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
@@ -29,7 +31,7 @@ pub struct Computed {
     /// The run in time in scalars; absent where the scenario has none.
     pub transient: Option<TransientSummary>,
     /// The other members of its ensemble.
-    pub ensemble: Vec<TransientSummary>,
+    pub ensemble: Vec<OtherMember>,
     /// Time \[s\] at which one of them has first parted from the undisturbed one; absent where they stay together, or without an ensemble.
     pub histories_part_at: Option<f64>,
     /// The cost study in place of a run, where the scenario asks for one.
@@ -38,8 +40,8 @@ pub struct Computed {
     pub stability: Option<Stability>,
     /// The torsional modes that falling friction feeds; absent without a run in time, twist or friction that turns the string.
     pub undamped_torsion: Option<UndampedTorsion>,
-    /// The mesh's part of the error of the equilibrium; absent without a run in time.
-    pub mesh_error: Option<MeshEstimate>,
+    /// Errors by steps and by the mesh, and spread; absent without a run in time.
+    pub errors: Option<ResultErrors>,
     /// What was run that is probably not meant, in words.
     pub warnings: Vec<String>,
     /// Versions, integrator, steps and cost.
@@ -159,7 +161,9 @@ impl Computed {
             row.insert("undamped_torsion_hz".into(), json!(torsion.highest_hz));
             row.insert("undamped_torsion_growth".into(), json!(torsion.highest_growth));
         }
-        if let Some(mesh) = &self.mesh_error {
+        if let Some(ResultErrors { time, mesh, spread }) = &self.errors {
+            row.insert("time_error".into(), json!(time.statistics()));
+            row.insert("relative_spread".into(), json!(spread.orbit_size()));
             let errors = mesh.estimate();
             row.insert("mesh_error_mean_radius".into(), json!(errors.and_then(|errors| errors.mean_radius)));
             row.insert(
@@ -287,7 +291,13 @@ pub fn compute_from(
             let other = run(member)?;
             let parted = parting_time(&first.histories, &other.histories, first.rate_hz);
             histories_part_at = histories_part_at.into_iter().chain(parted).reduce(f64::min);
-            ensemble.push(TransientSummary::new(&model, &other));
+            let window = scenario.orbit_window();
+            let samples = first.histories.first().map_or(0, |history| history.u.len());
+            let samples = sample_range(window.from, window.to, first.rate_hz, samples);
+            ensemble.push(OtherMember {
+                summary: TransientSummary::new(&model, &other),
+                distances: distances(&first.histories, &other.histories, &samples),
+            });
         }
     }
     let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
@@ -324,9 +334,12 @@ pub fn compute_from(
         provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
         provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
     }
-    let mesh_error = records.is_some().then(|| MeshEstimate::of(&model, &equilibrium));
-    if let Some(mesh) = &mesh_error {
-        provenance.insert("mesh_error".into(), json!(mesh));
+    let errors = transient.as_ref().map(|transient| {
+        let mesh = MeshEstimate::of(&model, &equilibrium);
+        ResultErrors::new(transient, &ensemble, undamped_torsion.as_ref(), mesh)
+    });
+    if let Some(errors) = &errors {
+        provenance.insert("errors".into(), json!(errors));
     }
     let mut warnings = Vec::new();
     if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
@@ -346,7 +359,7 @@ pub fn compute_from(
         study,
         stability,
         undamped_torsion,
-        mesh_error,
+        errors,
         warnings,
         provenance,
     };
@@ -423,7 +436,13 @@ mod tests {
         assert!(printed.provenance["warnings"][0].as_str().unwrap().contains("stiffness_proportional"));
         // Its contact law is a node's, so its mesh's part is not known.
         assert!(row["mesh_error_static_position"].is_null());
-        assert_eq!(printed.provenance["mesh_error"]["state"], "unknown");
+        let errors = &printed.provenance["errors"];
+        assert_eq!(errors["mesh"]["state"], "unknown");
+        // Nor is that of steps which leave torsion out, nor any spread of one run.
+        assert_eq!(errors["time"]["state"], "unknown");
+        assert!(errors["time"]["reason"].as_str().unwrap().contains("stiffness_proportional"), "{errors}");
+        assert!(row["time_error"].is_null() && row["relative_spread"].is_null());
+        assert_eq!(errors["spread"]["state"], "unknown");
 
         let damped = computed("paper-200m-damped");
         assert!(damped.summary_row()["undamped_torsion_hz"].as_f64().unwrap() < 20.0);

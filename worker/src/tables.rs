@@ -2,6 +2,7 @@
 
 use drillsweep_api::units::unit;
 use drillsweep_sim::ensemble::spread;
+use drillsweep_sim::errors::OtherMember;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{OrbitOutputs, Outputs};
 use drillsweep_sim::signal::{Window, full_spectrum, sample_range};
@@ -43,7 +44,7 @@ pub fn point_tables(
 pub fn summary_row(
     statics: &StaticsSummary,
     transient: Option<&TransientSummary>,
-    ensemble: &[TransientSummary],
+    ensemble: &[OtherMember],
     histories_part_at: Option<f64>,
 ) -> Map<String, Value> {
     let mut row = Map::new();
@@ -71,7 +72,10 @@ pub fn summary_row(
         return row;
     }
     row.insert("histories_part_at".into(), json!(histories_part_at));
-    let members: Vec<_> = std::iter::once(transient).chain(ensemble).map(transient_row).collect();
+    let members: Vec<_> = std::iter::once(transient)
+        .chain(ensemble.iter().map(|other| &other.summary))
+        .map(transient_row)
+        .collect();
     for name in members[0].keys() {
         // Forward and backward lines of one motion are often nearly alike: which is the higher says nothing.
         let value = |row: &Map<String, Value>| {
@@ -117,6 +121,7 @@ fn transient_row(transient: &TransientSummary) -> Map<String, Value> {
     put("contact_count".into(), json!(transient.contact_count));
     put("capture_count".into(), json!(transient.capture_count));
     put("resolved_hz".into(), json!(transient.resolved_hz));
+    put("unresolved_steps".into(), json!(transient.unresolved_steps));
     put("largest_normal_force".into(), json!(transient.largest_normal_force));
     put("error_estimate".into(), json!(transient.error_estimate.relative));
     put("error_estimate_displacement".into(), json!(transient.error_estimate.displacement));

@@ -1,0 +1,227 @@
+//! The three errors of a result side by side: what steps, mesh and the scene's own sensitivity leave open in the statistics that are read.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ensemble::{DISTURBANCE, PARTED, spread};
+use crate::mesh_estimate::MeshEstimate;
+use crate::modes::UndampedTorsion;
+use crate::summary::{OrbitSummary, TransientSummary};
+
+/// What a result may be wrong by: as parts of the statistics of the recorded orbits, the worst node each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct ResultErrors {
+    /// Of the steps.
+    pub time: TimeError,
+    /// Of the mesh.
+    pub mesh: MeshEstimate,
+    /// Between runs that start next to each other.
+    pub spread: SpreadError,
+}
+
+/// What the steps of a run leave in orbit size and in the standard deviation of the radius, relative to them.
+///
+/// Each step leaves an error, which the embedded method tells, and the scene multiplies it until the end of the run as it multiplies any
+/// other disturbance. The first is known of every run, the second of an ensemble: its members start a micrometre apart, and what has
+/// become of that tells by how much. Scenes differ by three orders of magnitude there, so an estimate without an ensemble holds on a
+/// condition.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(tag = "state", rename_all = "snake_case")]
+pub enum TimeError {
+    /// Estimated with what the ensemble shows of the scene.
+    Estimated {
+        /// Relative error, the worst node.
+        statistics: f64,
+        /// By how much the scene multiplies a disturbance of the start at that node.
+        amplification: f64,
+    },
+    /// Estimated for a scene that multiplies disturbances no more than most: one run does not show it.
+    Conditional {
+        /// Relative error, the worst node, on that condition.
+        statistics: f64,
+        /// The condition, in words.
+        condition: String,
+    },
+    /// Not known.
+    Unknown {
+        /// Why, in words.
+        reason: String,
+    },
+}
+
+/// How far runs of the same scenario differ whose starts differ by [`DISTURBANCE`]: a property of the scene, which no step makes smaller.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(tag = "state", rename_all = "snake_case")]
+pub enum SpreadError {
+    /// Measured on an ensemble.
+    Measured {
+        /// Members of the ensemble.
+        members: usize,
+        /// Standard deviation of orbit size over its mean, the worst node.
+        orbit_size: f64,
+        /// Standard deviation of the radius' standard deviation over its mean, the worst node.
+        radius_deviation: f64,
+    },
+    /// Not known.
+    Unknown {
+        /// Why, in words.
+        reason: String,
+    },
+}
+
+/// A member of an ensemble beside the undisturbed run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherMember {
+    /// What it showed.
+    pub summary: TransientSummary,
+    /// Root mean square distance from the undisturbed run over the orbit window, of each recorded node \[m\].
+    pub distances: Vec<f64>,
+}
+
+/// Error of a statistic over the estimated error of the history, where a disturbance of the start is multiplied by one. With it, and where
+/// members stay together, the estimate covers nearly all scenes of `benches/error_estimate.rs`, and is some seven times too large in the
+/// median.
+const SHARE_OF_HISTORY: f64 = 0.2;
+
+/// Amplification that counts at least, and that is taken where none was measured. Most scenes stay below it over half a minute, those
+/// that hardly damp multiply by hundreds.
+const USUAL_AMPLIFICATION: f64 = 5.0;
+
+/// Relative error beyond which an estimate says no more than that nothing is known.
+const LARGEST_ESTIMATE: f64 = 0.5;
+
+impl ResultErrors {
+    /// The errors of a run, given its ensemble, the torsion that friction feeds and the mesh's part.
+    pub fn new(
+        run: &TransientSummary,
+        others: &[OtherMember],
+        torsion: Option<&UndampedTorsion>,
+        mesh: MeshEstimate,
+    ) -> Self {
+        Self { time: TimeError::new(run, others, torsion), mesh, spread: SpreadError::new(run, others) }
+    }
+}
+
+impl TimeError {
+    fn new(run: &TransientSummary, others: &[OtherMember], torsion: Option<&UndampedTorsion>) -> Self {
+        let unknown = |reason: String| TimeError::Unknown { reason };
+        if let Some(warning) = torsion.and_then(|torsion| torsion.warning(run.resolved_hz)) {
+            return unknown(warning);
+        }
+        if run.unresolved_steps > 0 {
+            return unknown(format!(
+                "{} steps of the shortest length left more than the tolerance",
+                run.unresolved_steps
+            ));
+        }
+        let distance = |node: usize| {
+            others.iter().filter_map(|other| other.distances.get(node)).copied().fold(0.0, f64::max)
+        };
+        let parted =
+            |(node, orbit): &(usize, &OrbitSummary)| distance(*node) > PARTED * orbit.orbit_radius_rms;
+        if let Some((node, orbit)) = run.orbits.iter().enumerate().find(parted) {
+            return unknown(format!(
+                "runs that start {DISTURBANCE:e} m apart have come {:.1e} m apart at {} m, where the orbit has {:.1e} m: what steps leave \
+                 is multiplied alike, and no step helps",
+                distance(node),
+                orbit.measured_depth,
+                orbit.orbit_radius_rms
+            ));
+        }
+        let amplified = run.orbits.iter().enumerate().map(|(node, orbit)| {
+            let amplification = (distance(node) / DISTURBANCE).max(USUAL_AMPLIFICATION);
+            let error = SHARE_OF_HISTORY * amplification * run.error_estimate.displacement;
+            (if error > 0.0 { error / orbit.orbit_radius_rms } else { 0.0 }, amplification)
+        });
+        let Some((statistics, amplification)) = amplified.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
+            return unknown("no node is recorded over the orbit window".into());
+        };
+        if statistics > LARGEST_ESTIMATE || !statistics.is_finite() {
+            return unknown(format!(
+                "what steps leave, multiplied by {amplification:.0} as the scene multiplies a disturbance, comes to half of the orbit and \
+                 more; a smaller tolerance leaves less"
+            ));
+        }
+        if others.is_empty() {
+            let condition = "the scene multiplies disturbances no more than most, which one run does not show; ensemble=2 measures it";
+            return TimeError::Conditional { statistics, condition: condition.into() };
+        }
+        TimeError::Estimated { statistics, amplification }
+    }
+
+    /// The estimate, conditional or not; absent where it is not known.
+    pub fn statistics(&self) -> Option<f64> {
+        match self {
+            TimeError::Estimated { statistics, .. } | TimeError::Conditional { statistics, .. } => {
+                Some(*statistics)
+            }
+            TimeError::Unknown { .. } => None,
+        }
+    }
+}
+
+impl SpreadError {
+    fn new(run: &TransientSummary, others: &[OtherMember]) -> Self {
+        if others.is_empty() {
+            return SpreadError::Unknown { reason: "one run has no spread; ensemble=8 measures it".into() };
+        }
+        let worst = |value: fn(&OrbitSummary) -> f64| {
+            let of_node = |node: usize| {
+                let members = std::iter::once(run).chain(others.iter().map(|other| &other.summary));
+                let values: Vec<f64> =
+                    members.filter_map(|member| member.orbits.get(node)).map(value).collect();
+                spread(&values)
+                    .map_or(0.0, |(mean, deviation)| if deviation > 0.0 { deviation / mean } else { 0.0 })
+            };
+            (0..run.orbits.len()).map(of_node).fold(0.0, f64::max)
+        };
+        SpreadError::Measured {
+            members: 1 + others.len(),
+            orbit_size: worst(|orbit| orbit.orbit_radius_rms),
+            radius_deviation: worst(|orbit| orbit.radius_deviation),
+        }
+    }
+
+    /// Standard deviation of orbit size over its mean; absent where it is not known.
+    pub fn orbit_size(&self) -> Option<f64> {
+        match self {
+            SpreadError::Measured { orbit_size, .. } => Some(*orbit_size),
+            SpreadError::Unknown { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for TimeError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TimeError::Estimated { statistics, amplification } => write!(
+                formatter,
+                "error of statistics by steps: {:.1e}, estimated for a scene that multiplies disturbances by {amplification:.0}",
+                statistics
+            ),
+            TimeError::Conditional { statistics, condition } => {
+                write!(formatter, "error of statistics by steps: {statistics:.1e}, estimated, if {condition}")
+            }
+            TimeError::Unknown { reason } => {
+                write!(formatter, "error of statistics by steps: not known ({reason})")
+            }
+        }
+    }
+}
+
+impl fmt::Display for SpreadError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SpreadError::Measured { members, orbit_size, radius_deviation } => write!(
+                formatter,
+                "spread of {members} runs that start 1e-6 m apart: {orbit_size:.1e} of orbit size, {radius_deviation:.1e} of the radius' \
+                 standard deviation"
+            ),
+            SpreadError::Unknown { reason } => write!(formatter, "spread: not known ({reason})"),
+        }
+    }
+}

@@ -43,8 +43,12 @@ pub(crate) struct CostArguments {
     /// Meshes to compare, as factors on the element lengths, such as `2,0.5,0.25`.
     #[arg(long, value_delimiter = ',')]
     mesh_factors: Vec<f64>,
+    /// Look for the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
+    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 2, 1 and 0.5 unless said otherwise.
+    #[arg(long, value_parser = parse_share)]
+    total: Option<f64>,
     /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.
-    #[arg(long, conflicts_with_all = ["methods", "mesh_factors"])]
+    #[arg(long, conflicts_with_all = ["methods", "mesh_factors", "total"])]
     effects: bool,
     /// Simulations at once; absent means all cores. Side by side they disturb each other's processor time: 1 measures best.
     #[arg(long)]
@@ -152,7 +156,8 @@ fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
     let factors = &arguments.mesh_factors;
     let meshes = (!factors.is_empty()).then(|| ("cost_study.mesh_factors", json!(factors)));
     let effects = arguments.effects.then(|| ("cost_study.effects", json!(true)));
-    let changes = [duration, members, reference, presets, methods, meshes, effects];
+    let total = arguments.total.map(|total| ("cost_study.total", json!(total)));
+    let changes = [duration, members, reference, presets, methods, meshes, total, effects];
     for (path, value) in changes.into_iter().flatten() {
         scenario = scenario.with(path, value)?;
     }
@@ -229,6 +234,18 @@ fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// A part of the whole, above 0 and below 1: `5%`, `5 %` or `0.05`.
+fn parse_share(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.strip_suffix('%') {
+        Some(number) => (number, 100.0),
+        None => (text, 1.0),
+    };
+    let share = number.trim().parse::<f64>().ok().map(|number| number / scale);
+    share
+        .filter(|share| *share > 0.0 && *share < 1.0)
+        .ok_or_else(|| "must be more than nothing and less than the whole, such as 5% or 0.05".to_owned())
+}
+
 fn json_value(text: &str) -> Result<Value, serde_json::Error> {
     serde_json::from_str(text)
 }
@@ -261,6 +278,20 @@ mod tests {
             assert_eq!((scenario.duration, scenario.cost_study.as_ref().unwrap().members), (61.0, 5));
         }
         assert_eq!(arguments.threads, None, "all cores");
+    }
+
+    #[test]
+    fn a_whole_error_is_a_percentage_or_a_ratio() {
+        let total = |text: &str| arguments(&["paper-200m", "--total", text]).map(|found| found.total);
+        for (text, share) in [("5%", 0.05), ("0.05", 0.05), ("0.5 %", 0.005), ("12.5%", 0.125)] {
+            assert_eq!(total(text).unwrap(), Some(share), "{text}");
+        }
+        for text in ["5", "0", "0%", "100%", "-5%", "nan", "five", "%", ""] {
+            assert!(total(text).is_err(), "{text}");
+        }
+        let arguments = arguments(&["paper-200m", "--total", "5%"]).unwrap();
+        let scenario = studied(&arguments, "paper-200m").unwrap();
+        assert_eq!(scenario.cost_study.unwrap().meshes(), [2.0, 1.0, 0.5]);
     }
 
     #[test]

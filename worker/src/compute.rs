@@ -183,6 +183,12 @@ impl Computed {
                 let name = format!("cost_cpu_time_{}_{percent}_percent", quantity.name());
                 row.insert(name, json!(cpu_time));
             }
+            if let Some(total) = &study.total {
+                // 0.07 is 7 %, not 7.000000000000001 %.
+                let percent = ((1e8 * total.wanted).round() / 1e6).to_string().replace('.', "_");
+                let cpu_time = total.choice.as_ref().map(|choice| choice.cpu_time);
+                row.insert(format!("cost_cpu_time_total_{percent}_percent"), json!(cpu_time));
+            }
         }
         row
     }

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use drillsweep_sim::scenario::Integrator;
 use drillsweep_sim::study::{
-    Agreement, CostErrors, CostReport, CostRow, LineErrors, NodeAgreement, Quantity, StatisticError,
+    Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshPart, NodeAgreement, Quantity,
+    StatisticError, TotalCost,
 };
 
 use super::{step_text, three_digits};
@@ -59,6 +60,10 @@ pub fn text(report: &CostReport) -> String {
         for recommendation in &report.recommendations {
             let _ = writeln!(text, "  {}", recommendation.text);
         }
+    }
+    if let Some(total) = &report.total {
+        text.push_str("\nfor a whole error, mesh and time together\n");
+        text.push_str(&total_text(total));
     }
     if !report.warnings.is_empty() {
         text.push('\n');
@@ -271,6 +276,35 @@ fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
     ]
 }
 
+/// What each mesh is off by and what orbit sizes tend to, where that is known; then the recommendation.
+fn total_text(total: &TotalCost) -> String {
+    let mut text = String::new();
+    if !total.meshes.is_empty() {
+        let cells = |head, cell: &dyn Fn(&MeshPart) -> String| Cells {
+            head,
+            cells: total.meshes.iter().map(|mesh| Some(cell(mesh))).collect(),
+        };
+        let columns = [
+            cells("lengths", &|mesh| format!("x {}", three_digits(mesh.mesh_factor))),
+            cells("elements", &|mesh| mesh.elements.to_string()),
+            cells("orbit size off by", &|mesh| format!("{} %", percent(mesh.error))),
+            cells("CPU time", &|mesh| format!("x {}", three_digits(mesh.cpu_ratio))),
+        ];
+        text.push_str(&aligned(&columns, &vec![String::new(); total.meshes.len()]));
+    }
+    for limit in &total.limits {
+        let at =
+            limit.measured_depth.map_or_else(String::new, |depth| format!(" at {} m", three_digits(depth)));
+        let size = four_digits(1e3 * limit.orbit_size);
+        let _ = match limit.order {
+            Some(order) => writeln!(text, "  orbit size{at} tends to {size} mm with order {order:.1}"),
+            None => writeln!(text, "  orbit size{at} shows no order; {size} mm on the finest mesh"),
+        };
+    }
+    let _ = writeln!(text, "  {}", total.text);
+    text
+}
+
 /// The spurious lines of each row, the highest named.
 fn spurious_lines(rows: &[&CostRow]) -> String {
     let mut text = String::new();
@@ -384,7 +418,7 @@ pub(super) fn aligned(columns: &[Cells], notes: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::tests::{report, with_members};
+    use crate::cost::tests::{report, total, with_members};
 
     #[test]
     fn columns_are_aligned_and_what_no_run_has_is_left_out() {
@@ -442,6 +476,19 @@ mod tests {
         assert!(text.contains(" 5 members each"), "{text}");
         assert!(text.contains("  +40 ± 1.2 (2)  ") && text.contains("  +0.4 ± 1.2 (2)~  "), "{text}");
         assert!(!text.contains("one member"));
+    }
+
+    #[test]
+    fn a_whole_error_is_told_with_the_meshes_parts() {
+        let mut report = report();
+        assert!(!text(&report).contains("whole error"));
+        report.total = Some(total());
+        let expected = "\nfor a whole error, mesh and time together\n  lengths  elements  orbit size off by  CPU time\n\
+                        \x20 x 2           158                8 %     x 0.5\n\
+                        \x20 x 0.5         585              0.5 %       x 2\n\
+                        \x20 orbit size at 57.8 m tends to 0.7100 mm with order 2.0\n\
+                        \x20 1 % of orbit size in all: mesh x 0.5\n";
+        assert!(text(&report).contains(expected), "{}", text(&report));
     }
 
     #[test]

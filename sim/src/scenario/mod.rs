@@ -24,8 +24,8 @@ pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
-pub(crate) use study::USUAL_STEPS;
 pub use study::{CostStudy, MethodSteps, StudyReference};
+pub(crate) use study::{USUAL_MESH_FACTORS, USUAL_STEPS};
 
 use serde::{Deserialize, Serialize};
 

@@ -104,7 +104,7 @@ numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; wit
 numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
-numbers!(CostStudy: duration, reference, methods, mesh_factors; without members, presets, effects);
+numbers!(CostStudy: duration, reference, methods, mesh_factors, total; without members, presets, effects);
 numbers!(StudyReference: methods, size_agreement, deviation_agreement);
 numbers!(MethodSteps: steps, tolerance; without integrator, contact_sweeps);
 
@@ -190,6 +190,7 @@ mod tests {
                     "reference": {"methods": [{"integrator": "esdirk4", "step": 1e-4, "tolerance": 0.01, "spectral_radius": 0.8}]},
                     "methods": [{"integrator": "rk4", "steps": [5e-5], "tolerance": 0.01}],
                     "mesh_factors": [2.0],
+                    "total": 0.05,
                 });
                 scenario.with("cost_study", study)
             })

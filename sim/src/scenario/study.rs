@@ -31,6 +31,10 @@ pub struct CostStudy {
     /// Factors on the mesh's target element lengths, each a run of its own at the accuracy `reference`; empty means none.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
+    /// Wanted relative error of orbit size, mesh and time together: the cheapest mesh, method and tolerance for it are looked for.
+    /// Without `mesh_factors` the meshes are then those of the factors 2, 1 and 0.5.
+    #[serde(default)]
+    pub total: Option<f64>,
     /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
     /// switched off in turn.
     #[serde(default)]
@@ -40,6 +44,10 @@ pub struct CostStudy {
 /// Fixed steps \[s\] that are compared where a study names none.
 pub(crate) const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
     [(Integrator::GeneralizedAlpha, [5e-4, 2.5e-4, 1.25e-4]), (Integrator::Esdirk4, [1e-3, 5e-4, 2.5e-4])];
+
+/// Factors on the mesh's target element lengths that are compared for a whole error where a study names none: two meshes would tell
+/// no order of convergence.
+pub(crate) const USUAL_MESH_FACTORS: [f64; 3] = [2.0, 1.0, 0.5];
 
 /// The reference of a study: two methods of different kind. What both reach is the reference; a statistic in which they differ
 /// by more than is allowed has none.
@@ -94,6 +102,22 @@ impl MethodSteps {
     }
 }
 
+impl CostStudy {
+    /// Factors of the meshes that are compared, the scenario's own among them, from coarse to fine; empty where none are.
+    pub fn meshes(&self) -> Vec<f64> {
+        let mut factors = match self.total {
+            Some(_) if self.mesh_factors.is_empty() => USUAL_MESH_FACTORS.to_vec(),
+            _ => self.mesh_factors.clone(),
+        };
+        if !factors.is_empty() {
+            factors.push(1.0);
+        }
+        factors.sort_by(|a, b| b.total_cmp(a));
+        factors.dedup();
+        factors
+    }
+}
+
 impl Default for CostStudy {
     fn default() -> Self {
         Self {
@@ -103,6 +127,7 @@ impl Default for CostStudy {
             presets: all_presets(),
             methods: None,
             mesh_factors: Vec::new(),
+            total: None,
             effects: false,
         }
     }

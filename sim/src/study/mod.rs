@@ -14,6 +14,7 @@ mod interval;
 mod measure;
 mod plan;
 mod report;
+mod total;
 
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ mod tests;
 pub use measure::Measure;
 pub use plan::{PlannedRow, RK4_STEP, Role, expected_cpu_time, plan};
 pub use report::report;
+pub use total::{MeshLimit, MeshPart, StoppedBy, TotalChoice, TotalCost};
 
 use serde::{Deserialize, Serialize};
 
@@ -133,6 +135,8 @@ pub struct CostReport {
     pub effects: Vec<CostRow>,
     /// Cheapest methods for some accuracies.
     pub recommendations: Vec<Recommendation>,
+    /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent where none was asked for.
+    pub total: Option<TotalCost>,
     /// What to doubt.
     pub warnings: Vec<String>,
 }

@@ -101,7 +101,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     rows.extend(
         steppings.map(|stepping| row(Role::Method, stepping.integrator.name(), Accuracy::Explicit(stepping))),
     );
-    rows.extend(meshes(&study).into_iter().map(|factor| {
+    rows.extend(study.meshes().into_iter().map(|factor| {
         let preset = AccuracyPreset::Reference;
         let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
         let mesh = &mut planned.scenario.mesh;
@@ -126,17 +126,6 @@ pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usi
         Some(cost) => (time + cost, unknown),
         None => (time, unknown + 1),
     })
-}
-
-/// The scenario's own mesh beside those asked for, from coarse to fine; none where none is asked for.
-fn meshes(study: &CostStudy) -> Vec<f64> {
-    let mut factors = study.mesh_factors.clone();
-    if !factors.is_empty() {
-        factors.push(1.0);
-    }
-    factors.sort_by(|a, b| b.total_cmp(a));
-    factors.dedup();
-    factors
 }
 
 /// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
@@ -269,6 +258,21 @@ mod tests {
         let steps = rows[2..].iter().map(|row| row.scenario.accuracy.time_stepping().step);
         let parts = [3.0, 5.0, 10.0, 2.0, 3.0, 5.0];
         assert_eq!(steps.collect::<Vec<_>>(), parts.map(|part| 1.0 / 800.0 / part));
+    }
+
+    #[test]
+    fn a_whole_error_needs_three_meshes() {
+        let meshes = |mesh_factors: &[f64]| -> Vec<f64> {
+            let rows = planned(|s| {
+                let study = s.cost_study.as_mut().unwrap();
+                (study.total, study.mesh_factors) = (Some(0.05), mesh_factors.to_vec());
+            });
+            let factor =
+                |row: &PlannedRow| if let Role::Mesh { factor } = row.role { Some(factor) } else { None };
+            rows.iter().filter_map(factor).collect()
+        };
+        assert_eq!(meshes(&[]), [2.0, 1.0, 0.5]);
+        assert_eq!(meshes(&[0.25, 4.0]), [4.0, 1.0, 0.25]);
     }
 
     #[test]

@@ -3,9 +3,10 @@
 use super::compare::{Reference, agreements};
 use super::measure::Measure;
 use super::plan::{PlannedRow, RK4_STEP, Role};
+use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
 use crate::ensemble::parting_time;
-use crate::scenario::{Integrator, Scenario, WallLaw};
+use crate::scenario::{Integrator, Scenario};
 
 /// Energy residual, relative to the contacts' net work, from which on a reference is doubted.
 const UNSOUND_RESIDUAL: f64 = 0.01;
@@ -147,12 +148,8 @@ pub fn report(
         ));
     }
     warn_of_references(&reference_rows, &agreements, &mut warnings);
-    if base.contact.law == WallLaw::PerNode && !meshes.is_empty() {
-        warnings.push(
-            "contact stiffness and damping are a node's, so a finer mesh meets a stiffer wall and need not converge; \
-             contact.law = \"per_length\" makes them the length's"
-                .to_owned(),
-        );
+    if !meshes.is_empty() && wall_depends_on_mesh(base) {
+        warnings.push(WALL_OF_NODES.to_owned());
     }
     let mut report = CostReport {
         scenario: scenario.name.clone(),
@@ -168,11 +165,13 @@ pub fn report(
         meshes,
         effects,
         recommendations: Vec::new(),
+        total: None,
         warnings,
     };
     let wanted = RECOMMENDED.iter().flat_map(|&quantity| WANTED.map(|accuracy| (quantity, accuracy)));
     report.recommendations =
         wanted.filter_map(|(quantity, accuracy)| recommendation(&report, quantity, accuracy)).collect();
+    report.total = study.total.map(|wanted| total(&report, base, wanted));
     Ok(report)
 }
 
@@ -264,15 +263,7 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
         let error = row.errors.as_ref().and_then(|errors| errors.statistic(quantity));
         error.is_some_and(|error| error.bound() <= accuracy)
     };
-    let holds = |row: &&CostRow| {
-        let is_finer = |other: &&CostRow| {
-            other.integrator == row.integrator
-                && other.contact_sweeps == row.contact_sweeps
-                && other.tolerance.is_none()
-                && other.step <= row.step
-        };
-        within(row) && (row.tolerance.is_some() || report.compared().filter(is_finer).all(within))
-    };
+    let holds = |row: &&CostRow| one_that_holds(report, row).all(within);
     let difference = agreement.agreed_difference();
     let agree = difference <= accuracy;
     let best = report.compared().filter(holds).min_by(|a, b| a.cpu_time.total_cmp(&b.cpu_time));
@@ -313,8 +304,23 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
     })
 }
 
+/// The line itself and, where its steps are fixed, all finer ones of its method: one that hits by chance has finer ones that miss.
+pub(super) fn one_that_holds<'a>(
+    report: &'a CostReport,
+    row: &'a CostRow,
+) -> impl Iterator<Item = &'a CostRow> {
+    let is_finer = |other: &&CostRow| {
+        row.tolerance.is_none()
+            && other.integrator == row.integrator
+            && other.contact_sweeps == row.contact_sweeps
+            && other.tolerance.is_none()
+            && other.step <= row.step
+    };
+    std::iter::once(row).chain(report.compared().filter(is_finer))
+}
+
 /// A line in words: its name where it has one of its own, its method, step and tolerance.
-fn stepping_words(row: &CostRow) -> String {
+pub(super) fn stepping_words(row: &CostRow) -> String {
     let method = row.integrator.name();
     let name = if row.name == method { String::new() } else { format!("{}, ", row.name) };
     let step = format!("{} ms", rounded(1e3 * row.step));
@@ -325,6 +331,6 @@ fn stepping_words(row: &CostRow) -> String {
 }
 
 /// A number without the noise of its last digits.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

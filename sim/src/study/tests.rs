@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::measure::NodeMeasure;
 use super::*;
-use crate::scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeStepping, preset};
+use crate::scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeStepping, WallLaw, preset};
 use crate::transient::NodeHistory;
 
 const RATE_HZ: f64 = 200.0;
@@ -57,9 +57,15 @@ type Row = (Role, &'static str, TimeStepping, Vec<(Measure, f64)>);
 
 /// The report of lines with their members and processor times.
 fn report_of(rows: Vec<Row>) -> CostReport {
+    report_with(rows, |_| {})
+}
+
+/// The same of a scenario with changes.
+fn report_with(rows: Vec<Row>, change: impl Fn(&mut Scenario)) -> CostReport {
     let members = rows[0].3.len() as u32;
-    let study = CostStudy { members, ..CostStudy::default() };
     let mut scenario = preset("paper-200m").unwrap();
+    scenario.cost_study = Some(CostStudy { members, ..CostStudy::default() });
+    change(&mut scenario);
     scenario.duration = DURATION;
     scenario.recording.rate_hz = RATE_HZ;
     scenario.recording.orbit_window = Some(WINDOW);
@@ -72,7 +78,6 @@ fn report_of(rows: Vec<Row>) -> CostReport {
             (planned, runs.into_iter().map(Ok).collect::<Vec<_>>())
         })
         .unzip();
-    scenario.cost_study = Some(study);
     report(&scenario, &planned, &runs).unwrap()
 }
 
@@ -314,4 +319,104 @@ fn histories_part_where_the_methods_of_the_reference_do() {
     assert_eq!(report.histories_part_at, Some(4000.0 / RATE_HZ));
     let trajectory = report.references[1].errors.as_ref().unwrap().trajectory;
     assert_eq!(trajectory, Some(0.0), "up to there they are the same");
+}
+
+fn mesh(factor: f64, run: Measure, cpu_time: f64) -> Row {
+    (
+        Role::Mesh { factor },
+        "reference",
+        TimeStepping::fixed(Integrator::Esdirk4, 1e-3),
+        vec![(run, cpu_time)],
+    )
+}
+
+/// Three meshes whose orbit sizes are of second order about 1 with half the scenario's lengths at `sizes[2]`, twice the
+/// reference's methods, `difference` apart, and three methods.
+fn report_of_total(wanted: f64, sizes: [f64; 3], difference: f64, wall_is_of_length: bool) -> CostReport {
+    let mut rows = references(sized(1.0), sized(1.0 + difference));
+    let named = |name, step, size, cpu_time| {
+        (Role::Method, name, TimeStepping::fixed(Integrator::Esdirk4, step), vec![(sized(size), cpu_time)])
+    };
+    rows.extend([named("draft", 8e-3, 1.04, 2.0), named("standard", 4e-3, 0.99, 5.0)]);
+    rows.push(named("reference", 1e-3, 1.001, 10.0));
+    let times = [5.0, 10.0, 20.0];
+    rows.extend((0..3).map(|i| mesh([2.0, 1.0, 0.5][i], sized(sizes[i]), times[i])));
+    report_with(rows, |scenario| {
+        scenario.contact.law = if wall_is_of_length { WallLaw::PerLength } else { WallLaw::PerNode };
+        scenario.cost_study.as_mut().unwrap().total = Some(wanted);
+    })
+}
+
+/// Of second order about 1: off by 8, 2 and 0.5 %.
+const SECOND_ORDER: [f64; 3] = [1.08, 1.02, 1.005];
+
+#[test]
+fn the_cheapest_mesh_and_method_for_a_whole_error_are_found() {
+    let total = |wanted| report_of_total(wanted, SECOND_ORDER, 0.0, true).total.unwrap();
+    let found = total(0.05);
+    assert_eq!(found.limits.len(), 1);
+    let limit = &found.limits[0];
+    // Sizes are sums of squares over samples of circles.
+    assert!((limit.order.unwrap() - 2.0).abs() < 1e-9 && limit.measured_depth == Some(50.0), "{limit:?}");
+    assert!((limit.orbit_size / FORWARD.1.hypot(BACKWARD.1) - 1.0).abs() < 1e-9, "{limit:?}");
+    for (mesh, (error, ratio)) in found.meshes.iter().zip([(0.08, 0.5), (0.02, 1.0), (0.005, 2.0)]) {
+        assert!((mesh.error - error).abs() < 1e-9 && (mesh.cpu_ratio - ratio).abs() < 1e-12, "{mesh:?}");
+    }
+    // Half the lengths with `draft`: 0.5 and 4 % in 2 * 2 s; the scenario's own mesh needs `standard`: 2 and 1 % in 5 s.
+    let of = |found: &TotalCost| {
+        let choice = found.choice.clone().unwrap();
+        (choice.mesh_factor, choice.name, (choice.cpu_time * 1e6).round() / 1e6)
+    };
+    assert_eq!(of(&found), (0.5, "draft".to_owned(), 4.0));
+    let choice = found.choice.as_ref().unwrap();
+    let parts = [choice.mesh_error - 0.005, choice.time_error - 0.04, choice.whole_error - 0.045];
+    assert!(parts.iter().all(|part| part.abs() < 1e-9), "{choice:?}");
+    assert_eq!(
+        found.text,
+        "5 % of orbit size in all: mesh x 0.5 (10 elements), draft, esdirk4 with a step of 8 ms: 0.50 % by the mesh and 4.00 % in time, \
+         4.50 % together, 4 s of CPU for 30 s; one member, so that confidence is unknown"
+    );
+    assert_eq!(of(&total(0.035)), (1.0, "standard".to_owned(), 5.0));
+    // RK4 is exact and cheaper, but its step is not stable on shorter elements.
+    assert_eq!(of(&total(0.0055)), (0.5, "B".to_owned(), 180.0));
+    assert_eq!(of(&total(0.0205)), (0.5, "standard".to_owned(), 10.0));
+}
+
+#[test]
+fn a_whole_error_that_nothing_reaches_says_what_stops_it() {
+    let found = report_of_total(0.004, SECOND_ORDER, 0.0, true).total.unwrap();
+    assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::Mesh)));
+    let text =
+        "0.4 % of orbit size in all: nothing studied reaches it; the least is mesh x 0.5 (10 elements), B, ";
+    assert!(found.text.starts_with(text), "{}", found.text);
+    assert!(found.text.ends_with(": the mesh stops it, take finer ones"), "{}", found.text);
+    // Half a per cent by the mesh, 0.05 % in time, by the method midway between A and B, which are a tenth apart.
+    let found = report_of_total(0.0052, SECOND_ORDER, 1e-3, true).total.unwrap();
+    assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::Sum)));
+}
+
+#[test]
+fn without_a_limit_or_a_reference_no_whole_error_is_told() {
+    let report = report_of_total(0.05, SECOND_ORDER, 0.0, false);
+    let found = report.total.unwrap();
+    assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::UnknownMesh)));
+    assert_eq!((found.limits, found.meshes), (vec![], vec![]));
+    let reason = super::total::WALL_OF_NODES;
+    assert_eq!(found.text, format!("5 % of orbit size in all: the mesh's part is not known: {reason}"));
+    assert!(report.warnings.iter().any(|warning| warning == reason));
+
+    let found = report_of_total(0.05, SECOND_ORDER, 0.05, true).total.unwrap();
+    assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::UnknownTime)));
+    assert!(found.text.contains("no reference exists"), "{}", found.text);
+    assert!((found.meshes[0].error - 0.08).abs() < 1e-9, "the mesh's part is known all the same");
+}
+
+#[test]
+fn meshes_that_do_not_converge_are_told_by_their_differences() {
+    let found = report_of_total(0.2, [1.0, 1.1, 1.04], 0.0, true).total.unwrap();
+    assert_eq!(found.limits[0].order, None);
+    for (mesh, error) in found.meshes.iter().zip([0.1, 0.12, 0.06]) {
+        assert!((mesh.error - error / 1.04).abs() < 1e-9, "{mesh:?}");
+    }
+    assert!(found.text.contains("no order of convergence is seen at 50.0 m"), "{}", found.text);
 }

@@ -2,7 +2,7 @@
 
 use super::report::Report;
 use super::time::{FEWEST_SAMPLES, LARGEST_ENSEMBLE, check_accuracy, is_whole};
-use crate::scenario::{Accuracy, CostStudy, Scenario, TimeStepping, USUAL_STEPS};
+use crate::scenario::{Accuracy, CostStudy, Scenario, TimeStepping, USUAL_MESH_FACTORS, USUAL_STEPS};
 
 /// Runs of one cost study at most.
 const MOST_RUNS: usize = 256;
@@ -37,13 +37,24 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         "needs the run in time",
     );
     report.require(
-        !study.effects || (study.methods.is_none() && study.mesh_factors.is_empty()),
+        !study.effects || (study.methods.is_none() && study.meshes().is_empty()),
         "cost_study.effects",
         "true",
-        "is a study of its own: give neither methods nor mesh_factors with it",
+        "is a study of its own: give neither methods nor mesh_factors nor total with it",
     );
+    if let Some(total) = study.total {
+        report.number(
+            total,
+            "cost_study.total",
+            |total| total > 0.0 && total < 1.0,
+            "must be greater than 0 and less than 1",
+        );
+    }
     check_reference(report, scenario, study);
     let mut rows = study.presets.len() + study.mesh_factors.len();
+    if study.total.is_some() && study.mesh_factors.is_empty() {
+        rows += USUAL_MESH_FACTORS.len();
+    }
     if study.methods.is_none() {
         rows += USUAL_STEPS.iter().map(|(_, steps)| steps.len()).sum::<usize>();
     }
@@ -172,6 +183,16 @@ mod tests {
         let none = CostStudy { methods: Some(Vec::new()), ..CostStudy::default() };
         assert_eq!(warnings(with(none.clone())), []);
         problem("cost_study.methods", with(CostStudy { presets: Vec::new(), ..none }));
+    }
+
+    #[test]
+    fn a_whole_error_is_a_part_of_the_orbit() {
+        let of = |total| CostStudy { total: Some(total), ..CostStudy::default() };
+        assert_eq!(warnings(with(of(0.05))), []);
+        for total in [0.0, 1.0, 5.0, -0.05] {
+            problem("cost_study.total", with(of(total)));
+        }
+        problem("cost_study.effects", with(CostStudy { effects: true, ..of(0.05) }));
     }
 
     #[test]

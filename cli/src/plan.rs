@@ -64,6 +64,18 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         writeln!(text, "no run in time")?;
         return Ok(text);
     }
+    if let Some(study) = &plan.study {
+        let time = study.cpu_time.unwrap_or(0.0);
+        let others = match study.lines_not_known {
+            0 => String::new(),
+            lines => format!(", without the {lines} of its lines whose steps adapt themselves"),
+        };
+        writeln!(
+            text,
+            "cost study: {} runs, {} s simulated together, about {time:.0} s of processor time{others}; without it one run would be:",
+            study.runs, study.simulated_time
+        )?;
+    }
     writeln!(
         text,
         "run in time: {} s simulated, {} degrees of freedom a node",

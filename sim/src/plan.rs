@@ -11,6 +11,7 @@ use crate::scenario::{
     TimeStepping,
 };
 use crate::statics::Equilibrium;
+use crate::study;
 use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
 
 /// The plan of a scenario.
@@ -25,13 +26,18 @@ pub struct Plan {
     pub nodes: usize,
     /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
     pub degrees_of_freedom: usize,
-    /// Simulated time of all runs of the point together \[s\]; 0 where there is no run in time.
+    /// Simulated time of all runs of the point together \[s\], without a cost study; 0 where there is no run in time.
     pub simulated_time: f64,
     /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
     /// is not known.
     pub statics_cpu_time: Option<f64>,
-    /// The scenario's own accuracy first, then the named ones; only the first where there is no run in time.
+    /// The scenario's own accuracy first, then the named ones, without a cost study; none where there is no run in time.
     pub accuracies: Vec<PlannedAccuracy>,
+    /// What is run in place of that where the scenario has a `cost_study`; absent also where the study has no runs because the scenario
+    /// has no equilibrium.
+    pub study: Option<PlannedStudy>,
+    #[serde(skip)]
+    is_study: bool,
     /// The torsional modes that falling friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
     /// there is no run in time, twist takes no part or friction does not turn the string.
     pub undamped_torsion: Option<UndampedTorsion>,
@@ -56,6 +62,21 @@ pub struct PlannedAccuracy {
     /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included; absent where the
     /// machine's speed is not known or steps are.
     pub cpu_time: Option<f64>,
+}
+
+/// What a cost study takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct PlannedStudy {
+    /// Runs of all methods, steps and meshes, by all members.
+    pub runs: u64,
+    /// Their simulated time together \[s\].
+    pub simulated_time: f64,
+    /// Processor time that they are expected to take on one core \[s\], without those that `lines_not_known` counts; absent where the
+    /// machine's speed is not known.
+    pub cpu_time: Option<f64>,
+    /// Lines of the study whose time is not known beforehand: `rk4` with a tolerance.
+    pub lines_not_known: u64,
 }
 
 /// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
@@ -133,6 +154,7 @@ impl Plan {
                 cpu_time: steps.and_then(cost),
             }
         };
+        let study = scenario.cost_study.as_ref().and_then(|_| PlannedStudy::new(scenario, speed));
         Ok(Self {
             effects: scenario.decide_effects(),
             elements: model.elements.len(),
@@ -141,6 +163,8 @@ impl Plan {
             simulated_time,
             statics_cpu_time,
             accuracies: accuracies.into_iter().map(planned).collect(),
+            study,
+            is_study: scenario.cost_study.is_some(),
             undamped_torsion: None,
             mesh_error: None,
             warnings: Vec::new(),
@@ -171,9 +195,31 @@ impl Plan {
         self
     }
 
-    /// Processor time that the point is expected to take at its own accuracy \[s\]; absent where it is not known.
+    /// Processor time that the point is expected to take \[s\], at its own accuracy or with its cost study; absent where it is not known.
     pub fn cpu_time(&self) -> Option<f64> {
+        if self.is_study {
+            return self.study.as_ref().filter(|study| study.lines_not_known == 0)?.cpu_time;
+        }
         self.accuracies.first().map_or(self.statics_cpu_time, |own| own.cpu_time)
+    }
+}
+
+impl PlannedStudy {
+    /// Of a scenario with a cost study; none where it cannot be planned, which is for the run to say.
+    fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Option<Self> {
+        let rows = study::plan(scenario).ok()?;
+        let members = |row: &study::PlannedRow| u64::from(row.members.end - row.members.start);
+        let expected = speed.map(|speed| study::expected_cpu_time(&rows, speed));
+        let is_known = |row: &&study::PlannedRow| {
+            let stepping = row.scenario.accuracy.time_stepping();
+            stepping.integrator != Integrator::Rk4 || stepping.tolerance.is_none()
+        };
+        Some(Self {
+            runs: rows.iter().map(members).sum(),
+            simulated_time: rows.iter().map(|row| members(row) as f64 * row.scenario.duration).sum(),
+            cpu_time: expected.map(|(time, _)| time),
+            lines_not_known: (rows.len() - rows.iter().filter(is_known).count()) as u64,
+        })
     }
 }
 
@@ -318,7 +364,7 @@ impl MachineSpeed {
 mod tests {
     use super::*;
     use crate::control::Control;
-    use crate::scenario::preset;
+    use crate::scenario::{CostStudy, MethodSteps, preset};
     use crate::statics::Equilibrium;
     use crate::transient::{Outcome, Transient};
 
@@ -378,6 +424,41 @@ mod tests {
         assert_eq!((profile.degrees_of_freedom, profile.simulated_time), (0, 0.0));
         assert!(profile.accuracies.is_empty());
         assert_eq!(profile.cpu_time(), Some(statics));
+    }
+
+    #[test]
+    fn a_study_is_planned_with_all_its_runs() {
+        let speed = MachineSpeed {
+            statics_per_node: 0.0,
+            start_per_node: [0.0; 4],
+            step_per_node: [[1e-6; 3]; 4],
+            large_mesh_factor: 1.0,
+        };
+        let mut scenario = paper();
+        let one = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!(one.study, None);
+        let steps = MethodSteps::fixed(Integrator::GeneralizedAlpha, vec![1e-3]);
+        scenario.cost_study = Some(CostStudy {
+            members: 3,
+            presets: vec![],
+            methods: Some(vec![steps]),
+            ..CostStudy::default()
+        });
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        let study = plan.study.clone().unwrap();
+        // RK4 at 0.05 ms and ESDIRK4 at 0.125 ms make the reference.
+        assert_eq!((study.runs, study.simulated_time, study.lines_not_known), (9, 540.0, 0));
+        let steps = 3.0 * (60.0 / 5e-5 + 60.0 / 1.25e-4 + 60.0 / 1e-3);
+        assert!((study.cpu_time.unwrap() / (steps * 297e-6) - 1.0).abs() < 1e-9, "{study:?}");
+        assert_eq!(plan.cpu_time(), study.cpu_time);
+        // Beside it stands one run of the scenario.
+        assert_eq!((&plan.accuracies, plan.simulated_time), (&one.accuracies, 60.0));
+
+        let adaptive =
+            MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
+        scenario.cost_study.as_mut().unwrap().methods = Some(vec![adaptive]);
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!((plan.study.as_ref().unwrap().lines_not_known, plan.cpu_time()), (1, None));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 use serde_json::Value;
 
 use crate::picture::axis::three_digits;
-use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, SweepMap, Upright};
+use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, Shade, SweepMap, Upright};
 use crate::problem::ProblemDetails;
 use crate::table::{Column, Table};
 use crate::units;
@@ -139,7 +139,8 @@ pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<Pro
     Ok(plot.drawing())
 }
 
-/// The full spectrum of a node, with its highest lines named. The mean position is left out: it would dwarf the rest.
+/// The full spectrum of a node, with its highest lines named. The mean position is left out: it would dwarf the rest. What lies beyond
+/// the frequency that the run's steps resolve is shaded, and no line there is named.
 ///
 /// # Errors
 /// When the table is not a spectrum.
@@ -159,10 +160,18 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
             frequency.iter().zip(&amplitude).filter(|(frequency, _)| (**frequency - line).abs() <= bin);
         1e3 * near.fold(0.0, |most: f64, (_, amplitude)| most.max(*amplitude))
     };
+    let resolved = attribute("resolved_hz");
+    let is_resolved = |frequency: f64| resolved.is_none_or(|resolved| frequency.abs() <= resolved);
+    let reaches_beyond = frequency.iter().any(|frequency| !is_resolved(*frequency));
+    let shade = resolved.filter(|_| reaches_beyond).map(|beyond| Shade {
+        beyond,
+        name: format!("beyond what the step resolves (±{} Hz)", three_digits(beyond)),
+    });
     let label = |peak: &Value| {
         let (frequency, amplitude) = (peak["frequency"].as_f64()?, 1e3 * peak["amplitude"].as_f64()?);
         let text = format!("{frequency:+.2} Hz, {amplitude:.2} mm").replace('-', "−");
-        is_motion(frequency).then(|| Label { at: [frequency, curve_at(frequency)], text })
+        (is_motion(frequency) && is_resolved(frequency))
+            .then(|| Label { at: [frequency, curve_at(frequency)], text })
     };
     let window = table.attributes.get("window").and_then(Value::as_str).unwrap_or_default();
     let plot = LinePlot {
@@ -177,6 +186,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
         lines: vec![Line { points: points.collect(), ..Line::default() }],
         upright: Upright::FromZero,
         labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
+        shade,
     };
     Ok(plot.drawing())
 }
@@ -445,6 +455,27 @@ mod tests {
         let svg = spectrum(&table, "spectrum").unwrap().svg();
         assert!(svg.contains("+2.04 Hz, 3.50 mm") && svg.contains("node 49 at 57.73 m"), "{svg}");
         assert!(!svg.contains("37.00 mm") && !svg.contains(">30<"), "the mean does not stretch the axis");
+    }
+
+    #[test]
+    fn frequencies_that_the_step_does_not_resolve_are_shaded_and_no_line_there_is_named() {
+        let frequency: Vec<f64> = (-100..=100).map(|k| f64::from(k) * 0.1).collect();
+        let peaks = [(-2.0, 3e-3), (6.0, 2e-3)].map(|(f, a)| json!({"frequency": f, "amplitude": a}));
+        let table = Table::default()
+            .with("amplitude", column(&vec![1e-3; frequency.len()]))
+            .with("frequency", column(&frequency))
+            .attribute("resolution", 0.1)
+            .attribute("peaks", peaks.to_vec());
+        let words = "beyond what the step resolves";
+        let unmarked = spectrum(&table, "").unwrap().svg();
+        assert!(unmarked.contains("+6.00 Hz") && !unmarked.contains(words));
+        let all = spectrum(&table.clone().attribute("resolved_hz", 20.0), "").unwrap().svg();
+        assert!(!all.contains(words), "all that is shown is resolved");
+        let drawing = spectrum(&table.attribute("resolved_hz", 5.0), "").unwrap();
+        let svg = drawing.svg();
+        assert!(svg.contains(words) && svg.contains("(±5") && svg.contains(r#"class="shade""#), "{svg}");
+        assert!(svg.contains("−2.00 Hz") && !svg.contains("+6.00 Hz"), "{svg}");
+        assert!(drawing.png(400).is_ok());
     }
 
     #[test]

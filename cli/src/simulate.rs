@@ -205,7 +205,10 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             let lines: Vec<String> = spectrum
                 .lines
                 .iter()
-                .map(|line| format!("{:+.3} Hz {:.4} mm", line.frequency_hz, line.amplitude * 1e3))
+                .map(|line| {
+                    let doubt = if line.is_resolved { "" } else { " (beyond what the step resolves)" };
+                    format!("{:+.3} Hz {:.4} mm{doubt}", line.frequency_hz, line.amplitude * 1e3)
+                })
                 .collect();
             writeln!(
                 text,

@@ -14,7 +14,7 @@ use drillsweep_store::{
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::de::DeserializeOwned;
-use serde_json::Map;
+use serde_json::{Map, Value};
 
 use crate::error::{Error, Result};
 
@@ -162,6 +162,12 @@ pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String
         provenance: record.provenance_json.as_deref().map(read).transpose()?,
         tables,
     })
+}
+
+/// Frequency up to which the steps of a point's run resolve vibrations \[Hz\]; absent of results that do not say.
+pub(crate) fn resolved_hz(record: &PointRecord) -> Result<Option<f64>> {
+    let summary: Option<Value> = record.summary_json.as_deref().map(read).transpose()?;
+    Ok(summary.and_then(|summary| summary.get("resolved_hz")?.as_f64()))
 }
 
 /// A point beside the reference run that verifies it.

@@ -377,7 +377,8 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 /// Of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward.
 /// Columns `frequency`, `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the
 /// highest peaks with their whirl direction, frequency and amplitude interpolated between the bins. Lines outside the range enter
-/// neither. Of a run that kept spectra only the window is one of its scenario's.
+/// neither. The attribute `resolved_hz` is the frequency up to which the run's steps resolve vibrations; each peak says whether it
+/// `is_resolved`, and a picture shades what lies beyond. Of a run that kept spectra only the window is one of its scenario's.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/spectrum",
@@ -397,7 +398,9 @@ pub(crate) async fn spectrum(
     let choice = node::Choice::from_parameters(query.node, query.depth)?;
     let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
+    let point = app.store.point(&id, n.into()).await?;
     blocking(move || {
+        let resolved_hz = point.as_ref().map(convert::resolved_hz).transpose()?.flatten();
         let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
         let (node, table) = match source {
             SpectrumSource::Recording(recording) => {
@@ -410,6 +413,7 @@ pub(crate) async fn spectrum(
                 (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)))
             }
         };
+        let table = spectrum::mark_resolved(table, resolved_hz);
         let file_name = file_name(&id, n, &format!("spectrum-{node}"));
         format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
     })

@@ -111,6 +111,8 @@ pub struct LineSummary {
     pub amplitude: f64,
     /// Sense of the whirl.
     pub whirl: Whirl,
+    /// Whether it lies within what the run's steps resolve.
+    pub is_resolved: bool,
 }
 
 impl StaticsSummary {
@@ -169,6 +171,7 @@ impl TransientSummary {
                     frequency_hz: peak.frequency_hz,
                     amplitude: peak.amplitude,
                     whirl: peak.whirl,
+                    is_resolved: peak.frequency_hz.abs() <= records.effort.resolved_hz,
                 });
                 spectra.push(SpectrumSummary {
                     node,

@@ -90,6 +90,22 @@ def test_orbit_is_drawn_low_side_down_in_the_holes_circle(sweep: Sweep) -> None:
     np.testing.assert_allclose(np.hypot(x, y), 1e3 * point.orbit(node=49)["radius"])
 
 
+def test_frequencies_that_the_step_does_not_resolve_are_marked(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    attributes = point.spectrum(node=49, range_hz=200, peaks=40).attributes
+    resolved = attributes["resolved_hz"]
+    assert 0.0 < resolved < 200.0
+    marks = [(abs(peak["frequency"]) <= resolved, peak["is_resolved"]) for peak in attributes["peaks"]]
+    assert (False, False) in marks
+    assert all(expected == got for expected, got in marks)
+    assert plot.spectrum(point, node=49, range_hz=0.9 * resolved).get_legend() is None
+    axes = plot.spectrum(point, node=49, range_hz=200, peaks=40)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_texts()[0].get_text() == f"beyond what the step resolves (±{resolved:.3g} Hz)"
+    assert all(abs(float(text.get_text().removesuffix(" Hz"))) <= resolved + 0.005 for text in axes.texts)
+
+
 def test_spectrum_and_profile_are_drawn(sweep: Sweep) -> None:
     axes = plot.spectrum(sweep.point(1), node=49, range_hz=20, peaks=3)
     assert len(axes.texts) == 3

@@ -108,4 +108,5 @@ impl Colour {
     pub(super) const FRAME: Self = Self(0x77, 0x77, 0x77);
     pub(super) const GRID: Self = Self(0xd9, 0xd9, 0xd9);
     pub(super) const FINE_GRID: Self = Self(0xf0, 0xf0, 0xf0);
+    pub(super) const SHADE: Self = Self(0xf6, 0xe9, 0xd8);
 }

@@ -1,7 +1,7 @@
 //! What stands above a plot: its title, and which line is which.
 
 use super::{
-    drawing::{Colour, Shape, Stroke},
+    drawing::{Colour, Rectangle, Shape, Stroke},
     marker::Marker,
     text::{self, Anchor, Text, Weight},
 };
@@ -13,12 +13,31 @@ const LEGEND_ROW: f64 = 22.0;
 /// The length of the sample of a series' line in the legend.
 const LEGEND_LINE: f64 = 30.0;
 
-/// A series in the legend.
+/// What the legend names.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
-    pub(super) name: String,
-    pub(super) colour: Colour,
-    pub(super) marker: Option<Marker>,
+    name: String,
+    colour: Colour,
+    sample: Sample,
+}
+
+/// How the legend shows what it names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sample {
+    Line(Option<Marker>),
+    Area,
+}
+
+impl Entry {
+    /// A series, drawn as a line with or without markers.
+    pub(super) fn line(name: String, colour: Colour, marker: Option<Marker>) -> Self {
+        Self { name, colour, sample: Sample::Line(marker) }
+    }
+
+    /// A part of the plot that has a colour of its own.
+    pub(super) fn area(name: String, colour: Colour) -> Self {
+        Self { name, colour, sample: Sample::Area }
+    }
 }
 
 /// Adds the title, cut to one line, and gives what it became and where it ends; an empty one takes no room.
@@ -54,16 +73,26 @@ pub(super) fn legend(
 ) -> f64 {
     let mut members = Vec::new();
     let (mut x, mut middle) = (left, top + LEGEND_ROW / 2.0);
-    for Entry { name, colour, marker } in entries {
+    for Entry { name, colour, sample } in entries {
         let text_start = LEGEND_LINE + 7.0;
         let name = text::line(&name, LEGEND_SIZE, Weight::Regular, right - left - text_start);
         let width = text_start + text::room(&name, LEGEND_SIZE, Weight::Regular);
         if x > left && x + width > right {
             (x, middle) = (left, middle + LEGEND_ROW);
         }
-        members
-            .push(Shape::Polyline(vec![[x, middle], [x + LEGEND_LINE, middle]], Stroke::solid(colour, 2.0)));
-        members.extend(marker.map(|marker| Shape::Marker([x + LEGEND_LINE / 2.0, middle], marker, colour)));
+        match sample {
+            Sample::Line(marker) => {
+                let line = vec![[x, middle], [x + LEGEND_LINE, middle]];
+                members.push(Shape::Polyline(line, Stroke::solid(colour, 2.0)));
+                let at = [x + LEGEND_LINE / 2.0, middle];
+                members.extend(marker.map(|marker| Shape::Marker(at, marker, colour)));
+            }
+            Sample::Area => {
+                let (top, bottom) = (middle - LEGEND_SIZE / 2.0, middle + LEGEND_SIZE / 2.0);
+                let area = Rectangle { left: x, top, right: x + LEGEND_LINE, bottom };
+                members.push(Shape::Filled(area, colour));
+            }
+        }
         let at = [x + text_start, middle + LEGEND_SIZE * 0.36];
         members.push(Shape::Text(Text::new(name, at, Anchor::Start, LEGEND_SIZE, Colour::TEXT)));
         x += width + 26.0;

@@ -42,6 +42,17 @@ pub struct LinePlot {
     pub upright: Upright,
     /// Places that are named, the most important first; those that find no room are left out.
     pub labels: Vec<Label>,
+    /// What is shaded behind the lines.
+    pub shade: Option<Shade>,
+}
+
+/// The parts of the axis across that lie beyond plus and minus a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shade {
+    /// The value; not negative.
+    pub beyond: f64,
+    /// What stands in the legend for it.
+    pub name: String,
 }
 
 /// What the upright axis of a [`LinePlot`] shows.
@@ -106,6 +117,9 @@ impl LinePlot {
 
         let top = bottom + 10.0;
         let area = Rectangle { left, top, right, bottom: top + plot_height };
+        if let (Some((x, _)), Some(shade)) = (&axes, &self.shade) {
+            shapes.push(shaded(&area, x, shade.beyond));
+        }
         shapes.push(plot_area::grid(&area, &x_ticks, &y_ticks));
         shapes.push(plot_area::axes(&area, &x_ticks, &y_ticks, &self.x_label, &self.y_label));
         match axes {
@@ -116,16 +130,17 @@ impl LinePlot {
     }
 
     fn legend(&self) -> Vec<Entry> {
+        let shade = self.shade.iter().map(|shade| Entry::area(shade.name.clone(), Colour::SHADE));
         if let [only] = self.lines.as_slice()
             && only.name.is_empty()
         {
-            return Vec::new();
+            return shade.collect();
         }
         let entry = |(index, line): (usize, &Line)| {
             let (colour, marker) = series_style(index);
-            Entry { name: line.name.clone(), colour, marker: line.is_marked.then_some(marker) }
+            Entry::line(line.name.clone(), colour, line.is_marked.then_some(marker))
         };
-        self.lines.iter().enumerate().map(entry).collect()
+        self.lines.iter().enumerate().map(entry).chain(shade).collect()
     }
 
     /// The axes over all points that can be drawn; none without such a point.
@@ -165,6 +180,17 @@ impl LinePlot {
         let labels = labels.filter_map(|(at, text)| place_label(&mut room, at, text)).flatten().collect();
         shapes.push(Shape::Group("labels", labels));
     }
+}
+
+/// The parts of the area beyond plus and minus a value of the axis across.
+fn shaded(area: &Rectangle, x: &PlotAxis, beyond: f64) -> Shape {
+    let place = |value: f64| {
+        let fraction = x.fraction(value).map_or(0.0, |fraction| fraction.clamp(0.0, 1.0));
+        plot_area::position(area, fraction, 0.0)[0]
+    };
+    let parts = [Rectangle { right: place(-beyond), ..*area }, Rectangle { left: place(beyond), ..*area }];
+    let parts = parts.into_iter().filter(|part| part.width() > 0.0);
+    Shape::Group("shade", parts.map(|part| Shape::Filled(part, Colour::SHADE)).collect())
 }
 
 fn is_finite(point: &[f64; 2]) -> bool {
@@ -304,5 +330,27 @@ mod tests {
         // 1 lies at a ninth of the height that 9 lies at, when both are counted from the frame's lower edge.
         let above = |place: Position| top + height - place[1];
         assert!((above(places[40]) / above(places[0]) - 9.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn what_lies_beyond_is_shaded_on_both_sides_of_the_axis() {
+        let shade = |beyond: f64| Some(Shade { beyond, name: "not resolved".to_owned() });
+        let points = [[-10.0, 1.0], [10.0, 1.0]];
+        let shaded = |beyond: f64| {
+            let plot =
+                LinePlot { lines: vec![line("", points)], shade: shade(beyond), ..LinePlot::default() };
+            let svg = plot.svg();
+            assert!(texts(&svg).contains(&"not resolved".to_owned()));
+            let document = Document::parse(&svg).expect("well-formed XML");
+            let class = |node: &roxmltree::Node| node.attribute("class") == Some("shade");
+            let group = document.descendants().find(class).expect("a group");
+            let widths = group.children().filter_map(|node| node.attribute("width"));
+            widths.map(|width| width.parse().expect("a number")).collect::<Vec<f64>>()
+        };
+        let (half, none) = (shaded(5.0), shaded(20.0));
+        assert_eq!(half.len(), 2);
+        // A quarter of the axis on each side.
+        assert!((half[0] - half[1]).abs() < 0.02 && half[0] > 100.0, "{half:?}");
+        assert_eq!(none, Vec::<f64>::new());
     }
 }

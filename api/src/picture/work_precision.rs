@@ -117,7 +117,7 @@ impl WorkPrecisionChart {
         self.series.iter().enumerate().map(|(index, series)| {
             let (colour, marker) = series_style(index);
             let no_data = if series.drawable().next().is_none() { " (no data)" } else { "" };
-            Entry { name: format!("{}{no_data}", series.name), colour, marker: Some(marker) }
+            Entry::line(format!("{}{no_data}", series.name), colour, Some(marker))
         })
     }
 

@@ -1,7 +1,7 @@
 //! The full spectrum of one node's orbit.
 
 use drillsweep_sim::signal::{PeakSearch, full_spectrum};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::orbit::Motion;
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
@@ -113,6 +113,20 @@ pub fn part(whole: &FullSpectrum, range: f64, peaks: usize) -> Table {
         .attribute("peaks", lines)
 }
 
+/// Says in a table of [`part`] up to which frequency \[Hz\] the run's steps resolve vibrations: the attribute `resolved_hz`, and of each of the
+/// `peaks` whether it `is_resolved`. Unchanged where that is not known.
+#[must_use]
+pub fn mark_resolved(mut table: Table, resolved_hz: Option<f64>) -> Table {
+    let Some(resolved_hz) = resolved_hz else { return table };
+    if let Some(Value::Array(peaks)) = table.attributes.get_mut("peaks") {
+        for peak in peaks {
+            let frequency = peak["frequency"].as_f64().unwrap_or(0.0);
+            peak["is_resolved"] = json!(frequency.abs() <= resolved_hz);
+        }
+    }
+    table.attribute("resolved_hz", resolved_hz)
+}
+
 fn too_few(motion: &Motion<'_>) -> ProblemDetails {
     let detail = format!("the window holds {} samples; a spectrum needs 2 or more", motion.time.len());
     ProblemDetails::invalid_parameter("from", None, detail)
@@ -129,6 +143,25 @@ mod tests {
         let u = time.iter().map(|t| 4e-3 + 3e-3 * (2.0 * TAU * t).cos() + 1e-3 * (5.0 * TAU * t).cos());
         let v = time.iter().map(|t| 3e-3 + 3e-3 * (2.0 * TAU * t).sin() - 1e-3 * (5.0 * TAU * t).sin());
         (time.clone(), u.collect(), v.collect())
+    }
+
+    #[test]
+    fn what_lies_beyond_the_resolved_frequency_is_marked_on_both_sides() {
+        let (time, u, v) = motion();
+        let motion = Motion { time: &time, u: &u, v: &v };
+        let table = spectrum(&motion, Weighting::Rectangular, 20.0, 3).unwrap();
+        let resolved = |table: &Table| -> Vec<(f64, Option<bool>)> {
+            let peaks = table.attributes["peaks"].as_array().unwrap();
+            let one =
+                |peak: &Value| (peak["frequency"].as_f64().unwrap().round(), peak["is_resolved"].as_bool());
+            peaks.iter().map(one).collect()
+        };
+        let marked = mark_resolved(table.clone(), Some(4.0));
+        assert_eq!(marked.attributes["resolved_hz"], 4.0);
+        assert_eq!(resolved(&marked), [(0.0, Some(true)), (2.0, Some(true)), (-5.0, Some(false))]);
+        let unknown = mark_resolved(table, None);
+        assert!(!unknown.attributes.contains_key("resolved_hz"));
+        assert_eq!(resolved(&unknown)[2], (-5.0, None));
     }
 
     #[test]

@@ -116,7 +116,7 @@ impl Bench {
                 blob: self.store.blobs().put(parquet).await.unwrap(),
             });
         }
-        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual});
+        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual, "resolved_hz": 200.0});
         let provenance = json!({"version": "bench"});
         let result = NewResult {
             summary_json: &summary.to_string(),

@@ -62,18 +62,18 @@ async fn the_table_of_a_sweep_has_a_row_for_every_point() {
             "steps": [10_000, null],
             "density_seen": [1200.0, null],
             "residual": [1e-9, null],
+            "resolved_hz": [200.0, null],
             "error": [null, "the state is not finite"],
             "error_time": [null, 1.25],
             "error_node": [null, 49],
         })
     );
     let csv = bench.get(&format!("{path}/table?format=csv")).await;
-    let header =
-        "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,error,error_time,error_node";
+    let header = "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,resolved_hz,error,error_time,error_node";
     assert_eq!(
         csv.text(),
         format!(
-            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,,,\n2,failed,1500.0,0.01,,,,the state is not finite,1.25,49\n"
+            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,200.0,,,\n2,failed,1500.0,0.01,,,,,the state is not finite,1.25,49\n"
         )
     );
     let parquet = bench.get(&format!("{path}/table?format=parquet")).await;
@@ -135,6 +135,13 @@ async fn a_spectrum_finds_the_lines_of_a_known_orbit() {
         .collect();
     assert_eq!(found, [("forward", 2.0), ("backward", -3.0), ("offset", 0.0)]);
 
+    assert_eq!(spectrum["attributes"]["resolved_hz"], 200.0);
+    assert!(peaks.iter().all(|peak| peak["is_resolved"] == true), "{peaks:?}");
+    let wide = format!("{path}/points/1/spectrum?node=49&from=2&to=8&range_hz=400&peaks=1&format=svg");
+    let shaded = "beyond what the step resolves (±200 Hz)";
+    assert!(bench.get(&wide).await.text().contains(shaded));
+    assert!(!bench.get(&wide.replace("400", "100")).await.text().contains(shaded));
+
     let hann = bench.get(&format!("{path}/points/1/spectrum?{query}&window=hann")).await.json();
     assert_eq!(hann["attributes"]["window"], "hann");
     // The Hann window spreads a line on a bin over its neighbours, half as high.
@@ -190,7 +197,10 @@ async fn a_point_shows_its_summary_and_provenance() {
     let answer = bench.get(&format!("{path}/points/1")).await;
     assert_eq!(answer.status, StatusCode::OK);
     let point = answer.json();
-    assert_eq!(point["summary"], json!({"steps": 10_000, "density_seen": 1200.0, "residual": 1e-9}));
+    assert_eq!(
+        point["summary"],
+        json!({"steps": 10_000, "density_seen": 1200.0, "residual": 1e-9, "resolved_hz": 200.0})
+    );
     assert_eq!(point["provenance"], json!({"version": "bench"}));
     assert_eq!(point["tables"], json!(["history", "profile", "statics"]));
     assert_eq!(point["progress"], 1.0);

@@ -66,7 +66,8 @@ def spectrum(
 ) -> Axes:
     """The full spectrum of a node's orbit, its highest lines labelled; backward whirl is left of zero.
 
-    The line at zero, the mean position, is left out: it would dwarf the others.
+    The line at zero, the mean position, is left out: it would dwarf the others. What lies beyond the frequency that the
+    run's steps resolve is shaded, and no line there is labelled.
     """
     np = require("numpy", "plot")
     table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
@@ -75,7 +76,14 @@ def spectrum(
     amplitude = np.where(is_mean, np.nan, table["amplitude"]) * _MILLIMETRES
     axes = axes or _new_axes()
     axes.plot(table["frequency"], amplitude, linewidth=0.8)
-    lines = [peak for peak in table.attributes["peaks"] if peak["whirl"] != "offset"]
+    resolved = table.attributes.get("resolved_hz")
+    last = np.max(np.abs(table["frequency"]))
+    if resolved is not None and resolved < last:
+        label = f"beyond what the step resolves (±{resolved:.3g} Hz)"
+        axes.axvspan(resolved, last, color="tab:orange", alpha=0.15, linewidth=0, label=label)
+        axes.axvspan(-last, -resolved, color="tab:orange", alpha=0.15, linewidth=0)
+        axes.legend(fontsize="small")
+    lines = [peak for peak in table.attributes["peaks"] if peak["whirl"] != "offset" and peak.get("is_resolved", True)]
     for line in lines[:peaks]:
         side = "right" if line["frequency"] < 0.0 else "left"
         place: dict[str, Any] = {"textcoords": "offset points", "xytext": (0, 3), "ha": side, "fontsize": "small"}

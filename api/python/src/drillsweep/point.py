@@ -162,7 +162,8 @@ class Point:
     ) -> Table:
         """The full spectrum of a node's orbit: `frequency` (positive is forward whirl), `amplitude`, `peak_to_peak`.
 
-        The highest lines are in `attributes["peaks"]`, their frequency and amplitude interpolated between the bins.
+        The highest lines are in `attributes["peaks"]`, their frequency and amplitude interpolated between the bins. The
+        run's steps resolve vibrations up to `attributes["resolved_hz"]` [Hz]; each line says whether it `is_resolved`.
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.

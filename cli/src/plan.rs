@@ -55,7 +55,11 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         )?;
     }
     let statics = plan.statics_cpu_time.unwrap_or(0.0) * 1e3;
-    writeln!(text, "{} elements, {} nodes", plan.elements, plan.nodes)?;
+    writeln!(
+        text,
+        "{} elements of {:.3} to {:.3} m, {} nodes",
+        plan.elements, plan.shortest_element, plan.longest_element, plan.nodes
+    )?;
     writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
     if let Some(estimate) = &plan.mesh_error {
         writeln!(text, "{estimate}")?;

@@ -116,12 +116,7 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     scenario.accuracy = accuracy;
     scenario.recording.spectrum_windows.clear();
     scenario.recording.orbit_window = None;
-    let mesh = &mut scenario.mesh;
-    for length in
-        [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-    {
-        *length *= lengths;
-    }
+    scenario.mesh = scenario.mesh.scaled(lengths);
     let model = Model::new(&scenario).expect("the preset has a model");
     let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
     let mut timed = Timed { elements: model.elements.len(), steps: 0, time: f64::INFINITY };

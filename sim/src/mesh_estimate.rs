@@ -152,12 +152,7 @@ impl Rest {
 
     fn on_a_mesh(scenario: &Scenario, factor: f64) -> Option<Self> {
         let mut finer = scenario.clone();
-        let mesh = &mut finer.mesh;
-        for length in
-            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-        {
-            *length *= factor;
-        }
+        finer.mesh = finer.mesh.scaled(factor);
         let model = Model::new(&finer).ok()?;
         let equilibrium = Equilibrium::find(&model).ok()?;
         Some(Self::of(&model, &equilibrium))

@@ -22,6 +22,10 @@ pub struct Plan {
     pub effects: Vec<EffectDecision>,
     /// Elements of the string.
     pub elements: usize,
+    /// Length of the shortest element \[m\].
+    pub shortest_element: f64,
+    /// Length of the longest element \[m\].
+    pub longest_element: f64,
     /// Nodes of the string.
     pub nodes: usize,
     /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
@@ -132,6 +136,7 @@ impl Plan {
     pub fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
         let model = Model::new(scenario)?;
         let nodes = model.node_count();
+        let lengths = || model.mesh.elements.iter().map(|element| element.length);
         let in_time = model.effects.transient;
         let simulated_time = if in_time { scenario.duration * f64::from(scenario.ensemble) } else { 0.0 };
         let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
@@ -158,6 +163,8 @@ impl Plan {
         Ok(Self {
             effects: scenario.decide_effects(),
             elements: model.elements.len(),
+            shortest_element: lengths().fold(f64::INFINITY, f64::min),
+            longest_element: lengths().fold(0.0, f64::max),
             nodes,
             degrees_of_freedom: if in_time { degrees_of_freedom } else { 0 },
             simulated_time,
@@ -300,12 +307,7 @@ pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
         .collect();
     let mut large = run(MethodKind::GeneralizedAlpha, 6);
     large.is_large = true;
-    let mesh = &mut large.scenario.mesh;
-    for length in
-        [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-    {
-        *length /= LARGE_MESH;
-    }
+    large.scenario.mesh = large.scenario.mesh.scaled(1.0 / LARGE_MESH);
     runs.push(large);
     runs
 }

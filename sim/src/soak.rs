@@ -7,10 +7,10 @@
 use crate::control::Control;
 use crate::model::Model;
 use crate::scenario::{
-    Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, Gauge, Integrator,
-    Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario,
-    Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition, UnbalanceMass,
-    WallLaw, Well,
+    Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge,
+    Integrator, Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording,
+    RegimeChoice, Scenario, Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint,
+    TopCondition, UnbalanceMass, WallLaw, Well,
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
@@ -344,7 +344,13 @@ fn draw_contact(draw: &mut Draw) -> ContactLaw {
 fn draw_mesh(draw: &mut Draw, string: &DrillString) -> Mesh {
     let finest = total_length(string) / MOST_ELEMENTS;
     let mut target = || finest * draw.log(2.0, 300.0);
-    Mesh { drillpipe: target(), tool_joint: target(), collar: target(), stabilizer: target(), bit: target() }
+    Mesh::Lengths(ElementLengths {
+        drillpipe: target(),
+        tool_joint: target(),
+        collar: target(),
+        stabilizer: target(),
+        bit: target(),
+    })
 }
 
 /// Integrator and step, with a recording rate whose interval holds whole steps.

@@ -48,12 +48,7 @@ fn memory_grows_with_the_string_and_not_with_the_steps() {
         scenario.recording.nodes.truncate(1);
         scenario.recording.spectrum_windows.clear();
         scenario.recording.orbit_window = None;
-        let mesh = &mut scenario.mesh;
-        for length in
-            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-        {
-            *length *= lengths;
-        }
+        scenario.mesh = scenario.mesh.scaled(lengths);
         let mut nodes = 0;
         let bytes = measure(|| {
             let model = Model::new(&scenario).expect("the preset has a model");

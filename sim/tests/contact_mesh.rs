@@ -2,7 +2,7 @@
 
 use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::{GRAVITY, Model};
-use drillsweep_sim::scenario::{Scenario, SurveyStation, WallLaw, preset};
+use drillsweep_sim::scenario::{Mesh, Scenario, SurveyStation, WallLaw, preset};
 use drillsweep_sim::statics::Equilibrium;
 
 fn rest(model: &Model) -> Equilibrium {
@@ -26,7 +26,7 @@ fn pipe_on_the_low_side(law: WallLaw, stiffness: f64, elements: u32) -> Scenario
         WallLaw::PerNode => scenario.contact.stiffness = stiffness,
         WallLaw::PerLength => scenario.contact.stiffness_per_length = Some(stiffness),
     }
-    scenario.mesh.drillpipe = 60.0 / f64::from(elements);
+    scenario.mesh.lengths_mut().expect("has target lengths").drillpipe = 60.0 / f64::from(elements);
     scenario.recording.nodes.clear();
     scenario
 }
@@ -207,12 +207,7 @@ fn pipe_on_a_wall_by_length_converges_with_the_square_of_the_elements() {
 fn radius_of_the_base_case(factor: f64, ends_reach: bool) -> f64 {
     let mut scenario = preset("paper-200m").expect("shipped preset");
     scenario.contact.law = WallLaw::PerLength;
-    let mesh = &mut scenario.mesh;
-    for length in
-        [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-    {
-        *length *= factor;
-    }
+    scenario.mesh = scenario.mesh.scaled(factor);
     let mut model = Model::new(&scenario).expect("has a model");
     if ends_reach {
         let lengths: Vec<f64> = model.mesh.elements.iter().map(|element| element.length).collect();
@@ -249,12 +244,7 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     let scaled = |factor: f64| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
         scenario.contact.law = WallLaw::PerLength;
-        let mesh = &mut scenario.mesh;
-        for length in
-            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-        {
-            *length *= factor;
-        }
+        scenario.mesh = scenario.mesh.scaled(factor);
         let model = Model::new(&scenario).expect("has a model");
         let equilibrium = rest(&model);
         (model, equilibrium)
@@ -292,5 +282,69 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     for (estimated, found) in pairs {
         let estimated = estimated.expect("is estimated");
         assert!((1.0 / 3.0..3.0).contains(&(estimated / found)), "{estimated} for {found}");
+    }
+}
+
+/// The damped base case in a well of these stations (depth, inclination, azimuth), on a wall by length.
+fn base_case_in(stations: &[[f64; 3]]) -> Scenario {
+    let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+    scenario.contact.law = WallLaw::PerLength;
+    if !stations.is_empty() {
+        let station = |&[measured_depth, inclination_deg, azimuth_deg]: &[f64; 3]| SurveyStation {
+            measured_depth,
+            inclination_deg,
+            azimuth_deg,
+        };
+        scenario.well.survey = stations.iter().map(station).collect();
+    }
+    scenario
+}
+
+#[test]
+fn automatic_mesh_rests_better_than_uniform_ones_of_more_elements() {
+    for (name, stations) in [
+        ("base case", &[][..]),
+        ("horizontal", &[[0.0, 85.0, 0.0], [80.0, 90.0, 0.0], [200.0, 88.0, 0.0]]),
+        ("building", &[[0.0, 25.0, 0.0], [100.0, 40.0, 10.0], [200.0, 60.0, 15.0]]),
+    ] {
+        let given = base_case_in(stations);
+        let on = |mesh: Mesh| {
+            let model = Model::new(&Scenario { mesh, ..given.clone() }).expect("has a model");
+            let equilibrium = rest(&model);
+            (model, equilibrium)
+        };
+        // Eight times as fine as any of these on wall and bodies, and with twice the elements of a joint: shorter ones there are lost in
+        // the rounding of a bending stiffness that grows with the third power.
+        let mut lengths = given.mesh.scaled(0.0625);
+        lengths.lengths_mut().expect("has target lengths").tool_joint = 0.3 / 16.0;
+        let (fine_model, fine) = on(lengths);
+        // Place of the worst node, over the hole's radius; between the fine mesh's nodes on a straight line.
+        let depths = fine_model.mesh.depths();
+        let error = |(model, equilibrium): &(Model, Equilibrium)| {
+            let nodes = model.mesh.nodes.iter().zip(&equilibrium.displacement);
+            let off = nodes.map(|(node, x)| {
+                let below =
+                    depths.partition_point(|&depth| depth < node.measured_depth).clamp(1, depths.len() - 1);
+                let (top, bottom) = (depths[below - 1], depths[below]);
+                let share = (node.measured_depth - top) / (bottom - top);
+                let at = |i: usize| {
+                    fine.displacement[below - 1][i] * (1.0 - share) + fine.displacement[below][i] * share
+                };
+                (x[0] - at(0)).hypot(x[1] - at(1))
+            });
+            off.fold(0.0, f64::max) / (0.5 * given.well.hole_diameter)
+        };
+        let auto = on(Mesh::AUTO);
+        let auto_error = error(&auto);
+        assert!(auto_error < 6e-4, "{name}: {auto_error} of the hole's radius");
+        for factor in [0.5, 0.4, 0.35] {
+            let uniform = on(given.mesh.scaled(factor));
+            let (uniform_error, more) =
+                (error(&uniform), uniform.0.elements.len() as f64 / auto.0.elements.len() as f64);
+            assert!(
+                more > 1.1 && uniform_error > auto_error,
+                "{name}: {uniform_error} with {more} of the elements"
+            );
+        }
     }
 }

@@ -458,7 +458,8 @@ fn five_thousand_elements_rest_as_four_hundred_do() {
     let fine = Scene::run("hard/elements-5000");
     assert!(fine.model.elements.len() >= 5000);
     let mut scenario = preset("hard/elements-5000").expect("shipped preset");
-    (scenario.mesh.drillpipe, scenario.mesh.collar) = (0.5, 0.5);
+    let lengths = scenario.mesh.lengths_mut().expect("has target lengths");
+    (lengths.drillpipe, lengths.collar) = (0.5, 0.5);
     scenario.recording.nodes.clear();
     let coarse = Model::new(&scenario).expect("has a model");
     let coarse = Equilibrium::find(&coarse).expect("rests");

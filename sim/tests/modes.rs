@@ -58,7 +58,7 @@ fn base_case_has_the_frequencies_and_growth_of_an_independent_computation() {
 fn every_eigenvalue_of_a_band_is_found() {
     // A coarse mesh, whose dense eigenvalues can be had: all couplings and closed contacts take part.
     let mut scenario = base();
-    let mesh = &mut scenario.mesh;
+    let mesh = scenario.mesh.lengths_mut().expect("has target lengths");
     (mesh.drillpipe, mesh.tool_joint, mesh.collar, mesh.stabilizer, mesh.bit) = (10.0, 0.3, 10.0, 2.0, 0.5);
     scenario.string.unbalance.clear();
     let model = Model::new(&scenario).expect("valid");

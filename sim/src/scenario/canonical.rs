@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    ActiveEffects, ContactLaw, CostStudy, DrillString, Mesh, Mud, Operation, RayleighDamping, Recording,
-    Scenario, TimeStepping, Well,
+    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Mesh, MeshName, Mud, Operation,
+    RayleighDamping, Recording, ScaledMesh, Scenario, TimeStepping, Well,
 };
 
 /// What decides the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
@@ -16,7 +16,7 @@ struct Canonical {
     operation: Operation,
     contact: ContactLaw,
     damping: RayleighDamping,
-    mesh: Mesh,
+    mesh: CanonicalMesh,
     duration: f64,
     recording: Recording,
     accuracy: TimeStepping,
@@ -25,12 +25,21 @@ struct Canonical {
     cost_study: Option<CostStudy>,
 }
 
+/// A mesh of which the encoding tells which form it has.
+#[derive(Serialize)]
+enum CanonicalMesh {
+    /// By what the lengths of `auto` are multiplied.
+    Auto(f64),
+    Lengths(ElementLengths),
+}
+
 impl Scenario {
     /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-    /// as integrator and step, with what a length of wall has by default, with every effect decided, and with -0.0 written as 0.0.
-    /// Any change of the scenario's fields changes the encoding, so keys of different versions of the program must not be compared.
+    /// as integrator and step, with what a length of wall has by default, with the mesh `auto` as a factor of one, with every
+    /// effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the encoding, so
+    /// keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
         let active = self.active_effects();
         // Taken apart in full, so that a new field cannot be forgotten.
@@ -57,7 +66,11 @@ impl Scenario {
             operation,
             contact: contact.written_out(),
             damping,
-            mesh,
+            mesh: match mesh {
+                Mesh::Named(MeshName::Auto) => CanonicalMesh::Auto(1.0),
+                Mesh::Scaled(ScaledMesh { auto }) => CanonicalMesh::Auto(auto),
+                Mesh::Lengths(lengths) => CanonicalMesh::Lengths(lengths),
+            },
             duration,
             recording,
             accuracy: accuracy.time_stepping(),

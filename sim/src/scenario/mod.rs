@@ -8,6 +8,7 @@ mod canonical;
 mod decide;
 mod effects;
 mod format;
+mod mesh;
 mod number;
 mod outputs;
 mod preset;
@@ -20,6 +21,7 @@ mod validate;
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TimeStepping};
 pub use decide::EffectDecision;
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
+pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh};
 pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
@@ -50,7 +52,7 @@ pub struct Scenario {
     pub contact: ContactLaw,
     /// Rayleigh damping of the structure.
     pub damping: RayleighDamping,
-    /// Target element lengths.
+    /// How finely the string is cut into elements: `"auto"` or target element lengths.
     pub mesh: Mesh,
     /// Simulated time \[s\].
     pub duration: f64,
@@ -384,24 +386,6 @@ pub struct RayleighDamping {
     pub mass_proportional: f64,
     /// beta \[s\].
     pub stiffness_proportional: f64,
-}
-
-/// Target element lengths \[m\]; every stretch between two places that need a node is cut into equal
-/// elements no longer than its kind's target.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Mesh {
-    /// Drillpipe bodies \[m\].
-    pub drillpipe: f64,
-    /// Tool joints \[m\].
-    pub tool_joint: f64,
-    /// Collars \[m\].
-    pub collar: f64,
-    /// Stabilizers \[m\].
-    pub stabilizer: f64,
-    /// Bit \[m\].
-    pub bit: f64,
 }
 
 /// What is kept of a run.

@@ -5,9 +5,10 @@
 
 use super::set::{Step, parse};
 use super::{
-    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, Gauge, Material, Mesh, MethodSteps, Mud,
-    NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, Scenario, Section,
-    StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Material, Mesh,
+    MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, ScaledMesh,
+    Scenario, Section, StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass,
+    Well,
 };
 
 impl Scenario {
@@ -99,7 +100,8 @@ numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit; without to
 numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
     static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
-numbers!(Mesh: drillpipe, tool_joint, collar, stabilizer, bit);
+numbers!(ElementLengths: drillpipe, tool_joint, collar, stabilizer, bit);
+numbers!(ScaledMesh: auto);
 numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; without stability);
 numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
@@ -120,6 +122,24 @@ impl Numbers for Outputs {
         match self {
             Outputs::Orbits(orbits) => orbits.each(visit),
             Outputs::Summary | Outputs::Spectra | Outputs::Full => {}
+        }
+    }
+}
+
+impl Numbers for Mesh {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match self {
+            Mesh::Named(_) => None,
+            Mesh::Scaled(scaled) => scaled.find(steps),
+            Mesh::Lengths(lengths) => lengths.find(steps),
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        match self {
+            Mesh::Named(_) => {}
+            Mesh::Scaled(scaled) => scaled.each(visit),
+            Mesh::Lengths(lengths) => lengths.each(visit),
         }
     }
 }

@@ -9,7 +9,8 @@ impl Scenario {
     /// The scenario with one field changed. `path` names it with dots and indices: `mud.flow_rate`,
     /// `string.sections[1].count`, `recording.nodes`. An object given for an object changes the fields it
     /// names and leaves the others; `null` removes what is optional (`mud`). A field of a named accuracy may
-    /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance.
+    /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance;
+    /// a factor on the mesh `auto` that of target lengths.
     ///
     /// # Errors
     /// A path that names no field (with the fields there are), or a value of the wrong type.
@@ -20,6 +21,7 @@ impl Scenario {
             [Step::Field("accuracy"), Step::Field(target)] if TARGETS.contains(target) => {
                 tree["accuracy"] = json!({ *target: null });
             }
+            [Step::Field("mesh"), Step::Field("auto")] => tree["mesh"] = json!({ "auto": null }),
             [Step::Field("accuracy"), _, ..] => {
                 tree["accuracy"] = serde_json::to_value(self.accuracy.time_stepping())
                     .expect("an accuracy has only string keys");

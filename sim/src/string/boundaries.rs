@@ -1,7 +1,8 @@
 //! Where the string must have nodes.
 
+use super::auto;
 use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
-use crate::scenario::{DrillString, Mesh, Section, SectionKind};
+use crate::scenario::{ElementLengths, Mesh, MeshName, ScaledMesh, Scenario, Section, SectionKind};
 
 /// A stretch of one kind and one cross-section, with nodes forced at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,10 +19,10 @@ pub(super) struct Stretch {
 }
 
 /// The stretches of the string as its sections give them, from the top down.
-pub(super) fn stretches(string: &DrillString, mesh: &Mesh) -> Result<Vec<Stretch>, MeshError> {
+pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<Stretch>, MeshError> {
     let mut stretches = Vec::new();
     let mut section_top = 0.0;
-    for (index, section) in string.sections.iter().enumerate() {
+    for (index, section) in scenario.string.sections.iter().enumerate() {
         let is_length = |length: f64| length.is_finite() && length > 0.0;
         if !is_length(section.length) || section.count == 0 {
             return Err(MeshError::NoLength { section: index });
@@ -35,11 +36,12 @@ pub(super) fn stretches(string: &DrillString, mesh: &Mesh) -> Result<Vec<Stretch
         {
             return Err(MeshError::NoRoomForToolJoints { section: index });
         }
+        let targets = targets(section, scenario);
         for piece in 0..section.count {
             // A multiple of the length, not a running sum: depths carry no accumulated rounding.
             let top = section_top + f64::from(piece) * section.length;
             let bottom = section_top + f64::from(piece + 1) * section.length;
-            push_piece(&mut stretches, section, mesh, top, bottom);
+            push_piece(&mut stretches, section, targets, top, bottom);
         }
         section_top += f64::from(section.count) * section.length;
     }
@@ -49,13 +51,40 @@ pub(super) fn stretches(string: &DrillString, mesh: &Mesh) -> Result<Vec<Stretch
     Ok(stretches)
 }
 
-/// One piece of pipe: tool joint, body, tool joint; or the body alone.
-fn push_piece(stretches: &mut Vec<Stretch>, section: &Section, mesh: &Mesh, top: f64, bottom: f64) {
-    let (kind, target) = match section.kind {
-        SectionKind::Drillpipe => (ElementKind::DrillpipeBody, mesh.drillpipe),
-        SectionKind::Collar => (ElementKind::Collar, mesh.collar),
-        SectionKind::Stabilizer => (ElementKind::Stabilizer, mesh.stabilizer),
-        SectionKind::Bit => (ElementKind::Bit, mesh.bit),
+/// Target element lengths \[m\] of a section's bodies and tool joints.
+fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
+    let scaled = |factor: f64| {
+        let (body, joint) = auto::targets(section, scenario);
+        (factor * body, factor * joint)
+    };
+    match scenario.mesh {
+        Mesh::Named(MeshName::Auto) => scaled(1.0),
+        Mesh::Scaled(ScaledMesh { auto }) => scaled(auto),
+        Mesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
+            let body = match section.kind {
+                SectionKind::Drillpipe => drillpipe,
+                SectionKind::Collar => collar,
+                SectionKind::Stabilizer => stabilizer,
+                SectionKind::Bit => bit,
+            };
+            (body, tool_joint)
+        }
+    }
+}
+
+/// One piece of pipe: tool joint, body, tool joint; or the body alone. Targets are those of body and tool joint.
+fn push_piece(
+    stretches: &mut Vec<Stretch>,
+    section: &Section,
+    (target, joint_target): (f64, f64),
+    top: f64,
+    bottom: f64,
+) {
+    let kind = match section.kind {
+        SectionKind::Drillpipe => ElementKind::DrillpipeBody,
+        SectionKind::Collar => ElementKind::Collar,
+        SectionKind::Stabilizer => ElementKind::Stabilizer,
+        SectionKind::Bit => ElementKind::Bit,
     };
     let body = Stretch {
         top,
@@ -73,7 +102,7 @@ fn push_piece(stretches: &mut Vec<Stretch>, section: &Section, mesh: &Mesh, top:
         kind: ElementKind::ToolJoint,
         outer_diameter: joint.outer_diameter,
         inner_diameter: joint.inner_diameter,
-        target: mesh.tool_joint,
+        target: joint_target,
         ..body
     };
     let (body_top, body_bottom) = (top + joint.length, bottom - joint.length);

@@ -145,7 +145,7 @@ impl StringMesh {
     /// masses that are not on the string.
     pub fn new(scenario: &Scenario) -> Result<Self, MeshError> {
         let string = &scenario.string;
-        let stretches = boundaries::stretches(string, &scenario.mesh)?;
+        let stretches = boundaries::stretches(scenario)?;
         let length = stretches.last().map_or(0.0, |stretch| stretch.bottom);
         let gauges = string.gauges.iter().map(|gauge| gauge.measured_depth);
         let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
@@ -379,9 +379,7 @@ mod tests {
         scenario.contact.law = WallLaw::PerLength;
         scenario.contact.damping_per_length = Some(1e4);
         for factor in [1.0, 0.25] {
-            scenario.mesh.drillpipe = 1.5 * factor;
-            scenario.mesh.tool_joint = 0.3 * factor;
-            scenario.mesh.collar = 0.5 * factor;
+            let scenario = Scenario { mesh: scenario.mesh.scaled(factor), ..scenario.clone() };
             let mesh = StringMesh::new(&scenario).unwrap();
             let length = |depth: f64| mesh.nodes[mesh.nearest_node(depth)].stiffness_share * 1e7 / 2e7;
             // The end of a tool joint has half of the joint's element and nothing of the body's, nor of the collar's, which is slimmer.
@@ -469,8 +467,8 @@ mod tests {
             refused(&|s| s.string.sections[1].length = 0.6),
             MeshError::NoRoomForToolJoints { section: 1 }
         );
-        assert_eq!(refused(&|s| s.mesh.collar = 0.0), MeshError::Target(0.0));
-        assert_eq!(refused(&|s| s.mesh.collar = 1e-9), MeshError::TooManyElements);
+        assert_eq!(refused(&|s| s.mesh.lengths_mut().unwrap().collar = 0.0), MeshError::Target(0.0));
+        assert_eq!(refused(&|s| s.mesh.lengths_mut().unwrap().collar = 1e-9), MeshError::TooManyElements);
         assert_eq!(refused(&|s| s.string.sections[1].count = u32::MAX), MeshError::TooManyElements);
         assert!(matches!(
             refused(&|s| s.string.gauges[1].measured_depth = 201.0),

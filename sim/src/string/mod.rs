@@ -1,5 +1,6 @@
 //! The string's mesh: elements, nodes, gauges and masses along the measured depth.
 
+mod auto;
 mod boundaries;
 mod mesh;
 

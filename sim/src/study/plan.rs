@@ -104,12 +104,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     rows.extend(study.meshes().into_iter().map(|factor| {
         let preset = AccuracyPreset::Reference;
         let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
-        let mesh = &mut planned.scenario.mesh;
-        for length in
-            [&mut mesh.drillpipe, &mut mesh.tool_joint, &mut mesh.collar, &mut mesh.stabilizer, &mut mesh.bit]
-        {
-            *length *= factor;
-        }
+        planned.scenario.mesh = planned.scenario.mesh.scaled(factor);
         planned
     }));
     Ok(rows)
@@ -248,7 +243,7 @@ mod tests {
     fn rk4s_reference_is_stable_on_finer_meshes_and_steps_are_parts_of_the_interval() {
         let rows = planned(|s| {
             // The limit is the tool joints' axial frequency: half their elements, half the step.
-            s.mesh.tool_joint *= 0.25;
+            s.mesh.lengths_mut().unwrap().tool_joint *= 0.25;
             s.recording.rate_hz = 800.0;
             s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 6.25e-4));
             s.cost_study.as_mut().unwrap().presets.clear();

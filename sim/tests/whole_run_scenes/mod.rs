@@ -38,7 +38,8 @@ pub fn reduced() -> Scenario {
         section(SectionKind::Drillpipe, 93.5, 0.127, 0.108),
         section(SectionKind::Collar, 106.5, 0.159, 0.071),
     ];
-    (scenario.mesh.drillpipe, scenario.mesh.collar) = (4.0, 2.2);
+    let lengths = scenario.mesh.lengths_mut().expect("has target lengths");
+    (lengths.drillpipe, lengths.collar) = (4.0, 2.2);
     scenario.damping.stiffness_proportional = 3e-5;
     scenario.duration = WINDOW.to;
     scenario.recording.rate_hz = 500.0;

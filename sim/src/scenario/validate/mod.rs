@@ -44,7 +44,8 @@ impl Scenario {
         if !is_finite {
             finite(&mut report, &self.tree(), String::new());
         }
-        let mesh = if with_shape {
+        // With a mesh that follows from the scenario everything may change it.
+        let mesh = if with_shape || self.mesh.is_auto() {
             hole::check(&mut report, self);
             string::check(&mut report, self)
         } else {

@@ -1,7 +1,7 @@
 //! Rules of the string and its mesh.
 
 use super::report::Report;
-use crate::scenario::{Scenario, ToolJoint};
+use crate::scenario::{ElementLengths, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw};
 use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
 
 /// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
@@ -87,12 +87,29 @@ fn pipe(report: &mut Report, path: &str, outer_diameter: f64, inner_diameter: f6
 }
 
 fn mesh_targets(report: &mut Report, scenario: &Scenario) {
-    let mesh = &scenario.mesh;
-    report.positive(mesh.drillpipe, "mesh.drillpipe");
-    report.positive(mesh.tool_joint, "mesh.tool_joint");
-    report.positive(mesh.collar, "mesh.collar");
-    report.positive(mesh.stabilizer, "mesh.stabilizer");
-    report.positive(mesh.bit, "mesh.bit");
+    match scenario.mesh {
+        Mesh::Named(MeshName::Auto) => {}
+        Mesh::Scaled(ScaledMesh { auto }) => report.positive(auto, "mesh.auto"),
+        Mesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
+            report.positive(drillpipe, "mesh.drillpipe");
+            report.positive(tool_joint, "mesh.tool_joint");
+            report.positive(collar, "mesh.collar");
+            report.positive(stabilizer, "mesh.stabilizer");
+            report.positive(bit, "mesh.bit");
+        }
+    }
+    report.warn(
+        scenario.mesh.is_auto() && scenario.contact.law == WallLaw::PerNode,
+        "mesh",
+        "contact stiffness is a node's, so the elements that \"auto\" makes decide how hard the wall is; with contact.law = \
+         \"per_length\" it is the same for every mesh",
+    );
+    report.warn(
+        scenario.mesh.is_auto()
+            && scenario.recording.nodes.iter().any(|choice| matches!(choice, NodeChoice::Node(_))),
+        "recording.nodes",
+        "node numbers are those of the mesh that \"auto\" makes: a depth is the same place on every mesh",
+    );
 }
 
 /// The string must have sections and end within the survey.
@@ -140,7 +157,7 @@ fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
     let length = match StringMesh::new(&bare) {
         Ok(mesh) => mesh.length(),
         Err(MeshError::TooManyElements) => {
-            too_fine(report);
+            too_fine(report, scenario);
             return None;
         }
         Err(_) => return None,
@@ -161,20 +178,25 @@ fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
     match StringMesh::new(scenario) {
         Ok(mesh) => Some(mesh),
         Err(MeshError::TooManyElements) => {
-            too_fine(report);
+            too_fine(report, scenario);
             None
         }
-        // Only places off the string are left, reported above.
+        // Only places off the string and materials that are none are left, reported above.
         Err(_) => None,
     }
 }
 
-fn too_fine(report: &mut Report) {
+fn too_fine(report: &mut Report, scenario: &Scenario) {
+    let instead = if scenario.mesh.is_auto() {
+        "\"auto\" gives more than that here: give target lengths that make"
+    } else {
+        "target lengths must give"
+    };
     report.require(
         false,
         "mesh",
         format!("more than {MAX_ELEMENTS} elements"),
-        format!("target lengths must give at most {MAX_ELEMENTS} elements"),
+        format!("{instead} at most {MAX_ELEMENTS} elements"),
     );
 }
 
@@ -223,7 +245,7 @@ fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &Strin
 #[cfg(test)]
 mod tests {
     use super::super::report::testing::{problem, problems, warnings};
-    use crate::scenario::{Gauge, UnbalanceMass};
+    use crate::scenario::{Gauge, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
 
     #[test]
     fn material_constants_are_physical() {
@@ -290,16 +312,42 @@ mod tests {
 
     #[test]
     fn mesh_targets_are_lengths() {
-        problem("mesh.drillpipe", |s| s.mesh.drillpipe = 0.0);
-        problem("mesh.tool_joint", |s| s.mesh.tool_joint = -0.3);
-        problem("mesh.collar", |s| s.mesh.collar = 0.0);
-        problem("mesh.stabilizer", |s| s.mesh.stabilizer = 0.0);
-        problem("mesh.bit", |s| s.mesh.bit = 0.0);
+        problem("mesh.drillpipe", |s| s.mesh.lengths_mut().unwrap().drillpipe = 0.0);
+        problem("mesh.tool_joint", |s| s.mesh.lengths_mut().unwrap().tool_joint = -0.3);
+        problem("mesh.collar", |s| s.mesh.lengths_mut().unwrap().collar = 0.0);
+        problem("mesh.stabilizer", |s| s.mesh.lengths_mut().unwrap().stabilizer = 0.0);
+        problem("mesh.bit", |s| s.mesh.lengths_mut().unwrap().bit = 0.0);
+    }
+
+    #[test]
+    fn auto_follows_from_the_string_for_a_wall_that_is_the_same_for_every_mesh() {
+        let by_length = |s: &mut Scenario| {
+            (s.mesh, s.contact.law) = (Mesh::AUTO, WallLaw::PerLength);
+            s.recording.nodes = vec![NodeChoice::Depth(57.73)];
+        };
+        assert_eq!(warnings(by_length), []);
+        problem("mesh.auto", |s| {
+            by_length(s);
+            s.mesh = s.mesh.scaled(-0.5);
+        });
+        let found = problem("mesh", |s| {
+            by_length(s);
+            s.mesh = s.mesh.scaled(1e-3);
+        });
+        assert!(found.message.contains("auto") && found.message.contains("20000"), "{found}");
+        let found = warnings(|s| {
+            by_length(s);
+            s.contact.law = WallLaw::PerNode;
+        });
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "mesh"));
+        // The base case names its nodes by the numbers of its own mesh.
+        let found = warnings(|s| (s.mesh, s.contact.law) = (Mesh::AUTO, WallLaw::PerLength));
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes"));
     }
 
     #[test]
     fn mesh_is_not_finer_than_can_be_simulated() {
-        let found = problem("mesh", |s| s.mesh.collar = 0.005);
+        let found = problem("mesh", |s| s.mesh.lengths_mut().unwrap().collar = 0.005);
         assert!(found.message.contains("20000"), "{found}");
     }
 

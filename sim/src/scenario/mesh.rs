@@ -1,0 +1,202 @@
+//! How finely the string is cut into elements.
+
+use std::fmt;
+
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// How finely the string is cut: `"auto"`, by a factor finer or coarser than that, or target element lengths.
+///
+/// With `auto` lengths follow from the string and its wall: a tool joint has eight elements, a body between tool joints sixteen, and whatever lies
+/// on the wall by itself (collars, stabilizers, plain pipe) elements of half the length (4 E I / kappa)^(1/4) over which a wall of
+/// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. It is meant for the contact law `per_length`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum Mesh {
+    /// Lengths that follow from the string and its wall.
+    Named(MeshName),
+    /// The same lengths, all multiplied.
+    Scaled(ScaledMesh),
+    /// Target element lengths.
+    Lengths(ElementLengths),
+}
+
+/// Meshes with a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum MeshName {
+    /// Lengths that follow from the string and its wall.
+    Auto,
+}
+
+/// The mesh `auto` made finer or coarser.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ScaledMesh {
+    /// What multiplies all lengths of `auto`: 0.5 makes every element half as long.
+    pub auto: f64,
+}
+
+/// Target element lengths \[m\]; every stretch between two places that need a node is cut into equal
+/// elements no longer than its kind's target.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ElementLengths {
+    /// Drillpipe bodies \[m\].
+    pub drillpipe: f64,
+    /// Tool joints \[m\].
+    pub tool_joint: f64,
+    /// Collars \[m\].
+    pub collar: f64,
+    /// Stabilizers \[m\].
+    pub stabilizer: f64,
+    /// Bit \[m\].
+    pub bit: f64,
+}
+
+impl Mesh {
+    /// Lengths that follow from the string and its wall.
+    pub const AUTO: Self = Mesh::Named(MeshName::Auto);
+
+    /// The same mesh with all lengths multiplied.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Mesh::Named(MeshName::Auto) => Mesh::Scaled(ScaledMesh { auto: factor }),
+            Mesh::Scaled(ScaledMesh { auto }) => Mesh::Scaled(ScaledMesh { auto: auto * factor }),
+            Mesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
+                Mesh::Lengths(ElementLengths {
+                    drillpipe: drillpipe * factor,
+                    tool_joint: tool_joint * factor,
+                    collar: collar * factor,
+                    stabilizer: stabilizer * factor,
+                    bit: bit * factor,
+                })
+            }
+        }
+    }
+
+    /// Whether lengths follow from the string and its wall.
+    pub fn is_auto(&self) -> bool {
+        matches!(self, Mesh::Named(MeshName::Auto) | Mesh::Scaled(_))
+    }
+
+    /// The target lengths, if they are given.
+    pub fn lengths_mut(&mut self) -> Option<&mut ElementLengths> {
+        match self {
+            Mesh::Lengths(lengths) => Some(lengths),
+            Mesh::Named(_) | Mesh::Scaled(_) => None,
+        }
+    }
+}
+
+/// Written out, because an untagged enum would not say which field is wrong.
+impl<'de> Deserialize<'de> for Mesh {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(MeshVisitor)
+    }
+}
+
+struct MeshVisitor;
+
+impl<'de> Visitor<'de> for MeshVisitor {
+    type Value = Mesh;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .write_str("\"auto\", an object with a factor on that (auto), or one with target element lengths")
+    }
+
+    fn visit_str<E: de::Error>(self, name: &str) -> Result<Mesh, E> {
+        MeshName::deserialize(StrDeserializer::new(name)).map(Mesh::Named)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Mesh, A::Error> {
+        let Fields { auto, drillpipe, tool_joint, collar, stabilizer, bit } =
+            Fields::deserialize(MapAccessDeserializer::new(map))?;
+        let lengths = [drillpipe, tool_joint, collar, stabilizer, bit];
+        if let Some(auto) = auto {
+            return if lengths.iter().all(Option::is_none) {
+                Ok(Mesh::Scaled(ScaledMesh { auto }))
+            } else {
+                Err(de::Error::custom("a factor on auto or target element lengths: one of them alone"))
+            };
+        }
+        let given = |length: Option<f64>, field| length.ok_or_else(|| de::Error::missing_field(field));
+        Ok(Mesh::Lengths(ElementLengths {
+            drillpipe: given(drillpipe, "drillpipe")?,
+            tool_joint: given(tool_joint, "tool_joint")?,
+            collar: given(collar, "collar")?,
+            stabilizer: given(stabilizer, "stabilizer")?,
+            bit: given(bit, "bit")?,
+        }))
+    }
+}
+
+/// The fields of both forms that are objects.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    auto: Option<f64>,
+    drillpipe: Option<f64>,
+    tool_joint: Option<f64>,
+    collar: Option<f64>,
+    stabilizer: Option<f64>,
+    bit: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::scenario::preset;
+
+    fn read(value: Value) -> Result<Mesh, String> {
+        serde_json::from_value(value).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn all_forms_are_read_and_written() {
+        let lengths =
+            json!({"drillpipe": 1.5, "tool_joint": 0.3, "collar": 0.5, "stabilizer": 0.5, "bit": 0.25});
+        for form in [json!("auto"), json!({"auto": 0.5}), lengths] {
+            assert_eq!(serde_json::to_value(read(form.clone()).unwrap()).unwrap(), form);
+        }
+        assert!(read(json!("fine")).unwrap_err().contains("auto"));
+        assert!(read(json!({"drillpipe": 1.5, "tool_joint": 0.3})).unwrap_err().contains("collar"));
+        assert!(read(json!({"auto": 1.0, "collar": 0.5})).unwrap_err().contains("alone"));
+        assert!(read(json!({"drillpip": 1.5})).unwrap_err().contains("drillpip"));
+    }
+
+    #[test]
+    fn scaling_multiplies_all_lengths() {
+        let scenario = preset("paper-200m").unwrap();
+        let mut half = scenario.mesh.scaled(0.5);
+        let ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit } = *half.lengths_mut().unwrap();
+        assert_eq!([drillpipe, tool_joint, collar, stabilizer, bit], [0.75, 0.15, 0.25, 0.25, 0.25]);
+        assert_eq!(Mesh::AUTO.scaled(0.5).scaled(0.5), Mesh::Scaled(ScaledMesh { auto: 0.25 }));
+    }
+
+    #[test]
+    fn a_factor_on_auto_is_a_number_by_its_path() {
+        let scenario = preset("paper-200m").unwrap();
+        for mesh in [scenario.mesh, Mesh::AUTO] {
+            let half = crate::scenario::Scenario { mesh, ..scenario.clone() }.with("mesh.auto", json!(0.5));
+            let mut half = half.unwrap();
+            assert_eq!(half.mesh, Mesh::AUTO.scaled(0.5));
+            *half.number_mut("mesh.auto").unwrap() = 0.25;
+            assert_eq!(half.mesh, Mesh::AUTO.scaled(0.25));
+        }
+        // The same mesh, however it is written.
+        let auto = scenario.with("mesh", json!("auto")).unwrap();
+        let once = scenario.with("mesh.auto", json!(1.0)).unwrap();
+        assert_eq!(auto.canonical_bytes(), once.canonical_bytes());
+        assert_ne!(auto.canonical_bytes(), scenario.canonical_bytes());
+    }
+}

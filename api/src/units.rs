@@ -56,7 +56,7 @@ pub fn unit(column: &str) -> Option<&'static str> {
         | "mesh_error_static_position"
         | "mesh_error_friction_coefficient" => "1",
         "cpu_per_simulated_second" | "speed_over_rk4" | "tolerance" => "1",
-        "trajectory_error" | "line_amplitude_error" | "mesh_error" | "time_error" | "whole_error" => "1",
+        "trajectory_error" | "line_amplitude_error" | "mesh_error" | "whole_error" => "1",
         "static_position_error" | "friction_coefficient_error" | "energy_error" | "estimated_error" => "1",
         name if name.starts_with("cost_step_") || name.starts_with("cost_cpu_time_") => "s",
         name if ["_bias", "_half_width"].iter().any(|end| name.ends_with(end)) => "1",

@@ -44,7 +44,7 @@ pub(crate) struct CostArguments {
     #[arg(long, value_delimiter = ',')]
     mesh_factors: Vec<f64>,
     /// Look for the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
-    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 2, 1 and 0.5 unless said otherwise.
+    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless said otherwise.
     #[arg(long, value_parser = parse_share)]
     total: Option<f64>,
     /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.

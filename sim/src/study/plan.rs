@@ -266,7 +266,7 @@ mod tests {
                 |row: &PlannedRow| if let Role::Mesh { factor } = row.role { Some(factor) } else { None };
             rows.iter().filter_map(factor).collect()
         };
-        assert_eq!(meshes(&[]), [2.0, 1.0, 0.5]);
+        assert_eq!(meshes(&[]), [1.0, 0.5, 0.25]);
         assert_eq!(meshes(&[0.25, 4.0]), [4.0, 1.0, 0.25]);
     }
 

@@ -291,7 +291,7 @@ mod tests {
         }
         let arguments = arguments(&["paper-200m", "--total", "5%"]).unwrap();
         let scenario = studied(&arguments, "paper-200m").unwrap();
-        assert_eq!(scenario.cost_study.unwrap().meshes(), [2.0, 1.0, 0.5]);
+        assert_eq!(scenario.cost_study.unwrap().meshes(), [1.0, 0.5, 0.25]);
     }
 
     #[test]

@@ -91,6 +91,9 @@ const SHARE_OF_HISTORY: f64 = 0.2;
 /// that hardly damp multiply by hundreds.
 const USUAL_AMPLIFICATION: f64 = 5.0;
 
+/// Part of the bound of the energy ledger that a run leaves at most whose steps can be told anything of: usual runs leave less than a hundredth.
+const SOUND_RESIDUAL: f64 = 0.05;
+
 /// Relative error beyond which an estimate says no more than that nothing is known.
 const LARGEST_ESTIMATE: f64 = 0.5;
 
@@ -116,6 +119,13 @@ impl TimeError {
             return unknown(format!(
                 "{} steps of the shortest length left more than the tolerance",
                 run.unresolved_steps
+            ));
+        }
+        if let Some(residual) = run.energy_residual_of_bound.filter(|residual| *residual > SOUND_RESIDUAL) {
+            return unknown(format!(
+                "the energy ledger leaves {:.0} % of what it may: steps make or lose energy, as by chatter on a hard wall; a smaller \
+                 tolerance helps",
+                100.0 * residual
             ));
         }
         let distance = |node: usize| {

@@ -59,6 +59,8 @@ pub struct TransientSummary {
     pub error_estimate: ErrorEstimate,
     /// Energy left over at the end \[J\]: the integration's own error.
     pub energy_residual: f64,
+    /// Its size relative to the bound beyond which a run is stopped; absent where nothing moved.
+    pub energy_residual_of_bound: Option<f64>,
     /// The same relative to the net work of the contacts; absent where there was none.
     pub energy_residual_ratio: Option<f64>,
 }
@@ -196,6 +198,8 @@ impl TransientSummary {
                 .fold(0.0, |most, contact| most.max(contact.largest_normal_force)),
             error_estimate: records.error,
             energy_residual: last.residual,
+            energy_residual_of_bound: (records.energy_bound > 0.0)
+                .then(|| last.residual.abs() / records.energy_bound),
             energy_residual_ratio: (last.contact_work != 0.0)
                 .then(|| last.residual.abs() / last.contact_work.abs()),
         }

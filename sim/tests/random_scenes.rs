@@ -62,9 +62,8 @@ fn scenes_of_seed_6() {
 ///
 /// Scenes drawn over ranges as wide as these are hit and rubbed without damping, at speeds that no well sees. Of a third of those that move,
 /// not even a start a micrometre beside says the same: a window of 0.13 s tells nothing of them, whatever the step. Of the others a
-/// finer step may differ in one of four, for reasons that were looked at one by one: without stiffness-proportional damping
-/// torsion lives on beyond the frequencies that the step resolves, walls without a damper throw the string back as often as they are
-/// hit, or what moves are micrometres and hardly above what counts as rest.
+/// finer step may differ in one of four. Those that were looked at have no stiffness-proportional damping, so that torsion lives on beyond
+/// the frequencies that the step resolves, or hard walls that long steps chatter on.
 fn most_agree(preset: AccuracyPreset) {
     let (mut agree, mut differ, mut sensitive) = (0, Vec::new(), 0);
     for index in 0..50 {

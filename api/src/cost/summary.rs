@@ -194,7 +194,8 @@ pub fn summary_csv(rows: &[SummaryRow]) -> String {
         .with("integrator", texts(&|row| Some(row.integrator.name().to_owned())))
         .with("step", numbers(&|row| Some(row.step)))
         .with("tolerance", numbers(&|row| row.tolerance));
-    let statistics: [(&str, fn(&SummaryRow) -> Option<WorstBias>); 2] =
+    type Worst = fn(&SummaryRow) -> Option<WorstBias>;
+    let statistics: [(&str, Worst); 2] =
         [("orbit_size", |row| row.orbit_size), ("radius_deviation", |row| row.radius_deviation)];
     for (name, worst) in statistics {
         table = table

@@ -11,7 +11,7 @@ use anyhow::bail;
 use clap::Args;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::{AccuracyPreset, Integrator, Scenario};
-use drillsweep_sim::soak::{SceneEnd, at_accuracy, run, run_and_refine, scene};
+use drillsweep_sim::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 use drillsweep_sim::study::finer::{Difference, Verdict};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -64,17 +64,17 @@ impl SoakArguments {
         if !self.finer {
             return Ending::Scene(run(&scene, control), None);
         }
-        let (end, verdict) = run_and_refine(&scene, control);
+        let (end, refined) = run_and_refine(&scene, control);
         let stepping = scene.accuracy.time_stepping();
         let adapts = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
-        Ending::Scene(end, verdict.map(|verdict| (adapts, verdict)))
+        Ending::Scene(end, refined.map(|refined| (adapts, refined)))
     }
 }
 
 /// How one scene ended, as the report counts it.
 enum Ending {
     /// With what a finer step says, and whether the scene's accuracy is a tolerance on statistics, where that was asked.
-    Scene(SceneEnd, Option<(bool, Verdict)>),
+    Scene(SceneEnd, Option<(bool, Refined)>),
     Panicked(String),
     Hung,
 }
@@ -127,7 +127,7 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
                     let ending = match ending {
                         Ok(
                             Ending::Scene(SceneEnd::Cancelled, _)
-                            | Ending::Scene(_, Some((_, Verdict::Cancelled))),
+                            | Ending::Scene(_, Some((_, Refined { verdict: Verdict::Cancelled, .. }))),
                         ) => Ending::Hung,
                         Ok(ending) => ending,
                         Err(panic) => Ending::Panicked(message(&*panic)),
@@ -209,29 +209,48 @@ struct FinerCounts {
     agree: u64,
     at_rest: u64,
     no_result: u64,
-    /// Scenes that a finer step says otherwise of, and what differs most.
-    differ: Vec<(u64, Difference)>,
+    /// Scenes that a finer step says otherwise of.
+    differ: Vec<Differing>,
     /// Those of which a start beside says otherwise as well.
-    sensitive: Vec<(u64, Difference)>,
+    sensitive: Vec<Differing>,
+}
+
+/// A scene that a finer step says otherwise of.
+struct Differing {
+    index: u64,
+    /// What differs most.
+    difference: Difference,
+    /// The error by steps that the result tells, relative; absent where it says that none is known.
+    told: Option<f64>,
+}
+
+impl Differing {
+    /// Whether the result says itself that it may be off by so much, or that nothing is known of it.
+    fn is_told(&self) -> bool {
+        self.told.is_none_or(|told| told >= self.difference.relative)
+    }
 }
 
 /// So many of the scenes that differ are named, the worst first.
 const NAMED: usize = 5;
 
 impl FinerCounts {
-    fn add(&mut self, index: u64, verdict: &Verdict) {
-        match *verdict {
+    fn add(&mut self, index: u64, refined: &Refined) {
+        let told = refined.told.statistics();
+        match refined.verdict {
             Verdict::Agrees(_) => self.agree += 1,
-            Verdict::Differs(difference) => insert(&mut self.differ, index, difference),
-            Verdict::Sensitive { finer, .. } => insert(&mut self.sensitive, index, finer),
+            Verdict::Differs(difference) => insert(&mut self.differ, Differing { index, difference, told }),
+            Verdict::Sensitive { finer, .. } => {
+                insert(&mut self.sensitive, Differing { index, difference: finer, told });
+            }
             Verdict::AtRest => self.at_rest += 1,
             Verdict::NoResult(_) | Verdict::Cancelled => self.no_result += 1,
         }
     }
 
     fn to_json(&self) -> serde_json::Value {
-        let scenes = |scenes: &[(u64, Difference)]| -> Vec<serde_json::Value> {
-            let scene = |(index, difference): &(u64, Difference)| {
+        let scenes = |scenes: &[Differing]| -> Vec<serde_json::Value> {
+            let scene = |Differing { index, difference, told }: &Differing| {
                 json!({
                     "scene": index,
                     "quantity": difference.quantity,
@@ -239,6 +258,7 @@ impl FinerCounts {
                     "values": difference.values,
                     "difference": difference.relative,
                     "allowed": difference.allowed,
+                    "told": told,
                 })
             };
             scenes.iter().map(scene).collect()
@@ -261,7 +281,14 @@ impl FinerCounts {
             (&self.sensitive, "says otherwise, and so does a start a micrometre beside"),
         ] {
             writeln!(text, "{:>7} {verdict}", scenes.len())?;
-            for (index, difference) in scenes.iter().take(NAMED) {
+            let told = scenes.iter().filter(|scene| scene.is_told()).count();
+            if !scenes.is_empty() {
+                writeln!(
+                    text,
+                    "        ({told} of them tell so themselves: an error as large, or that none is known)"
+                )?;
+            }
+            for Differing { index, difference, .. } in scenes.iter().take(NAMED) {
                 let Difference { quantity, measured_depth, values: [own, finer], relative, allowed } =
                     difference;
                 let place = measured_depth.map_or_else(String::new, |depth| format!(" at {depth:.2} m"));
@@ -280,18 +307,19 @@ impl FinerCounts {
     }
 }
 
-/// Adds a scene, the worst first, and of equals the first.
-fn insert(scenes: &mut Vec<(u64, Difference)>, index: u64, difference: Difference) {
-    let place = scenes.partition_point(|(other, than)| {
-        than.share().total_cmp(&difference.share()).reverse().then(other.cmp(&index)).is_lt()
+/// Adds a scene: those first that do not tell, then the worst, and of equals the first.
+fn insert(scenes: &mut Vec<Differing>, scene: Differing) {
+    let place = scenes.partition_point(|other| {
+        let by_size = other.difference.share().total_cmp(&scene.difference.share()).reverse();
+        other.is_told().cmp(&scene.is_told()).then(by_size).then(other.index.cmp(&scene.index)).is_lt()
     });
-    scenes.insert(place, (index, difference));
+    scenes.insert(place, scene);
 }
 
 impl Report {
     fn add(&mut self, index: u64, ending: Ending) {
-        if let Ending::Scene(_, Some((adapts, verdict))) = &ending {
-            self.finer[usize::from(!adapts)].add(index, verdict);
+        if let Ending::Scene(_, Some((adapts, refined))) = &ending {
+            self.finer[usize::from(!adapts)].add(index, refined);
         }
         match ending {
             Ending::Scene(SceneEnd::Finite { ledger }, _) => {

@@ -5,7 +5,9 @@
 //! otherwise](crate::study::finer). Scene i of a seed is always the same one.
 
 use crate::control::Control;
+use crate::errors::TimeError;
 use crate::model::Model;
+use crate::modes::UndampedTorsion;
 use crate::scenario::{
     Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge,
     Integrator, Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording,
@@ -16,6 +18,7 @@ use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
 use crate::study::Measure;
 use crate::study::finer::{self, Verdict};
+use crate::summary::TransientSummary;
 use crate::transient::{DivergenceReason, Outcome, Records, Transient, TransientError};
 
 /// Samples of a scene's run.
@@ -59,8 +62,17 @@ pub fn run(scenario: &Scenario, control: &Control) -> SceneEnd {
     }
 }
 
-/// Runs a scene and judges how it ended; where it has a result, also whether a finer step says otherwise.
-pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Option<Verdict>) {
+/// What is known of the steps of a result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refined {
+    /// Whether a finer step says otherwise.
+    pub verdict: Verdict,
+    /// The error by steps that the result tells by itself.
+    pub told: TimeError,
+}
+
+/// Runs a scene and judges how it ended; where it has a result, also whether a finer step says otherwise, and what the result tells of that.
+pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Option<Refined>) {
     let (model, equilibrium, records) = match simulate(scenario, control) {
         Ok(run) => run,
         Err(end) => return (end, None),
@@ -70,8 +82,10 @@ pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Opti
         return (end, None);
     }
     let own = Measure::new(&model, &equilibrium, &records, 0);
+    let torsion = UndampedTorsion::about(&model, &equilibrium);
+    let told = TimeError::new(&TransientSummary::new(&model, &records), &[], torsion.as_ref());
     let verdict = finer::ask(&own, &model, &equilibrium, control);
-    (end, Some(verdict))
+    (end, Some(Refined { verdict, told }))
 }
 
 /// The scene at the accuracy of a preset, for as long as a random string takes to swing a few times.

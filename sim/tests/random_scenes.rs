@@ -3,8 +3,8 @@
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::AccuracyPreset;
-use drillsweep_sim::soak::{SceneEnd, at_accuracy, run, run_and_refine, scene};
-use drillsweep_sim::study::finer::Verdict;
+use drillsweep_sim::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
+use drillsweep_sim::study::finer::{Difference, Verdict};
 
 /// Runs fifty scenes of a seed; at least `finite` of them must have a result.
 fn fifty(seed: u64, finite: usize) {
@@ -58,26 +58,37 @@ fn scenes_of_seed_6() {
     fifty(6, 30);
 }
 
-/// Asks of fifty scenes at an accuracy whether a finer step says otherwise.
+/// Asks of fifty scenes at an accuracy whether a finer step says otherwise, and whether the result itself tells.
 ///
 /// Scenes drawn over ranges as wide as these are hit and rubbed without damping, at speeds that no well sees. Of a third of those that move,
 /// not even a start a micrometre beside says the same: a window of 0.13 s tells nothing of them, whatever the step. Of the others a
 /// finer step may differ in one of four. Those that were looked at have no stiffness-proportional damping, so that torsion lives on beyond
-/// the frequencies that the step resolves, or hard walls that long steps chatter on.
+/// the frequencies that the step resolves, or hard walls that long steps chatter on. Whoever reads such a result has to be told: that its
+/// error is as large, or that none is known. Of four thousand scenes, one result in forty that move neither agrees nor tells.
 fn most_agree(preset: AccuracyPreset) {
-    let (mut agree, mut differ, mut sensitive) = (0, Vec::new(), 0);
+    let (mut agree, mut differ, mut sensitive, mut untold) = (0, Vec::new(), 0, 0);
     for index in 0..50 {
         let scene = at_accuracy(scene(1, index), preset);
-        let (end, verdict) = run_and_refine(&scene, &Control::new());
+        let (end, refined) = run_and_refine(&scene, &Control::new());
         assert!(!matches!(end, SceneEnd::Broken { .. } | SceneEnd::Cancelled), "scene {index}: {end:?}");
+        let Some(Refined { verdict, told }) = refined else { continue };
+        let mut count_untold = |difference: Difference| {
+            untold += usize::from(told.statistics().is_some_and(|told| told < difference.relative));
+        };
         match verdict {
-            Some(Verdict::Agrees(difference)) => {
+            Verdict::Agrees(difference) => {
                 assert!(difference.share() <= 1.0, "scene {index}: {difference:?}");
                 agree += 1;
             }
-            Some(Verdict::Differs(difference)) => differ.push((index, difference)),
-            Some(Verdict::Sensitive { .. }) => sensitive += 1,
-            Some(Verdict::AtRest | Verdict::NoResult(_) | Verdict::Cancelled) | None => {}
+            Verdict::Differs(difference) => {
+                count_untold(difference);
+                differ.push((index, difference));
+            }
+            Verdict::Sensitive { finer, .. } => {
+                count_untold(finer);
+                sensitive += 1;
+            }
+            Verdict::AtRest | Verdict::NoResult(_) | Verdict::Cancelled => {}
         }
     }
     assert!(
@@ -85,6 +96,7 @@ fn most_agree(preset: AccuracyPreset) {
         "{agree} agree, {sensitive} are sensitive: {differ:#?}"
     );
     assert!(sensitive <= agree, "{agree} agree, {sensitive} are sensitive");
+    assert!(10 * untold <= agree + differ.len() + sensitive, "{untold} do not tell");
 }
 
 #[test]

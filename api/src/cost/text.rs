@@ -198,16 +198,21 @@ fn line_columns(rows: &[&CostRow]) -> [Cells; 2] {
     ]
 }
 
-fn method_columns(rows: &[&CostRow]) -> Vec<Cells> {
-    let mut columns = run_columns(rows);
-    columns.push(column("x rk4", rows, |row| row.speed_over_rk4.map(three_digits)));
-    columns.extend([
+/// What each line is off by in every statistic.
+fn statistic_columns(rows: &[&CostRow]) -> [Cells; 5] {
+    [
         statistic("orbit size", rows, Quantity::OrbitSize),
         statistic("std of radius", rows, Quantity::RadiusDeviation),
         statistic("mean radius", rows, Quantity::MeanRadius),
         statistic("contact force", rows, Quantity::ContactForce),
         statistic("torsional speed", rows, Quantity::TorsionalSpeed),
-    ]);
+    ]
+}
+
+fn method_columns(rows: &[&CostRow]) -> Vec<Cells> {
+    let mut columns = run_columns(rows);
+    columns.push(column("x rk4", rows, |row| row.speed_over_rk4.map(three_digits)));
+    columns.extend(statistic_columns(rows));
     columns.extend(line_columns(rows));
     columns.extend([
         lines("missing", rows, |lines| Some(lines.missing.to_string())),
@@ -250,12 +255,8 @@ fn change_columns(rows: &[&CostRow]) -> Vec<Cells> {
         errors("statics", rows, |errors| Some(errors.static_position)),
         errors("C_f", rows, |errors| errors.friction_coefficient),
         errors("history", rows, |errors| errors.trajectory),
-        statistic("orbit size", rows, Quantity::OrbitSize),
-        statistic("std of radius", rows, Quantity::RadiusDeviation),
-        statistic("mean radius", rows, Quantity::MeanRadius),
-        statistic("contact force", rows, Quantity::ContactForce),
-        statistic("torsional speed", rows, Quantity::TorsionalSpeed),
     ];
+    columns.extend(statistic_columns(rows));
     columns.extend(line_columns(rows));
     columns
 }

@@ -86,6 +86,56 @@ fn simulation_knows_no_clock_files_threads_network_or_async() {
     }
 }
 
+/// The modules of the simulation from the ground up: each may use those before it.
+const LAYERS: &[&str] = &[
+    "control",
+    "linalg",
+    "signal",
+    "scenario",
+    "well",
+    "beam",
+    "contact",
+    "string",
+    "mud",
+    "effect",
+    "model",
+    "statics",
+    "motion",
+    "modes",
+    "transient",
+    "admission",
+    "study",
+];
+
+#[test]
+fn modules_of_the_simulation_use_only_what_lies_below_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sim/src");
+    let level = |module: &str| LAYERS.iter().position(|layer| *layer == module);
+    let mut sources = Vec::new();
+    rust_files(&root, &mut sources);
+    let mut arrows = 0;
+    for path in sources {
+        let within = path.strip_prefix(&root).unwrap();
+        let module = within.components().next().unwrap().as_os_str().to_str().unwrap();
+        let module = module.trim_end_matches(".rs");
+        if module == "lib" {
+            continue;
+        }
+        let own = level(module).unwrap_or_else(|| panic!("{module} has no place among the layers"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+        for used in code.flat_map(|line| line.split("crate::").skip(1)) {
+            let used =
+                used.split(|letter: char| !(letter.is_ascii_lowercase() || letter == '_')).next().unwrap();
+            let used = level(used).unwrap_or_else(|| panic!("{} uses {used}", within.display()));
+            assert!(used <= own, "{} uses {}", within.display(), LAYERS[used]);
+            arrows += 1;
+        }
+    }
+    assert!(arrows > 100, "the arrows were not found");
+}
+
 fn rust_files(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

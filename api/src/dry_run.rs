@@ -1,6 +1,6 @@
 //! What a request would become, without storing or simulating anything.
 
-use drillsweep_sim::plan::{MachineSpeed, Plan};
+use drillsweep_sim::study::plan::{MachineSpeed, Plan};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

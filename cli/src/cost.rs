@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use drillsweep_api::cost::{Measure, PNG_WIDTH, chart, csv, summary, summary_csv, summary_text, text};
 use drillsweep_sim::scenario::Scenario;
-use drillsweep_sim::study::CostReport;
+use drillsweep_sim::study::cost::CostReport;
 use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};

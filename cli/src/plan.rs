@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use drillsweep_sim::plan::{Plan, PlannedAccuracy};
+use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
 use serde_json::{Value, json};
 

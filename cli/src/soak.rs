@@ -11,8 +11,8 @@ use anyhow::bail;
 use clap::Args;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::{AccuracyPreset, Integrator, Scenario};
-use drillsweep_sim::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 use drillsweep_sim::study::finer::{Difference, Verdict};
+use drillsweep_sim::study::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 

@@ -7,24 +7,21 @@
 //! SI units throughout. Nothing here knows of files, clocks, threads, SQL or HTTP: the same scenario gives
 //! the same bits wherever it runs.
 
+pub mod admission;
 pub mod beam;
 pub mod contact;
 pub mod control;
-pub mod ensemble;
-pub mod errors;
+pub mod effect;
 pub mod linalg;
-pub mod mesh_estimate;
 pub mod model;
 pub mod modes;
+pub mod motion;
 pub mod mud;
-pub mod plan;
 pub mod scenario;
 pub mod signal;
-pub mod soak;
 pub mod statics;
 pub mod string;
 pub mod study;
-pub mod summary;
 pub mod transient;
 pub mod well;
 

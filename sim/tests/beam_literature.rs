@@ -5,7 +5,7 @@ mod common;
 
 use common::{STEEL, StraightBeam, critical_factor, eigenvalues, frequencies, select};
 use drillsweep_sim::beam::BeamSection;
-use drillsweep_sim::model::FlowMomentum;
+use drillsweep_sim::mud::{FlowGeometry, FlowMomentum};
 use drillsweep_sim::scenario::preset;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
@@ -238,7 +238,7 @@ fn mud_lowers_frequencies_by_the_root_of_the_mass_ratio() {
     let mut mud = preset("paper-200m").expect("shipped preset").mud.expect("wet");
     mud.flow_rate = 0.0;
     let s = BeamSection::pipe(0.127, 0.108, &STEEL);
-    let momentum = FlowMomentum::new(&mud, &s, 0.2159);
+    let momentum = FlowMomentum::new(&mud, &FlowGeometry::past(&s, 0.2159));
     assert!((momentum.added_mass_coefficient - 2.0582).abs() < 5e-5);
     let added = 1200.0 * PI / 4.0 * (0.108_f64.powi(2) + 2.0582 * 0.127_f64.powi(2));
     assert!(

@@ -1,7 +1,7 @@
 //! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and what rests on it converges.
 
+use drillsweep_sim::contact::Wall;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::scenario::{
     Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, SurveyStation, TimeStepping,
@@ -9,6 +9,7 @@ use drillsweep_sim::scenario::{
 };
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::study::mesh_estimate::MeshEstimate;
 use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
 
 fn rest(model: &Model) -> Equilibrium {
@@ -277,6 +278,8 @@ fn radius_of_the_base_case(factor: f64, ends_reach: bool) -> f64 {
             let above = i.checked_sub(1).map_or(0.0, |above| lengths[above]);
             node.stiffness_share = 0.5 * (above + lengths.get(i).copied().unwrap_or(0.0)) / 0.5;
         }
+        let sites = model.mesh.nodes.iter().enumerate().map(|(i, node)| (i > 0).then(|| node.site()));
+        model.wall = Wall::new(&scenario.contact, &model.effects, sites);
     }
     let [u, v, ..] = rest(&model).displacement[model.mesh.nearest_node(57.73)];
     u.hypot(v)

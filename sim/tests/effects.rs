@@ -8,7 +8,7 @@ use drillsweep_sim::scenario::{
     Accuracy, AutoRule, CostStudy, Effect, Integrator, Scenario, Switch, TimeStepping, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::{Measure, Role, plan, report};
+use drillsweep_sim::study::cost::{Measure, Role, plan, report};
 use drillsweep_sim::transient::{Outcome, Records, Transient};
 
 const METHODS: [(Integrator, f64); 3] =

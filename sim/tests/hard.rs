@@ -10,7 +10,7 @@ use drillsweep_sim::modes::{
 };
 use drillsweep_sim::scenario::{Accuracy, Integrator, PRESETS, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::Measure;
+use drillsweep_sim::study::cost::Measure;
 use drillsweep_sim::study::finer::{Verdict, ask};
 use drillsweep_sim::transient::{EnergyRow, Outcome, Records, Transient};
 

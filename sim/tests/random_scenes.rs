@@ -3,8 +3,8 @@
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::AccuracyPreset;
-use drillsweep_sim::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 use drillsweep_sim::study::finer::{Difference, Verdict};
+use drillsweep_sim::study::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 
 /// Runs fifty scenes of a seed; at least `finite` of them must have a result.
 fn fifty(seed: u64, finite: usize) {

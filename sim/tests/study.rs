@@ -8,7 +8,7 @@ use drillsweep_sim::scenario::{
     CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping, TimeWindow, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::{CostReport, CostRow, Measure, PlannedRow, Quantity, plan, report};
+use drillsweep_sim::study::cost::{CostReport, CostRow, Measure, PlannedRow, Quantity, plan, report};
 use drillsweep_sim::transient::{Outcome, Transient};
 use serde_json::json;
 

@@ -2,10 +2,10 @@
 //! different kind reach.
 
 use drillsweep_sim::control::Control;
-use drillsweep_sim::errors::TimeError;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::study::errors::TimeError;
 use drillsweep_sim::transient::{ContactStatistics, Outcome, Transient};
 use whole_run_scenes::{WholeRun, apart, reduced, scenes};
 

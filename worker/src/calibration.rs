@@ -2,9 +2,9 @@
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::plan::{MachineSpeed, RunTime, calibration_runs};
 use drillsweep_sim::scenario::{Scenario, preset};
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::study::plan::{MachineSpeed, RunTime, calibration_runs};
 use drillsweep_sim::transient::{Outcome, Transient};
 
 use crate::compute::{ComputeError, Stopwatch};

@@ -2,10 +2,10 @@
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::plan::MachineSpeed;
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
+use drillsweep_sim::study::cost::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
+use drillsweep_sim::study::plan::MachineSpeed;
 use drillsweep_sim::transient::{Outcome, Transient};
 use rayon::prelude::*;
 

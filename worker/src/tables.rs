@@ -1,13 +1,13 @@
 //! What a point's result becomes: tables for the object store, and one flat row for the sweep's table.
 
 use drillsweep_api::units::unit;
-use drillsweep_sim::ensemble::spread;
-use drillsweep_sim::errors::OtherMember;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{OrbitOutputs, Outputs};
 use drillsweep_sim::signal::{Window, full_spectrum, sample_range};
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::summary::{StaticsSummary, TransientSummary};
+use drillsweep_sim::study::ensemble::spread;
+use drillsweep_sim::study::errors::OtherMember;
+use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{NodeHistory, Records};
 use drillsweep_store::{ColumnData, Table};
 use serde_json::{Map, Value, json};

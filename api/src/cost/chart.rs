@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use drillsweep_sim::scenario::{AccuracyPreset, Integrator};
-use drillsweep_sim::study::{CostReport, CostRow, Quantity};
+use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

@@ -10,7 +10,7 @@ pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary
 pub use table::{csv, table};
 pub use text::text;
 
-pub use drillsweep_sim::study::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
+pub use drillsweep_sim::study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
 
 /// A step in the unit that reads best, to three digits: `1 ms`, `0.25 ms`, `58.8 µs`.
 fn step_text(step: f64) -> String {
@@ -36,7 +36,7 @@ fn three_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use drillsweep_sim::scenario::{Integrator, TimeWindow};
-    use drillsweep_sim::study::{
+    use drillsweep_sim::study::cost::{
         Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NodeAgreement,
         NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, TotalChoice, TotalCost,
     };

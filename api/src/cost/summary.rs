@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
-use drillsweep_sim::study::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
+use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
 use serde::Serialize;
 
 use super::text::{Cells, aligned, four_digits, percent, signed_percent};
@@ -288,7 +288,7 @@ pub fn summary_text(rows: &[SummaryRow]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::study::NodeStatistic;
+    use drillsweep_sim::study::cost::NodeStatistic;
 
     use super::*;
     use crate::cost::tests::{report, row};

@@ -1,6 +1,6 @@
 //! A cost study as a table.
 
-use drillsweep_sim::study::{
+use drillsweep_sim::study::cost::{
     CostErrors, CostReport, CostRow, LineErrors, MeshPart, Quantity, StatisticError, TotalChoice,
 };
 

@@ -4,10 +4,12 @@
 //! are lateral, w points downhole; u' = theta_y - gamma_x and v' = -theta_x + gamma_y. Every integral is
 //! exact: the integrands are polynomials of degree 6 at most and the quadrature is exact to degree 7.
 
+mod chord;
 mod element;
 mod section;
 mod shape;
 
+pub use chord::Chord;
 pub use element::BeamElement;
 pub use section::BeamSection;
 pub use shape::Shape;

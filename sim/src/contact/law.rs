@@ -154,6 +154,35 @@ impl<L: Lane> ContactParameters<L> {
     }
 }
 
+impl ContactParameters<f64> {
+    /// The same law in every lane.
+    pub fn in_lanes<L: Lane>(&self) -> ContactParameters<L> {
+        let splat = L::splat;
+        ContactParameters {
+            stiffness: self.stiffness.in_lanes(),
+            damping: self.damping.in_lanes(),
+            least_normal_force: splat(self.least_normal_force),
+            static_friction: splat(self.static_friction),
+            half_slope: splat(self.half_slope),
+            xi: splat(self.xi),
+            decay: splat(self.decay),
+            has_friction: self.has_friction,
+            tangential_share: splat(self.tangential_share),
+            torque_share: splat(self.torque_share),
+        }
+    }
+}
+
+impl Saturating<f64> {
+    fn in_lanes<L: Lane>(&self) -> Saturating<L> {
+        Saturating {
+            half_limit: L::splat(self.half_limit),
+            limit_over_pi: L::splat(self.limit_over_pi),
+            sharpness: L::splat(self.sharpness),
+        }
+    }
+}
+
 impl<L: Lane> Saturating<L> {
     fn new(limit: f64, sharpness: f64) -> Self {
         Saturating {

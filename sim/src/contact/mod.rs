@@ -9,6 +9,7 @@ mod law;
 mod motion;
 mod rest;
 mod sliding;
+mod wall;
 
 #[cfg(test)]
 mod tests;
@@ -17,6 +18,7 @@ pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Yielding, dynamic_contact, implicit_contact};
 pub use rest::{StaticContactForce, static_contact};
 pub use sliding::{SlidingTangent, sliding_tangent};
+pub use wall::Wall;
 
 /// What contact needs to know of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,23 +1,19 @@
 //! The model: the string's elements and nodes in the well, and the matrices of the effects in play.
 //!
 //! A model is built from a scenario and does not change afterwards. What depends on the equilibrium (tension,
-//! torque, friction factors) comes in when the [`DynamicSystem`] is assembled from it.
+//! torque, friction factors) comes in when the [equations of motion](crate::motion) are assembled from it.
 
-mod chord;
-mod dynamic;
 mod element;
 
-pub use chord::Chord;
-pub(crate) use dynamic::clear_held;
-pub use dynamic::{DynamicSystem, UnbalanceForce};
-pub use element::{ElementInput, FlowMomentum, GRAVITY, StringElement};
+pub use element::{ElementInput, GRAVITY, StringElement};
 
 use std::f64::consts::PI;
 
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
+use crate::contact::Wall;
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::scenario::{ActiveEffects, Scenario, TopCondition};
-use crate::string::{MeshError, StringMesh};
+use crate::string::{MeshError, MeshNode, StringMesh};
 use crate::well::{NodeFrame, WellError, WellPath};
 
 /// Nodal values from the top: (u, v, w, theta_x, theta_y, theta_z) of every node, or those of them that a run solves for.
@@ -32,6 +28,8 @@ pub struct Model {
     pub effects: ActiveEffects,
     /// Nodes and elements of the string.
     pub mesh: StringMesh,
+    /// The contact law, and the nodes that can touch: all but the held one at the top.
+    pub wall: Wall,
     /// Frame of every node.
     pub frames: Vec<NodeFrame>,
     /// Elements from the top.
@@ -61,6 +59,7 @@ impl Model {
         let effects = scenario.active_effects();
         let mesh = StringMesh::new(scenario)?;
         let frames = path.frames(&mesh.depths());
+        let wall = Self::wall(scenario, &effects, &mesh);
         let last = mesh.elements.len().saturating_sub(1);
         let elements = mesh
             .elements
@@ -85,11 +84,17 @@ impl Model {
         Ok(Self {
             scenario: scenario.clone(),
             effects,
+            wall,
             mesh,
             frames,
             elements,
             rotation_speed: scenario.operation.rotation_speed_rpm * PI / 30.0,
         })
+    }
+
+    fn wall(scenario: &Scenario, effects: &ActiveEffects, mesh: &StringMesh) -> Wall {
+        let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| data.site());
+        Wall::new(&scenario.contact, effects, mesh.nodes.iter().enumerate().map(site))
     }
 
     /// Number of nodes.
@@ -104,6 +109,23 @@ impl Model {
             (0, TopCondition::Pinned) => [true, true, true, false, false, true],
             _ => [false; 6],
         }
+    }
+
+    /// Constant nodal loads, with the mud's drag \[N/m\] on every element (empty where there is none).
+    pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
+        let mut load = vec![[0.0; 6]; self.node_count()];
+        for (e, element) in self.elements.iter().enumerate() {
+            let mut f = element.load;
+            if let Some(&drag) = drag.get(e) {
+                f += element.unit_drag * drag;
+            }
+            add_element_vector(&mut load, e, &f);
+        }
+        if let Some(bit) = load.last_mut() {
+            bit[2] += self.scenario.operation.weight_on_bit;
+            bit[5] += self.scenario.operation.torque_on_bit;
+        }
+        load
     }
 
     /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of
@@ -132,5 +154,24 @@ pub fn add_element_matrix(target: &mut BlockTridiagonal<f64>, element: usize, m:
     for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let block = Block::from_fn(|i, j| m[(6 * row + i, 6 * column + j)]);
         target.add_block(element + row, element + column, &block);
+    }
+}
+
+/// Empties the rows and columns of held degrees of freedom.
+pub(crate) fn clear_held(matrix: &mut BlockTridiagonal<f64>, held: &[[bool; 6]]) {
+    let n = held.len();
+    for row in 0..n {
+        let neighbours = [row.checked_sub(1), Some(row), Some(row + 1).filter(|&next| next < n)];
+        let blocks = [&mut matrix.lower[row], &mut matrix.diagonal[row], &mut matrix.upper[row]];
+        for (block, neighbour) in blocks.into_iter().zip(neighbours) {
+            let Some(column_node) = neighbour else { continue };
+            for (j, column) in block.columns.iter_mut().enumerate() {
+                for (i, value) in column.iter_mut().enumerate() {
+                    if held[row][i] || held[column_node][j] {
+                        *value = 0.0;
+                    }
+                }
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::contact::{ContactParameters, sliding_tangent};
+use crate::contact::sliding_tangent;
 use crate::linalg::{BlockTridiagonal, DOFS};
 use crate::model::{Model, NodalVector, clear_held};
 use crate::statics::Equilibrium;
@@ -73,14 +73,11 @@ pub(super) fn add_contact(
     stiffness: &mut BlockTridiagonal<f64>,
     damping: &mut BlockTridiagonal<f64>,
 ) {
-    if !model.effects.contact {
-        return;
-    }
-    let law = ContactParameters::new(&model.scenario.contact, &model.effects);
-    for (node, data) in model.mesh.nodes.iter().enumerate().skip(1) {
-        let site = data.site();
+    for (node, site) in model.wall.touchable() {
         let [u, v, ..] = equilibrium.displacement[node];
-        let Some(tangent) = sliding_tangent(&law, &site, u, v, model.rotation_speed) else { continue };
+        let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, model.rotation_speed) else {
+            continue;
+        };
         for (i, row) in [0, 1, 5].into_iter().enumerate() {
             for (j, column) in [0, 1, 5].into_iter().enumerate() {
                 stiffness.diagonal[node][(row, column)] += tangent.stiffness[i][j];

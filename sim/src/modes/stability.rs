@@ -10,7 +10,7 @@ use super::arnoldi::Eigenpair;
 use super::pencil::{Pencil, add_contact, times};
 use super::{Mode, ModeKind, ModeSearch, ModesError, eigenpairs};
 use crate::linalg::BlockTridiagonal;
-use crate::model::{FlowMomentum, Model, add_element_matrix, clear_held};
+use crate::model::{Model, add_element_matrix, clear_held};
 use crate::statics::Equilibrium;
 
 /// Band in which the verdict looks for growth \[Hz\]: the frequencies of drilling vibrations.
@@ -148,8 +148,7 @@ fn kind(
         if let Some(matrix) = &element.flow {
             add_element_matrix(&mut flow, e, matrix);
         }
-        if let Some(mud) = model.scenario.mud.as_ref().filter(|_| model.effects.fluid_coriolis) {
-            let momentum = FlowMomentum::new(mud, element.beam.section(), model.scenario.well.hole_diameter);
+        if let Some(momentum) = element.momentum.as_ref().filter(|_| model.effects.fluid_coriolis) {
             let matrix = element.chord.matrix_to_nodes(&element.beam.coriolis()) * momentum.coriolis;
             add_element_matrix(&mut coriolis, e, &matrix);
         }

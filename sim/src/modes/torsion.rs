@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactParameters, sliding_tangent};
+use crate::contact::sliding_tangent;
 use crate::model::Model;
 use crate::statics::Equilibrium;
 
@@ -164,12 +164,11 @@ impl Chain {
                 chain.stiffness_to_next[above] = -stiffness;
             }
         }
-        let law = ContactParameters::new(&model.scenario.contact, effects);
-        for (i, data) in model.mesh.nodes.iter().enumerate().skip(1) {
-            let site = data.site();
-            let [u, v, ..] = equilibrium.displacement[i];
-            if let Some(tangent) = sliding_tangent(&law, &site, u, v, model.rotation_speed) {
-                chain.rubbing[i - 1] = tangent.damping[2][2];
+        for (node, site) in model.wall.touchable() {
+            let [u, v, ..] = equilibrium.displacement[node];
+            if let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, model.rotation_speed) {
+                // The chain leaves out the held node at the top.
+                chain.rubbing[node - 1] = tangent.damping[2][2];
             }
         }
         Some(chain)

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use super::element::FlowGeometry;
+
 /// Viscous damping of a pipe that whirls at the speed of rotation in a concentric hole, equation (29):
 /// k = 2 sqrt(2) / sqrt(S) (1 + kappa^3) / (1 - kappa^2)^2 rho A_o Omega \[N s/m2\], S = Omega D_o^2 / (4 nu_f).
 ///
@@ -22,7 +24,7 @@ pub(super) fn rotation_damping(
 }
 
 /// Added-mass coefficient of the confined annulus, chi = (D_ch^2 + D_o^2) / (D_ch^2 - D_o^2), equation (28).
-pub(super) fn added_mass_coefficient(diameter_ratio: f64) -> f64 {
-    let square = diameter_ratio.powi(2);
-    (1.0 + square) / (1.0 - square)
+pub(super) fn added_mass_coefficient(geometry: &FlowGeometry) -> f64 {
+    let (hole2, outer2) = (geometry.hole_diameter.powi(2), geometry.outer_diameter.powi(2));
+    (hole2 + outer2) / (hole2 - outer2)
 }

@@ -1,6 +1,6 @@
 //! The flow past one element.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use super::damping::{added_mass_coefficient, rotation_damping};
 use super::eccentricity;
@@ -12,6 +12,7 @@ use super::regime::{Regime, annulus_limits, correlation_index, pipe_limits};
 use super::rheology::Rheology;
 use super::rotation::rotation_factor;
 use super::slot::slot_flow;
+use crate::beam::BeamSection;
 use crate::scenario::Mud;
 
 /// Everything the flow at one cross-section tells, SI units.
@@ -68,6 +69,28 @@ pub struct FlowGeometry {
     pub outer_diameter: f64,
     /// Inner diameter of the pipe D_i \[m\].
     pub inner_diameter: f64,
+}
+
+impl FlowGeometry {
+    /// That of a string's section in a hole \[m\].
+    pub fn past(section: &BeamSection, hole_diameter: f64) -> Self {
+        Self { hole_diameter, outer_diameter: section.outer_diameter, inner_diameter: section.inner_diameter }
+    }
+
+    /// Area of the bore A_i \[m2\].
+    pub fn bore_area(&self) -> f64 {
+        FRAC_PI_4 * self.inner_diameter.powi(2)
+    }
+
+    /// Area that the pipe's body displaces A_o \[m2\].
+    pub fn displaced_area(&self) -> f64 {
+        FRAC_PI_4 * self.outer_diameter.powi(2)
+    }
+
+    /// Area of the annulus \[m2\].
+    pub fn annulus_area(&self) -> f64 {
+        FRAC_PI_4 * (self.hole_diameter.powi(2) - self.outer_diameter.powi(2))
+    }
 }
 
 /// The flow past one element: [`SectionFlow::new`], then [`SectionFlow::at_eccentricity`].
@@ -194,7 +217,7 @@ impl SectionFlow {
             apparent_viscosity: 0.0,
             rotation_damping: 0.0,
             friction_damping: 0.0,
-            added_mass_coefficient: added_mass_coefficient(diameter_ratio),
+            added_mass_coefficient: added_mass_coefficient(&self.geometry),
             bore_reynolds_number: 0.0,
             bore_regime: Regime::Still,
             bore_friction_gradient: 0.0,

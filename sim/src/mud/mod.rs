@@ -14,6 +14,7 @@ mod element;
 mod error;
 mod friction_factor;
 mod laminar;
+mod momentum;
 mod pipe;
 mod pressure;
 mod regime;
@@ -23,5 +24,6 @@ mod slot;
 
 pub use element::{ElementFlow, FlowGeometry, SectionFlow, element_flow};
 pub use error::MudError;
+pub use momentum::FlowMomentum;
 pub use pressure::{PressureStep, Pressures, pressures};
 pub use regime::Regime;

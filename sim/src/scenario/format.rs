@@ -5,6 +5,11 @@ use serde::de::DeserializeOwned;
 use super::{Problem, Scenario};
 
 impl Scenario {
+    /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
+    pub(crate) fn tree(&self) -> toml::Value {
+        toml::Value::try_from(self).expect("a scenario has only string keys and no value that TOML lacks")
+    }
+
     /// Reads a scenario from TOML.
     ///
     /// # Errors

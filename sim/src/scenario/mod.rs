@@ -1,11 +1,9 @@
 //! A scenario: everything that decides the numbers of one run.
 //!
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
-//! refused. The types say what can be written down; `Scenario::validate` says what can be simulated.
+//! refused. The types say what can be written down; [`Scenario::validate`](crate::admission) says what can be simulated.
 
 mod accuracy;
-mod canonical;
-mod decide;
 mod effects;
 mod format;
 mod mesh;
@@ -16,10 +14,9 @@ mod problem;
 mod request;
 mod set;
 mod study;
-mod validate;
 
+pub(crate) use accuracy::TOLERANCES;
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TimeStepping};
-pub use decide::EffectDecision;
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh};
 pub use outputs::{OrbitOutputs, Outputs};
@@ -335,7 +332,7 @@ impl ContactLaw {
     }
 
     /// The law with what a length has by default written out.
-    fn written_out(self) -> Self {
+    pub(crate) fn written_out(self) -> Self {
         let by_length = self.law == WallLaw::PerLength;
         Self {
             stiffness_per_length: by_length.then(|| self.stiffness_of_a_metre()),

@@ -19,7 +19,7 @@ impl Scenario {
     }
 
     /// Calls `visit` with every floating-point number.
-    pub(super) fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+    pub(crate) fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         self.each(visit);
     }
 }

@@ -9,11 +9,12 @@ mod overload;
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 
-use crate::contact::{ContactParameters, StaticContactForce, static_contact};
+use crate::contact::{StaticContactForce, Wall, static_contact};
+use crate::effect::mud_drag;
 use crate::linalg::SingularBlock;
 use crate::model::{GRAVITY, Model, NodalVector, element_values};
 use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
-use crate::scenario::Mud;
+use crate::scenario::{ContactLaw, Mud};
 
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;
@@ -198,10 +199,10 @@ impl Equilibrium {
         };
         let tension = rows(|element| &element.tension_row);
         let torque = rows(|element| &element.torque_row);
-        let law = contact_law(model);
         let normal_force = (0..model.node_count())
             .map(|node| {
-                contact_at(model, &law, node, &displacement[node]).map_or(0.0, |contact| contact.normal)
+                contact_at(&model.wall, node, &displacement[node], model.rotation_speed)
+                    .map_or(0.0, |contact| contact.normal)
             })
             .collect();
         let pressures = model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose();
@@ -220,7 +221,7 @@ fn patiently(
     settings: &NewtonSettings,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
     let start = displacement.clone();
-    let failure = match newton::solve(model, load, displacement, settings) {
+    let failure = match newton::solve(model, &model.wall, load, displacement, settings) {
         Err(failure) => failure,
         arrived => return arrived,
     };
@@ -237,7 +238,7 @@ fn patiently(
             iteration_limit: PATIENT_ITERATIONS,
             ..defaults
         };
-        if let Ok(outcome) = newton::solve(model, load, displacement, &slow) {
+        if let Ok(outcome) = newton::solve(model, &model.wall, load, displacement, &slow) {
             return Ok(outcome);
         }
     }
@@ -255,32 +256,25 @@ fn against_a_hardening_wall(
     load: &[[f64; 6]],
     displacement: &mut NodalVector,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
-    let mut soft = model.clone();
+    let own = &model.scenario.contact;
     for share in SOFT_WALLS {
-        soft.scenario.contact.stiffness = share * model.scenario.contact.stiffness;
-        newton::solve(&soft, load, displacement, &NewtonSettings::default())?;
+        let law = ContactLaw { stiffness: share * own.stiffness, ..own.clone() };
+        let soft = model.wall.with_law(&law, &model.effects);
+        newton::solve(model, &soft, load, displacement, &NewtonSettings::default())?;
     }
-    newton::solve(model, load, displacement, &NewtonSettings::default())
+    newton::solve(model, &model.wall, load, displacement, &NewtonSettings::default())
 }
 
-/// The quasi-static contact force of a node; the top node never touches.
+/// The quasi-static contact force of a node, where it touches.
 fn contact_at(
-    model: &Model,
-    law: &ContactParameters<f64>,
+    wall: &Wall,
     node: usize,
     displacement: &[f64; 6],
+    rotation_speed: f64,
 ) -> Option<StaticContactForce> {
-    if node == 0 || !model.effects.contact {
-        return None;
-    }
-    let data = &model.mesh.nodes[node];
-    let site = data.site();
-    let contact = static_contact(law, &site, displacement[0], displacement[1], model.rotation_speed);
+    let site = wall.sites()[node].as_ref()?;
+    let contact = static_contact(wall.law(), site, displacement[0], displacement[1], rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
-}
-
-fn contact_law(model: &Model) -> ContactParameters<f64> {
-    ContactParameters::new(&model.scenario.contact, &model.effects)
 }
 
 /// The flow past every cross-section of the string, solved once for each pair of diameters.
@@ -335,8 +329,5 @@ fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pre
 }
 
 fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {
-    if !model.effects.mud_drag {
-        return Vec::new();
-    }
-    flows.iter().map(|flow| flow.effective_drag_per_length).collect()
+    if model.effects.mud_drag { mud_drag::per_length(flows) } else { Vec::new() }
 }

@@ -1,7 +1,8 @@
 //! Newton's method with a pseudo-transient shift for the nonlinear equilibrium.
 
-use super::{StaticsError, contact_at, contact_law};
+use super::{StaticsError, contact_at};
 use crate::beam::{ElementMatrix, ElementVector};
+use crate::contact::Wall;
 use crate::linalg::{Block, BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
 
@@ -39,16 +40,17 @@ pub(super) struct NewtonOutcome {
     pub(super) residual: f64,
 }
 
-/// Moves `displacement` to the equilibrium under `load`.
+/// Moves `displacement` to the equilibrium under `load`, on `wall`.
 pub(super) fn solve(
     model: &Model,
+    wall: &Wall,
     load: &[[f64; 6]],
     displacement: &mut NodalVector,
     settings: &NewtonSettings,
 ) -> Result<NewtonOutcome, StaticsError> {
     let tributary = tributary_lengths(model);
     let mut shift = settings.initial_shift;
-    let (mut residual, mut tangent) = linearise(model, load, displacement);
+    let (mut residual, mut tangent) = linearise(model, wall, load, displacement);
     let mut size = largest(&residual);
     let scale_of_load = largest(load);
     for iteration in 1..=settings.iteration_limit {
@@ -67,7 +69,7 @@ pub(super) fn solve(
                 longest = longest.max(step.abs());
             }
         }
-        (residual, tangent) = linearise(model, load, displacement);
+        (residual, tangent) = linearise(model, wall, load, displacement);
         let new_size = largest(&residual);
         if !new_size.is_finite() {
             break;
@@ -100,6 +102,7 @@ pub(super) fn solve(
 /// Unbalanced forces and the exact tangent stiffness, held degrees of freedom made trivial.
 fn linearise(
     model: &Model,
+    wall: &Wall,
     load: &[[f64; 6]],
     displacement: &[[f64; 6]],
 ) -> (NodalVector, BlockTridiagonal<f64>) {
@@ -124,9 +127,10 @@ fn linearise(
         }
         add_element_matrix(&mut tangent, e, &stiffness);
     }
-    let law = contact_law(model);
     for node in 0..n {
-        let Some(contact) = contact_at(model, &law, node, &displacement[node]) else { continue };
+        let Some(contact) = contact_at(wall, node, &displacement[node], model.rotation_speed) else {
+            continue;
+        };
         let forces = [contact.force_u, contact.force_v, contact.torque_z];
         for (row, (force, gradient)) in [0, 1, 5].into_iter().zip(forces.into_iter().zip(&contact.tangent)) {
             residual[node][row] += force;

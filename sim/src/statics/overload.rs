@@ -56,14 +56,7 @@ pub(super) fn find(model: &Model) -> Option<Overload> {
         tension += 0.5 * element.axial_weight;
         let bending = element.beam.section().bending_stiffness();
         let momentum =
-            model.scenario.mud.as_ref().filter(|_| model.effects.flow_stiffness).map_or(0.0, |mud| {
-                let flow = crate::model::FlowMomentum::new(
-                    mud,
-                    element.beam.section(),
-                    model.scenario.well.hole_diameter,
-                );
-                flow.bore_flux + flow.added_mass_coefficient * flow.annulus_flux
-            });
+            element.momentum.filter(|_| model.effects.flow_stiffness).map_or(0.0, |flow| flow.lateral_flux());
         let middle = tension;
         tension += 0.5 * element.axial_weight;
         let thrust = if model.effects.axial_stiffening { -middle } else { 0.0 };

@@ -3,9 +3,9 @@
 //! A run can be finite, its ledger closed, and wrong. If statistics move by more than the accuracy promises when the step is refined, the run
 //! is not to be trusted: its steps are too long for the scene, or the scene is so sensitive that a window of this length tells nothing.
 //! Which of the two it is, a third run tells, with the steps of the first, that starts a micrometre beside it. Runs of one method share
-//! what is wrong with that, so agreement is no proof; what two methods of different kind reach is the [study's](super) question.
+//! what is wrong with that, so agreement is no proof; what two methods of different kind reach is the [cost study's](super::cost) question.
 
-use super::{Measure, Quantity};
+use super::cost::{Measure, Quantity};
 use crate::control::Control;
 use crate::model::Model;
 use crate::scenario::{

@@ -1,304 +1,489 @@
-//! The runs of a study.
+//! What a scenario will take, without running it (design.md section 3): the effects in play and why, the size of the
+//! problem, steps and processor time at each accuracy.
 
-use std::ops::Range;
+use serde::{Deserialize, Serialize};
 
-use super::StudyError;
-use crate::model::Model;
-use crate::plan::{MachineSpeed, Plan};
+use super::cost;
+use crate::effect::EffectDecision;
+use crate::model::{Model, ModelError};
+use crate::modes::UndampedTorsion;
 use crate::scenario::{
-    Accuracy, AccuracyPreset, CostStudy, Effect, EffectDecision, Integrator, MethodSteps, NodeChoice,
-    Outputs, Recording, Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
+    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping,
 };
 use crate::statics::Equilibrium;
-use crate::transient::{recorded_nodes, rk4_stability_limit};
+use crate::study::mesh_estimate::MeshEstimate;
+use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
 
-/// Step of the reference's RK4 \[s\], where that is stable; speeds are told against it.
-pub const RK4_STEP: f64 = 5e-5;
+/// The plan of a scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Plan {
+    /// Every effect, whether it takes part and why.
+    pub effects: Vec<EffectDecision>,
+    /// Elements of the string.
+    pub elements: usize,
+    /// Length of the shortest element \[m\].
+    pub shortest_element: f64,
+    /// Length of the longest element \[m\].
+    pub longest_element: f64,
+    /// Nodes of the string.
+    pub nodes: usize,
+    /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
+    pub degrees_of_freedom: usize,
+    /// Simulated time of all runs of the point together \[s\], without a cost study; 0 where there is no run in time.
+    pub simulated_time: f64,
+    /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
+    /// is not known.
+    pub statics_cpu_time: Option<f64>,
+    /// The scenario's own accuracy first, then the named ones, without a cost study; none where there is no run in time.
+    pub accuracies: Vec<PlannedAccuracy>,
+    /// What is run in place of that where the scenario has a `cost_study`; absent also where the study has no runs because the scenario
+    /// has no equilibrium.
+    pub study: Option<PlannedStudy>,
+    #[serde(skip)]
+    is_study: bool,
+    /// The torsional modes that falling friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
+    /// there is no run in time, twist takes no part or friction does not turn the string.
+    pub undamped_torsion: Option<UndampedTorsion>,
+    /// The mesh's part of the error of the equilibrium; absent where [`Plan::with_equilibrium`] was not asked or there is none.
+    pub mesh_error: Option<MeshEstimate>,
+    /// What the equilibrium shows that can be simulated but is probably not meant, in words.
+    pub warnings: Vec<String>,
+}
 
-/// Part of RK4's stability limit, found about the equilibrium, that a step may have.
-const BELOW_LIMIT: f64 = 0.95;
-
-/// Step \[s\] and most contact sweeps of the reference's ESDIRK4.
-const ESDIRK4_STEP: f64 = 1.25e-4;
-const ESDIRK4_SWEEPS: u32 = 30;
-
-/// One line of a study: one stepping of one scenario, run by one or more members.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedRow {
-    /// What it is for.
-    pub role: Role,
-    /// What the line is called; see [`CostRow::name`](super::CostRow::name).
+/// What one accuracy takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct PlannedAccuracy {
+    /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
     pub name: String,
-    /// The scenario to simulate, with duration, windows and accuracy of the study.
+    /// Method.
+    pub integrator: Integrator,
+    /// Step \[s\]; the longest one where the step adapts itself.
+    pub step: f64,
+    /// Steps of all runs of the point together; an estimate where the step adapts itself, and absent for `rk4` with a tolerance.
+    pub steps: Option<u64>,
+    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included; absent where the
+    /// machine's speed is not known or steps are.
+    pub cpu_time: Option<f64>,
+}
+
+/// What a cost study takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct PlannedStudy {
+    /// Runs of all methods, steps and meshes, by all members.
+    pub runs: u64,
+    /// Their simulated time together \[s\].
+    pub simulated_time: f64,
+    /// Processor time that they are expected to take on one core \[s\], without those that `lines_not_known` counts; absent where the
+    /// machine's speed is not known.
+    pub cpu_time: Option<f64>,
+    /// Lines of the study whose time is not known beforehand: `rk4` with a tolerance.
+    pub lines_not_known: u64,
+}
+
+/// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct MachineSpeed {
+    /// An equilibrium with its hydraulics, for each node \[s\].
+    pub statics_per_node: f64,
+    /// What a run does before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
+    pub start_per_node: [f64; 4],
+    /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they stand still, and RK4: for each
+    /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
+    pub step_per_node: [[f64; 3]; 4],
+    /// By what a node's step is dearer on a mesh of five times as many nodes, which no longer fits the inner caches.
+    pub large_mesh_factor: f64,
+}
+
+/// Nodes of the large mesh that is timed, over those of the 200 m case.
+const LARGE_MESH: f64 = 5.0;
+
+/// Nodes of the 200 m case.
+const BASE_NODES: f64 = 297.0;
+
+/// Contact sweeps that are enough for convergence.
+const CONVERGED_SWEEPS: u32 = 20;
+
+/// Methods whose steps differ in cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum MethodKind {
+    GeneralizedAlpha,
+    /// Two contact sweeps a stage.
+    Esdirk4,
+    /// Contact sweeps until they stand still.
+    Esdirk4Converged,
+    Rk4,
+}
+
+/// A short run whose steps are timed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationRun {
+    /// What to simulate.
     pub scenario: Scenario,
-    /// Members of the ensemble that run it.
-    pub members: Range<u32>,
+    method: usize,
+    degrees_of_freedom: usize,
+    is_large: bool,
 }
 
-/// What a line of a study is for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Role {
-    /// One of the two methods that make the reference; in an ablation the whole scenario.
-    Reference,
-    /// The whole scenario of an ablation, disturbed: where it parts from itself, no history can be trusted.
-    Twin,
-    /// A method and step.
-    Method,
-    /// A mesh, its target element lengths multiplied by `factor`.
-    Mesh {
-        /// Factor on all target element lengths.
-        factor: f64,
-    },
-    /// The scenario without one of its effects.
-    Without {
-        /// The effect.
-        effect: Effect,
-    },
-}
-
-/// The lines of a study, its reference first.
-///
-/// # Errors
-/// When the scenario has no equilibrium.
-pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
-    let study = scenario.cost_study.clone().unwrap_or_default();
-    let model = Model::new(scenario)?;
-    let duration = study.duration.unwrap_or(scenario.duration);
-    let base = Scenario {
-        recording: recording(scenario, duration, &model),
-        duration,
-        cost_study: None,
-        ensemble: 1,
-        ..scenario.clone()
-    };
-    if study.effects {
-        return Ok(ablation(scenario, &study, base));
+impl Plan {
+    /// The plan of a valid scenario; with processor times where the machine's `speed` is known.
+    ///
+    /// # Errors
+    /// When the scenario has no model.
+    pub fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
+        let model = Model::new(scenario)?;
+        let nodes = model.node_count();
+        let lengths = || model.mesh.elements.iter().map(|element| element.length);
+        let in_time = model.effects.transient;
+        let simulated_time = if in_time { scenario.duration * f64::from(scenario.ensemble) } else { 0.0 };
+        let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
+        let degrees_of_freedom = degrees_of_freedom(&model);
+        let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
+        let planned = |(name, stepping): (&str, TimeStepping)| {
+            let runs = u64::from(scenario.ensemble);
+            let steps = step_count(&model, stepping).map(|steps| steps * runs);
+            let cost = |steps: u64| {
+                let (speed, method) = (speed?, MethodKind::of(stepping));
+                let start = speed.start_per_node[method as usize] * nodes as f64 * runs as f64;
+                let step = speed.step(method, degrees_of_freedom, nodes);
+                Some(statics_cpu_time? + start + step * steps as f64)
+            };
+            PlannedAccuracy {
+                name: name.to_owned(),
+                integrator: stepping.integrator,
+                step: longest_step(&model, stepping),
+                steps,
+                cpu_time: steps.and_then(cost),
+            }
+        };
+        let study = scenario.cost_study.as_ref().and_then(|_| PlannedStudy::new(scenario, speed));
+        Ok(Self {
+            effects: scenario.decide_effects(),
+            elements: model.elements.len(),
+            shortest_element: lengths().fold(f64::INFINITY, f64::min),
+            longest_element: lengths().fold(0.0, f64::max),
+            nodes,
+            degrees_of_freedom: if in_time { degrees_of_freedom } else { 0 },
+            simulated_time,
+            statics_cpu_time,
+            accuracies: accuracies.into_iter().map(planned).collect(),
+            study,
+            is_study: scenario.cost_study.is_some(),
+            undamped_torsion: None,
+            mesh_error: None,
+            warnings: Vec::new(),
+        })
     }
-    let row = |role, name: &str, accuracy| PlannedRow {
-        role,
-        name: name.to_owned(),
-        scenario: Scenario { accuracy, ..base.clone() },
-        members: 0..study.members,
-    };
-    let interval = 1.0 / base.recording.rate_hz;
-    let reference = match &study.reference.methods {
-        Some(methods) => methods.clone(),
-        None => {
-            let limit = rk4_stability_limit(&model, &Equilibrium::find(&model)?)?;
-            usual_reference(interval, limit)
+
+    /// The plan with what the scenario's equilibrium tells beforehand, which takes as long as that. Where there is none, that is for the run
+    /// to say.
+    #[must_use]
+    pub fn with_equilibrium(mut self, scenario: &Scenario) -> Self {
+        let Some(model) = Model::new(scenario).ok().filter(|model| model.effects.transient) else {
+            return self;
+        };
+        let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
+        self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));
+        for (planned, (_, stepping)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
+            let more = planned.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
+            if more > 1.0 {
+                planned.step /= more;
+                planned.steps = planned.steps.map(|steps| (steps as f64 * more).round() as u64);
+                planned.cpu_time = planned.cpu_time.map(|time| time * more);
+            }
         }
-    };
-    let mut rows: Vec<_> = reference
-        .into_iter()
-        .zip(["A", "B"])
-        .map(|(stepping, name)| row(Role::Reference, name, Accuracy::Explicit(stepping)))
-        .collect();
-    rows.extend(
-        study.presets.iter().map(|&preset| row(Role::Method, preset.name(), Accuracy::Preset(preset))),
-    );
-    let methods = study.methods.clone().unwrap_or_else(|| usual_methods(interval));
-    let steppings = methods.iter().flat_map(MethodSteps::steppings);
-    rows.extend(
-        steppings.map(|stepping| row(Role::Method, stepping.integrator.name(), Accuracy::Explicit(stepping))),
-    );
-    rows.extend(study.meshes().into_iter().map(|factor| {
-        let preset = AccuracyPreset::Reference;
-        let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
-        planned.scenario.mesh = planned.scenario.mesh.scaled(factor);
-        planned
-    }));
-    Ok(rows)
-}
-
-/// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
-/// their steps adapt themselves.
-pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
-    let cost = |row: &PlannedRow| {
-        let members = f64::from(row.members.end - row.members.start);
-        Some(members * Plan::new(&row.scenario, Some(speed)).ok()?.cpu_time()?)
-    };
-    rows.iter().map(cost).fold((0.0, 0), |(time, unknown), cost| match cost {
-        Some(cost) => (time + cost, unknown),
-        None => (time, unknown + 1),
-    })
-}
-
-/// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
-fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<PlannedRow> {
-    let decisions = scenario.decide_effects();
-    for decision in &decisions {
-        base.effects.set(decision.effect, if decision.active { Switch::On } else { Switch::Off });
+        if let (Some(torsion), Some(own)) = (self.undamped_torsion, self.accuracies.first()) {
+            self.warnings.extend(torsion.warning(resolved_hz(own.integrator, own.step)));
+        }
+        self
     }
-    let name = match base.accuracy {
-        Accuracy::Preset(preset) => preset.name(),
+
+    /// Processor time that the point is expected to take \[s\], at its own accuracy or with its cost study; absent where it is not known.
+    pub fn cpu_time(&self) -> Option<f64> {
+        if self.is_study {
+            return self.study.as_ref().filter(|study| study.lines_not_known == 0)?.cpu_time;
+        }
+        self.accuracies.first().map_or(self.statics_cpu_time, |own| own.cpu_time)
+    }
+}
+
+impl PlannedStudy {
+    /// Of a scenario with a cost study; none where it cannot be planned, which is for the run to say.
+    fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Option<Self> {
+        let rows = cost::plan(scenario).ok()?;
+        let members = |row: &cost::PlannedRow| u64::from(row.members.end - row.members.start);
+        let expected = speed.map(|speed| cost::expected_cpu_time(&rows, speed));
+        let is_known = |row: &&cost::PlannedRow| {
+            let stepping = row.scenario.accuracy.time_stepping();
+            stepping.integrator != Integrator::Rk4 || stepping.tolerance.is_none()
+        };
+        Some(Self {
+            runs: rows.iter().map(members).sum(),
+            simulated_time: rows.iter().map(|row| members(row) as f64 * row.scenario.duration).sum(),
+            cpu_time: expected.map(|(time, _)| time),
+            lines_not_known: (rows.len() - rows.iter().filter(is_known).count()) as u64,
+        })
+    }
+}
+
+fn degrees_of_freedom(model: &Model) -> usize {
+    4 + usize::from(model.effects.torsion) + usize::from(model.effects.axial_motion)
+}
+
+/// The scenario's own accuracy, then the named ones that it is not.
+fn accuracies(scenario: &Scenario) -> Vec<(&'static str, TimeStepping)> {
+    let named = [
+        ("draft", AccuracyPreset::Draft),
+        ("standard", AccuracyPreset::Standard),
+        ("reference", AccuracyPreset::Reference),
+    ];
+    let own = match scenario.accuracy {
+        Accuracy::Preset(own) => {
+            named.iter().find(|(_, preset)| *preset == own).map_or("explicit", |(name, _)| name)
+        }
         Accuracy::Target(_) => "tolerance",
-        Accuracy::Explicit(stepping) => stepping.integrator.name(),
+        Accuracy::Explicit(_) => "explicit",
     };
-    let row = |role, members| PlannedRow { role, name: name.to_owned(), scenario: base.clone(), members };
-    let mut rows = vec![row(Role::Reference, 0..study.members)];
-    if study.members == 1 {
-        rows.push(row(Role::Twin, 1..2));
-    }
-    let in_play = decisions.iter().filter(|decision| decision.active && decision.effect != Effect::Transient);
-    rows.extend(in_play.map(|&EffectDecision { effect, .. }| {
-        let mut planned = row(Role::Without { effect }, 0..study.members);
-        planned.scenario.effects.set(effect, Switch::Off);
-        planned
-    }));
-    rows
+    let others = named.into_iter().filter(|(name, _)| *name != own);
+    let others = others.map(|(name, preset)| (name, Accuracy::Preset(preset).time_stepping()));
+    std::iter::once((own, scenario.accuracy.time_stepping())).chain(others).collect()
 }
 
-/// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers, and
-/// where the duration is another one, orbits over its last third and spectra over its last sixth.
-fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
-    let asked = &scenario.recording;
-    let last = |part: f64| {
-        let from = (duration * (1.0 - part) * asked.rate_hz).round() / asked.rate_hz;
-        TimeWindow { from, to: duration }
-    };
-    let is_own = duration == scenario.duration;
-    let spectrum_window = if is_own { asked.spectrum_windows.last().copied() } else { Some(last(1.0 / 6.0)) };
-    let nodes = recorded_nodes(model).into_iter();
-    Recording {
-        rate_hz: asked.rate_hz,
-        nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
-        spectrum_windows: spectrum_window.into_iter().collect(),
-        orbit_window: Some(if is_own { scenario.orbit_window() } else { last(1.0 / 3.0) }),
-        stability: false,
-        outputs: Outputs::Full,
+impl MethodKind {
+    const ALL: [MethodKind; 4] =
+        [MethodKind::GeneralizedAlpha, MethodKind::Esdirk4, MethodKind::Esdirk4Converged, MethodKind::Rk4];
+
+    fn of(stepping: TimeStepping) -> Self {
+        match stepping.integrator {
+            Integrator::GeneralizedAlpha => MethodKind::GeneralizedAlpha,
+            Integrator::Esdirk4 if stepping.contact_sweeps > 2 => MethodKind::Esdirk4Converged,
+            Integrator::Esdirk4 => MethodKind::Esdirk4,
+            Integrator::Rk4 => MethodKind::Rk4,
+        }
+    }
+
+    /// Stepping and simulated time \[s\] of a run long enough to be timed: some 10 ms.
+    fn sample(self) -> (TimeStepping, f64) {
+        match self {
+            MethodKind::GeneralizedAlpha => (TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4), 0.05),
+            MethodKind::Esdirk4 => (TimeStepping::fixed(Integrator::Esdirk4, 1e-3), 0.03),
+            MethodKind::Esdirk4Converged => {
+                let stepping = TimeStepping::fixed(Integrator::Esdirk4, 2.5e-4);
+                (TimeStepping { contact_sweeps: CONVERGED_SWEEPS, ..stepping }, 0.01)
+            }
+            MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.005),
+        }
     }
 }
 
-/// RK4 with its usual step or below its stability limit \[s\], and ESDIRK4 with a small step and converged sweeps.
-fn usual_reference(interval: f64, limit: f64) -> Vec<TimeStepping> {
-    let rk4 = part_of(interval, RK4_STEP.min(BELOW_LIMIT * limit));
-    let esdirk4 = TimeStepping::fixed(Integrator::Esdirk4, part_of(interval, ESDIRK4_STEP));
-    vec![
-        TimeStepping::fixed(Integrator::Rk4, rk4),
-        TimeStepping { contact_sweeps: ESDIRK4_SWEEPS, ..esdirk4 },
-    ]
-}
-
-/// The usual steps as parts of the recording interval \[s\].
-fn usual_methods(interval: f64) -> Vec<MethodSteps> {
-    let of = |(integrator, steps): (Integrator, [f64; 3])| {
-        let mut steps = steps.map(|step| part_of(interval, step)).to_vec();
-        steps.dedup();
-        MethodSteps::fixed(integrator, steps)
+/// The runs that tell how fast a machine is: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
+/// (the 200 m case), and one on a large mesh of it.
+pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
+    let run = |method: MethodKind, degrees_of_freedom: usize| {
+        let (stepping, duration) = method.sample();
+        let mut scenario = Scenario {
+            duration,
+            accuracy: Accuracy::Explicit(stepping),
+            recording: Recording {
+                nodes: vec![NodeChoice::Node(49)],
+                spectrum_windows: Vec::new(),
+                orbit_window: None,
+                ..base.recording.clone()
+            },
+            ..base.clone()
+        };
+        scenario.effects.torsion = if degrees_of_freedom > 4 { Switch::On } else { Switch::Off };
+        scenario.effects.axial_motion = if degrees_of_freedom > 5 { Switch::On } else { Switch::Off };
+        CalibrationRun { scenario, method: method as usize, degrees_of_freedom, is_large: false }
     };
-    USUAL_STEPS.into_iter().map(of).collect()
+    let mut runs: Vec<_> = MethodKind::ALL
+        .into_iter()
+        .flat_map(|method| (4..=6).map(move |d| (method, d)))
+        .map(|(m, d)| run(m, d))
+        .collect();
+    let mut large = run(MethodKind::GeneralizedAlpha, 6);
+    large.is_large = true;
+    large.scenario.mesh = large.scenario.mesh.scaled(1.0 / LARGE_MESH);
+    runs.push(large);
+    runs
 }
 
-/// The longest part of the interval that is no longer than `step` \[s\].
-fn part_of(interval: f64, step: f64) -> f64 {
-    interval / (interval / step * (1.0 - 1e-9)).ceil().max(1.0)
+/// Processor time of a calibration run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunTime {
+    /// Nodes of its mesh.
+    pub nodes: usize,
+    /// Steps made.
+    pub steps: u64,
+    /// Processor time before the first step \[s\].
+    pub start_cpu_time: f64,
+    /// Processor time of the steps \[s\].
+    pub steps_cpu_time: f64,
+}
+
+impl MachineSpeed {
+    /// The speed from the equilibrium's processor time for each node \[s\] and the calibration runs', in their order.
+    pub fn from_times(
+        statics_per_node: f64,
+        runs: impl IntoIterator<Item = (CalibrationRun, RunTime)>,
+    ) -> Self {
+        let mut speed = Self {
+            statics_per_node,
+            start_per_node: [0.0; 4],
+            step_per_node: [[0.0; 3]; 4],
+            large_mesh_factor: 1.0,
+        };
+        for (run, RunTime { nodes, steps, start_cpu_time, steps_cpu_time }) in runs {
+            let per_node = steps_cpu_time / (steps as f64 * nodes as f64);
+            if run.degrees_of_freedom == 6 && !run.is_large {
+                speed.start_per_node[run.method] = start_cpu_time / nodes as f64;
+            }
+            let usual = &mut speed.step_per_node[run.method][run.degrees_of_freedom - 4];
+            if run.is_large {
+                speed.large_mesh_factor = (per_node / *usual).max(1.0);
+            } else {
+                *usual = per_node;
+            }
+        }
+        speed
+    }
+
+    /// Processor time of one step \[s\]. Between the two meshes that were timed the cost of a node grows with the logarithm
+    /// of their number; beyond them it stays.
+    fn step(&self, method: MethodKind, degrees_of_freedom: usize, nodes: usize) -> f64 {
+        let nodes = nodes as f64;
+        let way = ((nodes / BASE_NODES).ln() / LARGE_MESH.ln()).clamp(0.0, 1.0);
+        let per_node = self.step_per_node[method as usize][degrees_of_freedom - 4];
+        per_node * nodes * (1.0 + way * (self.large_mesh_factor - 1.0))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::preset;
+    use crate::control::Control;
+    use crate::scenario::{CostStudy, MethodSteps, preset};
+    use crate::statics::Equilibrium;
+    use crate::transient::{Outcome, Transient};
 
-    fn planned(change: impl Fn(&mut Scenario)) -> Vec<PlannedRow> {
-        let mut scenario = preset("paper-200m").unwrap();
-        scenario.cost_study = Some(CostStudy::default());
-        change(&mut scenario);
-        scenario.validate().unwrap();
-        let rows = plan(&scenario).unwrap();
-        for row in &rows {
-            row.scenario.validate().unwrap();
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    #[test]
+    fn planned_steps_and_degrees_of_freedom_are_those_of_the_run() {
+        type Change = fn(&mut Scenario);
+        let scenes: [Change; 4] = [
+            |_| {},
+            |s| (s.contact.stiffness, s.contact.damping) = (1e8, 1e5),
+            |s| s.effects.torsion = Switch::Off,
+            |s| s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, 6e-5)),
+        ];
+        for change in scenes {
+            let mut scenario = paper();
+            scenario.duration = 0.02;
+            scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
+            scenario.recording.spectrum_windows.clear();
+            scenario.recording.orbit_window = None;
+            change(&mut scenario);
+            let plan = Plan::new(&scenario, None).unwrap();
+            let model = Model::new(&scenario).unwrap();
+            let run = Transient::new(&model, &Equilibrium::find(&model).unwrap()).unwrap();
+            assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom());
+            let Ok(Outcome::Finished(records)) = run.run(&Control::new()) else { panic!("not finished") };
+            assert_eq!(plan.accuracies[0].steps, Some(records.effort.steps), "{:?}", plan.accuracies);
+            assert_eq!(plan.accuracies[0].cpu_time, None);
         }
-        rows
     }
 
     #[test]
-    fn a_study_looks_at_what_is_read() {
-        let own = preset("paper-200m").unwrap();
-        let rows = planned(|_| {});
-        for row in &rows {
-            assert_eq!(row.scenario.duration, own.duration);
-            assert_eq!(row.scenario.orbit_window(), own.orbit_window());
-            let last = own.recording.spectrum_windows.last();
-            assert_eq!(row.scenario.recording.spectrum_windows.last(), last);
-            assert_eq!((row.scenario.recording.rate_hz, row.members.clone()), (1000.0, 0..1));
-        }
-        let names: Vec<_> = rows.iter().map(|row| row.name.as_str()).collect();
-        let alpha = ["generalized_alpha"; 3];
-        assert_eq!(names[..5], ["A", "B", "draft", "standard", "reference"]);
-        assert_eq!(names[5..], [&alpha[..], &["esdirk4"; 3]].concat());
-        let stepping = |row: &PlannedRow| row.scenario.accuracy.time_stepping();
-        assert_eq!(stepping(&rows[0]), TimeStepping::fixed(Integrator::Rk4, 5e-5));
-        assert_eq!((stepping(&rows[1]).step, stepping(&rows[1]).contact_sweeps), (1.25e-4, 30));
-    }
-
-    #[test]
-    fn a_shorter_study_looks_at_its_end() {
-        let rows = planned(|s| s.cost_study.as_mut().unwrap().duration = Some(6.0));
-        let recording = &rows[0].scenario.recording;
-        assert_eq!(recording.orbit_window, Some(TimeWindow { from: 4.0, to: 6.0 }));
-        assert_eq!(recording.spectrum_windows, [TimeWindow { from: 5.0, to: 6.0 }]);
-    }
-
-    #[test]
-    fn rk4s_reference_is_stable_on_finer_meshes_and_steps_are_parts_of_the_interval() {
-        let rows = planned(|s| {
-            // The limit is the tool joints' axial frequency: half their elements, half the step.
-            s.mesh.lengths_mut().unwrap().tool_joint *= 0.25;
-            s.recording.rate_hz = 800.0;
-            s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 6.25e-4));
-            s.cost_study.as_mut().unwrap().presets.clear();
-        });
-        let stepping = rows[0].scenario.accuracy.time_stepping();
-        assert!(stepping.step < 3e-5 && stepping.step > 1e-5, "{stepping:?}");
-        let steps = rows[2..].iter().map(|row| row.scenario.accuracy.time_stepping().step);
-        let parts = [3.0, 5.0, 10.0, 2.0, 3.0, 5.0];
-        assert_eq!(steps.collect::<Vec<_>>(), parts.map(|part| 1.0 / 800.0 / part));
-    }
-
-    #[test]
-    fn a_whole_error_needs_three_meshes() {
-        let meshes = |mesh_factors: &[f64]| -> Vec<f64> {
-            let rows = planned(|s| {
-                let study = s.cost_study.as_mut().unwrap();
-                (study.total, study.mesh_factors) = (Some(0.05), mesh_factors.to_vec());
-            });
-            let factor =
-                |row: &PlannedRow| if let Role::Mesh { factor } = row.role { Some(factor) } else { None };
-            rows.iter().filter_map(factor).collect()
+    fn cost_is_that_of_the_steps_and_the_equilibrium() {
+        let speed = MachineSpeed {
+            statics_per_node: 1e-4,
+            start_per_node: [2e-5, 0.0, 0.0, 0.0],
+            step_per_node: [[1e-7, 2e-7, 3e-7], [1e-6; 3], [2e-6; 3], [5e-7; 3]],
+            large_mesh_factor: 2.0,
         };
-        assert_eq!(meshes(&[]), [1.0, 0.5, 0.25]);
-        assert_eq!(meshes(&[0.25, 4.0]), [4.0, 1.0, 0.25]);
+        let mut scenario = paper();
+        scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4));
+        scenario.ensemble = 2;
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        let statics = 297.0 * 1e-4;
+        assert_eq!(plan.simulated_time, 120.0);
+        let (start, steps) = (2.0 * 297.0 * 2e-5, 297.0 * 240_000.0 * 3e-7);
+        assert!((plan.cpu_time().unwrap() - (statics + start + steps)).abs() < 1e-9);
+        let names: Vec<_> = plan.accuracies.iter().map(|accuracy| accuracy.name.as_str()).collect();
+        assert_eq!(names, ["explicit", "draft", "standard", "reference"]);
+
+        scenario.recording.nodes.clear();
+        scenario.recording.spectrum_windows.clear();
+        scenario.recording.orbit_window = None;
+        let profile = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!((profile.degrees_of_freedom, profile.simulated_time), (0, 0.0));
+        assert!(profile.accuracies.is_empty());
+        assert_eq!(profile.cpu_time(), Some(statics));
     }
 
     #[test]
-    fn members_and_methods_are_those_asked_for() {
-        let adaptive =
-            MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
-        let rows = planned(|s| {
-            let study = s.cost_study.as_mut().unwrap();
-            study.members = 5;
-            study.presets = vec![AccuracyPreset::Draft];
-            study.methods = Some(vec![adaptive.clone()]);
-            study.mesh_factors = vec![0.5];
-        });
-        assert!(rows.iter().all(|row| row.members == (0..5)));
-        let roles: Vec<_> = rows[2..].iter().map(|row| row.role).collect();
-        let mesh = |factor| Role::Mesh { factor };
-        assert_eq!(roles, [Role::Method, Role::Method, mesh(1.0), mesh(0.5)]);
-        assert_eq!(rows[3].scenario.accuracy.time_stepping().tolerance, Some(1e-3));
-        assert_eq!(rows[4].name, "reference");
-
+    fn a_study_is_planned_with_all_its_runs() {
         let speed = MachineSpeed {
             statics_per_node: 0.0,
             start_per_node: [0.0; 4],
             step_per_node: [[1e-6; 3]; 4],
             large_mesh_factor: 1.0,
         };
-        // One row's steps are not known; 297 nodes, 60 s, five members of the others.
-        let draft_steps = Plan::new(&rows[2].scenario, None).unwrap().accuracies[0].steps.unwrap();
-        let (time, unknown) = expected_cpu_time(&rows[..4], &speed);
-        assert_eq!(unknown, 1);
-        let steps = 60.0 / 5e-5 + 60.0 / 1.25e-4 + draft_steps as f64;
-        assert!((time / (5.0 * 297e-6 * steps) - 1.0).abs() < 1e-9, "{time}");
+        let mut scenario = paper();
+        let one = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!(one.study, None);
+        let steps = MethodSteps::fixed(Integrator::GeneralizedAlpha, vec![1e-3]);
+        scenario.cost_study = Some(CostStudy {
+            members: 3,
+            presets: vec![],
+            methods: Some(vec![steps]),
+            ..CostStudy::default()
+        });
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        let study = plan.study.clone().unwrap();
+        // RK4 at 0.05 ms and ESDIRK4 at 0.125 ms make the reference.
+        assert_eq!((study.runs, study.simulated_time, study.lines_not_known), (9, 540.0, 0));
+        let steps = 3.0 * (60.0 / 5e-5 + 60.0 / 1.25e-4 + 60.0 / 1e-3);
+        assert!((study.cpu_time.unwrap() / (steps * 297e-6) - 1.0).abs() < 1e-9, "{study:?}");
+        assert_eq!(plan.cpu_time(), study.cpu_time);
+        // Beside it stands one run of the scenario.
+        assert_eq!((&plan.accuracies, plan.simulated_time), (&one.accuracies, 60.0));
+
+        let adaptive =
+            MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
+        scenario.cost_study.as_mut().unwrap().methods = Some(vec![adaptive]);
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert_eq!((plan.study.as_ref().unwrap().lines_not_known, plan.cpu_time()), (1, None));
+    }
+
+    #[test]
+    fn calibration_covers_every_method_with_every_number_of_degrees_of_freedom() {
+        let mut times = Vec::new();
+        for (i, run) in calibration_runs(&paper()).into_iter().enumerate() {
+            assert_eq!(run.scenario.validate(), Ok(vec![]));
+            let plan = Plan::new(&run.scenario, None).unwrap();
+            assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
+            assert_eq!(plan.nodes > 1400, run.is_large);
+            let per_node = if run.is_large { 4.5 } else { (i + 1) as f64 };
+            let nodes = plan.nodes;
+            let (start_cpu_time, steps_cpu_time) = (nodes as f64 * 0.5, per_node * 100.0 * nodes as f64);
+            times.push((run, RunTime { nodes, steps: 100, start_cpu_time, steps_cpu_time }));
+        }
+        let speed = MachineSpeed::from_times(1e-4, times);
+        assert_eq!(speed.step_per_node, [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.], [10., 11., 12.]]);
+        assert_eq!(speed.start_per_node, [0.5; 4]);
+        // Of generalized-alpha with six degrees of freedom: 4.5 after 3.
+        assert!((speed.large_mesh_factor - 1.5).abs() < 1e-12);
+        let step = |nodes| speed.step(MethodKind::GeneralizedAlpha, 6, nodes) / nodes as f64;
+        assert_eq!(step(100), 3.0);
+        assert!((step(664) - 3.75).abs() < 1e-3, "half way by the logarithm: {}", step(664));
+        assert!((step(5000) - 4.5).abs() < 1e-12);
     }
 }

@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::ContactForces;
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
-use crate::contact::ContactParameters;
+use crate::contact::{ContactNode, Wall};
+use crate::effect::Account;
 use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
-use crate::model::{DynamicSystem, Model, NodalVector};
+use crate::model::{Model, NodalVector};
+use crate::motion::DynamicSystem;
 
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -68,6 +70,9 @@ pub struct EnergyRow {
     pub residual: f64,
 }
 
+/// Accounts of the matrices whose work the ledger sums up.
+const LEDGER: [Account; 3] = [Account::Structure, Account::Mud, Account::Flow];
+
 /// Share of the energy turned over that a run may leave over. A tenth is a coarse run's; half of it and more was seen only in runs
 /// whose contact forces no longer fit their motion.
 const LARGEST_RESIDUAL: f64 = 0.5;
@@ -98,10 +103,7 @@ pub(super) struct Ledger<const D: usize> {
     load: NodalVector<D>,
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
     forms: Forms<3, D>,
-    contact: ContactParameters<f64>,
-    /// Clearance \[m\] and share of the contact law's stiffness of every node.
-    walls: Vec<(f64, f64)>,
-    with_contact: bool,
+    wall: Wall,
     /// Whether the last degree of freedom is the twist.
     has_twist: bool,
     rotation_speed: f64,
@@ -121,13 +123,8 @@ impl<const D: usize> Ledger<D> {
             mass: system.mass.clone(),
             stiffness: symmetric_part(&system.stiffness),
             load: system.load.clone(),
-            forms: Forms::new(
-                [&system.structural_damping, &system.mud_damping, &system.coriolis],
-                &system.stiffness,
-            ),
-            contact: ContactParameters::new(&model.scenario.contact, &model.effects),
-            walls: model.mesh.nodes.iter().map(|node| (node.clearance, node.stiffness_share)).collect(),
-            with_contact: model.effects.contact,
+            forms: Forms::new(LEDGER.map(|account| system.damping_of(account)), &system.stiffness),
+            wall: model.wall.clone(),
             has_twist: system.has_twist(),
             rotation_speed: system.rotation_speed,
             work: Work::default(),
@@ -139,7 +136,7 @@ impl<const D: usize> Ledger<D> {
         };
         ledger.rounding = ROUNDING * ledger.size_of_terms(initial);
         ledger.initial_stored = ledger.stored(initial);
-        ledger.initial_wall = ledger.wall(initial);
+        ledger.initial_wall = ledger.stored_by_wall(initial);
         ledger
     }
 
@@ -236,7 +233,7 @@ impl<const D: usize> Ledger<D> {
         self.mass.multiply_into(&v, &mut self.product);
         let kinetic = 0.5 * dot(&v, &self.product);
         let structure = self.stored(&x) - self.initial_stored;
-        let wall = self.wall(&x) - self.initial_wall;
+        let wall = self.stored_by_wall(&x) - self.initial_wall;
         self.motion = [x, v];
         let work = &self.work;
         let dissipated_contact = -work.normal_contact - wall;
@@ -294,15 +291,12 @@ impl<const D: usize> Ledger<D> {
     }
 
     /// Energy stored in the wall's springs.
-    fn wall(&self, x: &[[f64; D]]) -> f64 {
-        if !self.with_contact {
-            return 0.0;
-        }
-        let nodes = x.iter().zip(&self.walls).skip(1);
-        let stored = |(x, &(clearance, share)): (&[f64; D], &(f64, f64))| {
-            share * self.contact.potential_energy(x[0].hypot(x[1]) - clearance)
+    fn stored_by_wall(&self, x: &[[f64; D]]) -> f64 {
+        let stored = |(node, site): (usize, &ContactNode<f64>)| {
+            let penetration = x[node][0].hypot(x[node][1]) - site.clearance;
+            site.stiffness_share * self.wall.law().potential_energy(penetration)
         };
-        nodes.map(stored).sum()
+        self.wall.touchable().map(stored).sum()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::scenario::Integrator;
 /// Taylor series (generalized-alpha) says about it. Contact makes the steps' errors look independent, so their squares add up; how
 /// much of that sum is left in the motion is calibrated once a method against converged runs. It
 /// is an estimate for the *history*. Once impacts have made histories part from each other, no step makes it true, and
-/// only statistics mean something: [`ensembles`](crate::ensemble) tell when that is.
+/// only statistics mean something: ensembles tell when that is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ErrorEstimate {

@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
-use crate::model::DynamicSystem;
+use crate::motion::DynamicSystem;
 
 const STAGES: usize = 6;
 pub(super) const DIAGONAL: f64 = 0.25;

@@ -4,8 +4,8 @@ use crate::contact::{
     ContactForce, ContactNode, ContactParameters, LateralMotion, Yielding, dynamic_contact, implicit_contact,
 };
 use crate::linalg::{Block, Four, Lane, Mask, NodalField};
-use crate::model::{DynamicSystem, Model, UnbalanceForce};
-use crate::string::MeshNode;
+use crate::model::Model;
+use crate::motion::{DynamicSystem, UnbalanceForce};
 
 /// What the wall does to every node, as of one evaluation: four nodes side by side.
 #[derive(Debug, Clone)]
@@ -141,7 +141,7 @@ pub(super) struct Forces<const D: usize> {
     unbalance: Vec<TurningForce>,
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
-    /// Four nodes side by side; the clamped top node and places beyond the bit can never touch.
+    /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
     sites: Vec<ContactNode<Four>>,
     contact: bool,
     /// Whether the last degree of freedom is the twist.
@@ -150,29 +150,25 @@ pub(super) struct Forces<const D: usize> {
 
 impl<const D: usize> Forces<D> {
     pub(super) fn new(model: &Model, system: &DynamicSystem<D>) -> Self {
-        let effects = &model.effects;
-        let parameters = ContactParameters::new(&model.scenario.contact, effects);
-        let sites = (0..model.mesh.nodes.len()).step_by(LANES).map(|first| {
-            let lanes = |value: fn(&MeshNode) -> f64, never: f64| {
-                Four::new(std::array::from_fn(|lane| match first + lane {
-                    0 => never,
-                    node => model.mesh.nodes.get(node).map_or(never, value),
-                }))
+        let sites = model.wall.sites().chunks(LANES).map(|sites| {
+            let lanes = |value: fn(&ContactNode<f64>) -> f64, never: f64| {
+                let of_lane = |lane: usize| sites.get(lane)?.as_ref();
+                Four::new(std::array::from_fn(|lane| of_lane(lane).map_or(never, value)))
             };
             ContactNode {
-                clearance: lanes(|node| node.clearance, f64::INFINITY),
-                contact_radius: lanes(|node| node.contact_radius, 0.0),
-                stiffness_share: lanes(|node| node.stiffness_share, 0.0),
-                damping_share: lanes(|node| node.damping_share, 0.0),
+                clearance: lanes(|site| site.clearance, f64::INFINITY),
+                contact_radius: lanes(|site| site.contact_radius, 0.0),
+                stiffness_share: lanes(|site| site.stiffness_share, 0.0),
+                damping_share: lanes(|site| site.damping_share, 0.0),
             }
         });
         Self {
             load: NodalField::from_nodes(&system.load),
             unbalance: system.unbalance.iter().map(TurningForce::new).collect(),
             rotation_speed: system.rotation_speed,
-            parameters,
+            parameters: model.wall.law().in_lanes(),
             sites: sites.collect(),
-            contact: effects.contact,
+            contact: model.effects.contact,
             has_twist: system.has_twist(),
         }
     }

@@ -4,7 +4,7 @@ use super::forces::{ContactForces, Forces};
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
-use crate::model::DynamicSystem;
+use crate::motion::DynamicSystem;
 
 /// Spectral radius at infinite frequency where none is asked for. One (the trapezium rule) must not be used with a fixed number of
 /// contact sweeps: it fails silently (performance.md section 3).

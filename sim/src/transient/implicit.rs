@@ -10,7 +10,8 @@
 
 use super::forces::{Compliance, ContactForces, Forces, SweepChange};
 use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric};
-use crate::model::{DynamicSystem, NodalVector};
+use crate::model::NodalVector;
+use crate::motion::DynamicSystem;
 
 /// Changes between two sweeps at which more sweeps are pointless: of a lateral displacement \[m\], which is 0.01 N of contact force at
 /// 1e7 N/m, and of a friction coefficient.

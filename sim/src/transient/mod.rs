@@ -7,6 +7,7 @@
 mod adaptive;
 mod checkpoint;
 mod dense;
+mod disturbance;
 mod energy;
 mod error;
 mod esdirk;
@@ -23,6 +24,7 @@ mod stability;
 
 pub(crate) use adaptive::SMALLEST_MOTION;
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use disturbance::{DISTURBANCE, disturbance};
 pub use energy::EnergyRow;
 pub use error::ErrorEstimate;
 pub use failure::{DivergenceReason, TransientError};
@@ -32,7 +34,6 @@ pub use records::{ContactStatistics, NodeHistory};
 use serde::{Deserialize, Serialize};
 
 use crate::control::Control;
-use crate::ensemble::disturbance;
 use crate::model::Model;
 use crate::modes::UndampedTorsion;
 use crate::scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
@@ -111,7 +112,7 @@ impl<'m> Transient<'m> {
         Self::member(model, equilibrium, 0)
     }
 
-    /// A run of `model` as a member of its [ensemble](crate::ensemble): from the equilibrium (0), or slightly beside it.
+    /// A run of `model` as a member of its ensemble: from the equilibrium (0), or slightly beside it.
     ///
     /// # Errors
     /// As [`Transient::new`].

@@ -9,7 +9,8 @@ use super::grid::parts;
 use super::implicit::{held_list, largest_change, multiply_add};
 use super::run::{Books, State};
 use crate::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
-use crate::model::{DynamicSystem, NodalVector};
+use crate::model::NodalVector;
+use crate::motion::DynamicSystem;
 
 /// Angle \[rad\] of an oscillation in a step up to which its amplitude is right to a thousandth in each period, and the period too: it loses
 /// angle^6 / 144 a step.

@@ -20,7 +20,8 @@ use super::rk4::{self, Rk4};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::linalg::{Four, Lane, NodalField};
-use crate::model::{DynamicSystem, Model, NodalVector};
+use crate::model::{Model, NodalVector};
+use crate::motion::DynamicSystem;
 use crate::scenario::{Integrator, Scenario};
 use crate::signal::sample_range;
 

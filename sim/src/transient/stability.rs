@@ -3,9 +3,11 @@
 use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
-use crate::contact::ContactParameters;
+use crate::contact::ContactNode;
+use crate::effect::Account;
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
-use crate::model::{DynamicSystem, Model};
+use crate::model::Model;
+use crate::motion::DynamicSystem;
 use crate::scenario::{Integrator, TimeStepping};
 use crate::statics::Equilibrium;
 use crate::string::MeshNode;
@@ -93,7 +95,7 @@ fn sweep_factor(
         return Ok((0.0, 0));
     }
     let contact = &model.scenario.contact;
-    let law = ContactParameters::<f64>::new(contact, &model.effects);
+    let law = model.wall.law();
     let (stiffness, damping) = (contact.stiffness, coefficients.velocity * contact.unit_damping());
     let matrix = coefficients.matrix(system);
     let inverse = matrix.inverse_diagonal()?;
@@ -168,10 +170,10 @@ fn sweep_factor(
 /// that its contacts' dampers make.
 pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
     let contact = &model.scenario.contact;
-    let stiffness = |node: &MeshNode| contact.stiffness * node.stiffness_share;
+    let stiffness = |site: &ContactNode<f64>| contact.stiffness * site.stiffness_share;
     let frequency = largest_ratio(model, system, &system.stiffness, stiffness)?.sqrt();
-    let damping = |node: &MeshNode| contact.unit_damping() * node.damping_share;
-    let decay = largest_ratio(model, system, &system.structural_damping, damping)?;
+    let damping = |site: &ContactNode<f64>| contact.unit_damping() * site.damping_share;
+    let decay = largest_ratio(model, system, system.damping_of(Account::Structure), damping)?;
     Ok(RK4_IMAGINARY_LIMIT / frequency.max(decay))
 }
 
@@ -180,7 +182,7 @@ fn largest_ratio(
     model: &Model,
     system: &DynamicSystem,
     matrix: &BlockTridiagonal<f64>,
-    closed: impl Fn(&MeshNode) -> f64,
+    closed: impl Fn(&ContactNode<f64>) -> f64,
 ) -> Result<f64, SingularBlock> {
     let mass = mass_factor(system)?;
     let n = model.node_count();
@@ -195,11 +197,9 @@ fn largest_ratio(
             }
         }
         matrix.multiply_into(&x, &mut product);
-        if model.effects.contact {
-            for ((product, x), node) in product.iter_mut().zip(&x).zip(&model.mesh.nodes).skip(1) {
-                product[0] += closed(node) * x[0];
-                product[1] += closed(node) * x[1];
-            }
+        for (node, site) in model.wall.touchable() {
+            product[node][0] += closed(site) * x[node][0];
+            product[node][1] += closed(site) * x[node][1];
         }
         largest = dot(&x, &product) / mass_norm(&system.mass, &x);
         mass.solve_in_place(&mut product);

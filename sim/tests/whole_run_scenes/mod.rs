@@ -5,9 +5,6 @@
 use std::ops::Range;
 
 use drillsweep_sim::control::Control;
-use drillsweep_sim::ensemble::distances;
-use drillsweep_sim::errors::{OtherMember, ResultErrors, TimeError};
-use drillsweep_sim::mesh_estimate::MeshEstimate;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::UndampedTorsion;
 use drillsweep_sim::scenario::{
@@ -16,7 +13,10 @@ use drillsweep_sim::scenario::{
 };
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::summary::TransientSummary;
+use drillsweep_sim::study::ensemble::distances;
+use drillsweep_sim::study::errors::{OtherMember, ResultErrors, TimeError};
+use drillsweep_sim::study::mesh_estimate::MeshEstimate;
+use drillsweep_sim::study::summary::TransientSummary;
 use drillsweep_sim::transient::{Outcome, Records, Transient};
 
 /// What is read is the last third of a run \[s\].

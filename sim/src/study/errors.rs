@@ -4,10 +4,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ensemble::{DISTURBANCE, PARTED, spread};
-use crate::mesh_estimate::MeshEstimate;
+use super::ensemble::{PARTED, spread};
 use crate::modes::UndampedTorsion;
-use crate::summary::{OrbitSummary, TransientSummary};
+use crate::study::mesh_estimate::MeshEstimate;
+use crate::study::summary::{OrbitSummary, TransientSummary};
+use crate::transient::DISTURBANCE;
 
 /// What a result may be wrong by: as parts of the statistics of the recorded orbits, the worst node each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,6 @@
 //! otherwise](crate::study::finer). Scene i of a seed is always the same one.
 
 use crate::control::Control;
-use crate::errors::TimeError;
 use crate::model::Model;
 use crate::modes::UndampedTorsion;
 use crate::scenario::{
@@ -16,9 +15,10 @@ use crate::scenario::{
 };
 use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
-use crate::study::Measure;
+use crate::study::cost::Measure;
+use crate::study::errors::TimeError;
 use crate::study::finer::{self, Verdict};
-use crate::summary::TransientSummary;
+use crate::study::summary::TransientSummary;
 use crate::transient::{DivergenceReason, Outcome, Records, Transient, TransientError};
 
 /// Samples of a scene's run.

@@ -1,9 +1,10 @@
 //! The linear part of the equations of motion about an equilibrium: M a + C v + K x = F (equation (37)).
 
-use super::element::FlowMomentum;
-use super::{Model, NodalVector, add_element_matrix, add_element_vector};
 use crate::beam::ElementMatrix;
+use crate::effect::{Account, ElementInMotion, MotionTerms, room};
 use crate::linalg::{Block, BlockTridiagonal};
+use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
+use crate::scenario::Effect;
 use crate::statics::Equilibrium;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
@@ -21,12 +22,8 @@ pub struct DynamicSystem<const D: usize = 6> {
     pub damping: BlockTridiagonal<f64, D>,
     /// Everything that multiplies displacements.
     pub stiffness: BlockTridiagonal<f64, D>,
-    /// The part of `damping` that is the structure's Rayleigh damping (for the energy ledger).
-    pub structural_damping: BlockTridiagonal<f64, D>,
-    /// The part of `damping` that is the mud's lateral damping (for the energy ledger).
-    pub mud_damping: BlockTridiagonal<f64, D>,
-    /// The part of `damping` that is the flows' Coriolis matrix (for the energy ledger).
-    pub coriolis: BlockTridiagonal<f64, D>,
+    /// The parts of `damping` by the account of the energy ledger that their work belongs to, in the order of [`Account::ALL`].
+    damping_of: [BlockTridiagonal<f64, D>; Account::ALL.len()],
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
     pub load: NodalVector<D>,
@@ -53,65 +50,47 @@ impl Model {
     /// Assembles the equations of motion about an equilibrium.
     pub fn dynamic_system(&self, equilibrium: &Equilibrium) -> DynamicSystem {
         let n = self.node_count();
-        let effects = &self.effects;
-        let damping_law = &self.scenario.damping;
-        let mut mass = BlockTridiagonal::zeros(n);
-        let mut structural_damping = BlockTridiagonal::zeros(n);
-        let mut mud_damping = BlockTridiagonal::zeros(n);
-        let mut coriolis = BlockTridiagonal::zeros(n);
-        let mut damping = BlockTridiagonal::zeros(n);
-        let mut stiffness = BlockTridiagonal::zeros(n);
+        let [mut mass, mut stiffness, mut damping] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
+        let mut damping_of: [_; Account::ALL.len()] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
         for (e, element) in self.elements.iter().enumerate() {
             let (tension, torque) = (equilibrium.tension[e], equilibrium.torque[e]);
-            let beam = &element.beam;
             let to_nodes = |m: &ElementMatrix| element.chord.matrix_to_nodes(m);
-            let structural_mass = to_nodes(&beam.mass());
+            let structural_mass = to_nodes(&element.beam.mass());
+            let mut structural_stiffness = element.elastic;
+            if let Some(unit) = &element.tension_unit {
+                structural_stiffness += unit * tension;
+            }
+            let part = ElementInMotion {
+                beam: &element.beam,
+                chord: &element.chord,
+                structural_mass: &structural_mass,
+                structural_stiffness: &structural_stiffness,
+                lateral_mass: &to_nodes(&element.beam.lateral_mass()),
+                rotation_speed: self.rotation_speed,
+                damping: self.scenario.damping,
+                momentum: element.momentum.as_ref(),
+                flow: equilibrium.flows.get(e),
+            };
+            let mut terms = MotionTerms::default();
+            for &effect in Effect::ALL.iter().filter(|&&effect| self.effects.is_active(effect)) {
+                room(effect).add_in_motion(&part, &mut terms);
+            }
             add_element_matrix(&mut mass, e, &structural_mass);
+            if let Some(of_mud) = &terms.mass {
+                add_element_matrix(&mut mass, e, of_mud);
+            }
             add_element_matrix(&mut stiffness, e, &element.stiffness(tension, torque));
-            if effects.structural_damping {
-                let mut c = structural_mass * damping_law.mass_proportional;
-                if damping_law.stiffness_proportional != 0.0 {
-                    let mut k = element.elastic;
-                    if let Some(unit) = &element.tension_unit {
-                        k += unit * tension;
-                    }
-                    c += k * damping_law.stiffness_proportional;
-                }
-                add_element_matrix(&mut structural_damping, e, &c);
-                add_element_matrix(&mut damping, e, &c);
-            }
-            if effects.gyroscopic {
-                add_element_matrix(&mut damping, e, &to_nodes(&beam.gyroscopic(self.rotation_speed)));
-            }
-            if let Some(mud) = &self.scenario.mud {
-                let momentum = FlowMomentum::new(mud, beam.section(), self.scenario.well.hole_diameter);
-                let lateral = to_nodes(&beam.lateral_mass());
-                if effects.fluid_added_mass {
-                    add_element_matrix(&mut mass, e, &(lateral * self.added_mass(e)));
-                }
-                if let Some(flow) = equilibrium.flows.get(e).filter(|_| effects.fluid_damping) {
-                    let c = lateral * (flow.friction_damping + flow.rotation_damping);
-                    add_element_matrix(&mut mud_damping, e, &c);
-                    add_element_matrix(&mut damping, e, &c);
-                }
-                if effects.fluid_coriolis {
-                    let c = to_nodes(&beam.coriolis()) * momentum.coriolis;
-                    add_element_matrix(&mut coriolis, e, &c);
-                    add_element_matrix(&mut damping, e, &c);
+            for (of_account, term) in damping_of.iter_mut().zip(&terms.damping) {
+                if let Some(term) = term {
+                    add_element_matrix(of_account, e, term);
+                    add_element_matrix(&mut damping, e, term);
                 }
             }
         }
         let held = self.held_in_motion();
         let mut load = self.constant_load(&equilibrium.drag);
         move_held_to_load(&stiffness, &held, &equilibrium.displacement, &mut load);
-        for matrix in [
-            &mut mass,
-            &mut damping,
-            &mut structural_damping,
-            &mut mud_damping,
-            &mut coriolis,
-            &mut stiffness,
-        ] {
+        for matrix in [&mut mass, &mut damping, &mut stiffness].into_iter().chain(&mut damping_of) {
             clear_held(matrix, &held);
         }
         DynamicSystem {
@@ -119,41 +98,12 @@ impl Model {
             mass,
             damping,
             stiffness,
-            structural_damping,
-            mud_damping,
-            coriolis,
+            damping_of,
             load,
             unbalance: self.unbalance_forces(),
             rotation_speed: self.rotation_speed,
             held,
         }
-    }
-
-    /// Mass of mud that moves sideways with an element, inside and outside \[kg/m\]; zero where that effect is off.
-    pub fn added_mass(&self, element: usize) -> f64 {
-        let Some(mud) = self.scenario.mud.as_ref().filter(|_| self.effects.fluid_added_mass) else {
-            return 0.0;
-        };
-        let section = self.elements[element].beam.section();
-        let momentum = FlowMomentum::new(mud, section, self.scenario.well.hole_diameter);
-        momentum.bore_mass + momentum.added_mass_coefficient * momentum.displaced_mass
-    }
-
-    /// Constant nodal loads, with the mud's drag \[N/m\] on every element (empty where there is none).
-    pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
-        let mut load = vec![[0.0; 6]; self.node_count()];
-        for (e, element) in self.elements.iter().enumerate() {
-            let mut f = element.load;
-            if let Some(&drag) = drag.get(e) {
-                f += element.unit_drag * drag;
-            }
-            add_element_vector(&mut load, e, &f);
-        }
-        if let Some(bit) = load.last_mut() {
-            bit[2] += self.scenario.operation.weight_on_bit;
-            bit[5] += self.scenario.operation.torque_on_bit;
-        }
-        load
     }
 
     fn unbalance_forces(&self) -> Vec<UnbalanceForce> {
@@ -176,12 +126,14 @@ impl Model {
     }
 
     fn held_in_motion(&self) -> Vec<[bool; 6]> {
-        let effects = &self.effects;
+        let off = Effect::ALL.iter().filter(|&&effect| !self.effects.is_active(effect));
+        let still: Vec<usize> = off.filter_map(|&effect| room(effect).moves()).collect();
         (0..self.node_count())
             .map(|node| {
                 let mut held = self.held_by_top(node);
-                held[2] |= !effects.axial_motion;
-                held[5] |= !effects.torsion;
+                for &dof in &still {
+                    held[dof] = true;
+                }
                 held
             })
             .collect()
@@ -189,6 +141,11 @@ impl Model {
 }
 
 impl<const D: usize> DynamicSystem<D> {
+    /// The part of `damping` whose work belongs to an account of the energy ledger.
+    pub fn damping_of(&self, account: Account) -> &BlockTridiagonal<f64, D> {
+        &self.damping_of[account as usize]
+    }
+
     /// Whether the twist is among the degrees of freedom; it is the last one then.
     pub fn has_twist(&self) -> bool {
         self.places.last() == Some(&5)
@@ -218,9 +175,7 @@ impl DynamicSystem {
             mass: reduced(&self.mass),
             damping: reduced(&self.damping),
             stiffness: reduced(&self.stiffness),
-            structural_damping: reduced(&self.structural_damping),
-            mud_damping: reduced(&self.mud_damping),
-            coriolis: reduced(&self.coriolis),
+            damping_of: self.damping_of.each_ref().map(reduced),
             load: self.load.iter().map(|load| places.map(|dof| load[dof])).collect(),
             unbalance: self.unbalance.clone(),
             rotation_speed: self.rotation_speed,
@@ -247,25 +202,6 @@ fn move_held_to_load(
     for ((load, force), held) in load.iter_mut().zip(&forces).zip(held) {
         for dof in 0..6 {
             load[dof] = if held[dof] { 0.0 } else { load[dof] - force[dof] };
-        }
-    }
-}
-
-/// Empties the rows and columns of held degrees of freedom.
-pub(crate) fn clear_held(matrix: &mut BlockTridiagonal<f64>, held: &[[bool; 6]]) {
-    let n = held.len();
-    for row in 0..n {
-        let neighbours = [row.checked_sub(1), Some(row), Some(row + 1).filter(|&next| next < n)];
-        let blocks = [&mut matrix.lower[row], &mut matrix.diagonal[row], &mut matrix.upper[row]];
-        for (block, neighbour) in blocks.into_iter().zip(neighbours) {
-            let Some(column_node) = neighbour else { continue };
-            for (j, column) in block.columns.iter_mut().enumerate() {
-                for (i, value) in column.iter_mut().enumerate() {
-                    if held[row][i] || held[column_node][j] {
-                        *value = 0.0;
-                    }
-                }
-            }
         }
     }
 }

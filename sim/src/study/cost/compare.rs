@@ -6,9 +6,9 @@ use super::{
     Agreement, CostErrors, LineErrors, NamedLine, NodeAgreement, NodeStatistic, Quantity, SpuriousLine,
     StatisticError,
 };
-use crate::ensemble::spread;
 use crate::scenario::StudyReference;
 use crate::signal::{FullSpectrum, Peak, PeakSearch};
+use crate::study::ensemble::spread;
 use crate::transient::NodeHistory;
 
 /// Lines of the reference that are looked for in other runs, strongest first, and how far apart they are at least \[Hz\].

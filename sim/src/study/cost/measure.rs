@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::scenario::{TimeStepping, TimeWindow};
 use crate::signal::{FullSpectrum, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
-use crate::summary::TransientSummary;
+use crate::study::summary::TransientSummary;
 use crate::transient::{NodeHistory, Records};
 
 /// Histories are kept of so many members: one to compare, and one to part from it.
@@ -14,33 +14,33 @@ const MEMBERS_WITH_HISTORIES: u32 = 2;
 /// What a study keeps of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
-    pub(super) stepping: TimeStepping,
-    pub(super) elements: usize,
-    pub(super) steps: u64,
-    pub(super) subdivisions: u32,
+    pub(in crate::study) stepping: TimeStepping,
+    pub(in crate::study) elements: usize,
+    pub(in crate::study) steps: u64,
+    pub(in crate::study) subdivisions: u32,
     /// The longest step made \[s\].
-    pub(super) longest_step: f64,
-    pub(super) rate_hz: f64,
+    pub(in crate::study) longest_step: f64,
+    pub(in crate::study) rate_hz: f64,
     /// Lateral histories of the recorded nodes; none of members beyond the second.
-    pub(super) histories: Vec<NodeHistory>,
-    pub(super) nodes: Vec<NodeMeasure>,
+    pub(in crate::study) histories: Vec<NodeHistory>,
+    pub(in crate::study) nodes: Vec<NodeMeasure>,
     /// Mean over the orbit window of the sum of all normal forces \[N\].
-    pub(super) contact_force: f64,
+    pub(in crate::study) contact_force: f64,
     /// Energy residual over the net work of the contacts; absent where there was none.
-    pub(super) energy: Option<f64>,
-    pub(super) error_estimate: f64,
+    pub(in crate::study) energy: Option<f64>,
+    pub(in crate::study) error_estimate: f64,
     /// Half the hole's diameter \[m\].
-    pub(super) hole_radius: f64,
+    pub(in crate::study) hole_radius: f64,
     /// Measured depth and static (u, v) of every node.
-    pub(super) position: Vec<(f64, [f64; 2])>,
+    pub(in crate::study) position: Vec<(f64, [f64; 2])>,
     /// Measured depth of the lower end and C_f of every element; empty without mud.
-    pub(super) friction: Vec<(f64, f64)>,
+    pub(in crate::study) friction: Vec<(f64, f64)>,
 }
 
 /// What is kept of a recorded node.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct NodeMeasure {
-    pub(super) measured_depth: f64,
+pub(in crate::study) struct NodeMeasure {
+    pub(in crate::study) measured_depth: f64,
     /// Root mean square distance from the mean position \[m\].
     orbit_size: f64,
     /// Standard deviation of the distance from the hole's axis \[m\].
@@ -50,7 +50,7 @@ pub(super) struct NodeMeasure {
     /// Standard deviation of the twist's rate \[rad/s\].
     torsional_speed: f64,
     /// Full spectrum over the last spectrum window; absent without one.
-    pub(super) spectrum: Option<FullSpectrum>,
+    pub(in crate::study) spectrum: Option<FullSpectrum>,
 }
 
 impl Measure {
@@ -96,7 +96,7 @@ impl Measure {
     }
 
     /// Static (u, v) at a depth, between the nodes on a straight line.
-    pub(super) fn position_at(&self, depth: f64) -> [f64; 2] {
+    pub(in crate::study) fn position_at(&self, depth: f64) -> [f64; 2] {
         let below =
             self.position.partition_point(|(node, _)| *node < depth).clamp(1, self.position.len() - 1);
         let ((top, a), (bottom, b)) = (self.position[below - 1], self.position[below]);
@@ -105,13 +105,13 @@ impl Measure {
     }
 
     /// C_f of the element at a depth.
-    pub(super) fn friction_at(&self, depth: f64) -> Option<f64> {
+    pub(in crate::study) fn friction_at(&self, depth: f64) -> Option<f64> {
         let element = self.friction.partition_point(|(bottom, _)| *bottom < depth);
         self.friction.get(element).or(self.friction.last()).map(|(_, friction)| *friction)
     }
 
     /// A statistic of the whole string, or of a recorded node.
-    pub(super) fn statistic(&self, quantity: Quantity, node: usize) -> f64 {
+    pub(in crate::study) fn statistic(&self, quantity: Quantity, node: usize) -> f64 {
         let of_node = |value: fn(&NodeMeasure) -> f64| self.nodes.get(node).map_or(0.0, value);
         match quantity {
             Quantity::OrbitSize => of_node(|node| node.orbit_size),
@@ -127,7 +127,7 @@ impl Measure {
 
 impl NodeMeasure {
     /// Statistics over the samples of the windows; zero where a window has none.
-    pub(super) fn new(
+    pub(in crate::study) fn new(
         measured_depth: f64,
         history: &NodeHistory,
         rate_hz: f64,

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::ensemble::spread;
+use crate::study::ensemble::spread;
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;

@@ -5,8 +5,8 @@ use super::measure::Measure;
 use super::plan::{PlannedRow, RK4_STEP, Role};
 use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
-use crate::ensemble::parting_time;
 use crate::scenario::{Integrator, Scenario};
+use crate::study::ensemble::parting_time;
 
 /// Energy residual, relative to the contacts' net work, from which on a reference is doubted.
 const UNSOUND_RESIDUAL: f64 = 0.01;

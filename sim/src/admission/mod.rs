@@ -1,5 +1,6 @@
-//! What can be simulated: every rule that a scenario must keep, checked all at once.
+//! What can be simulated, and under which key: every rule that a scenario must keep, checked all at once, and the bytes that stand for it.
 
+mod canonical;
 mod hole;
 mod loads;
 mod report;
@@ -7,7 +8,7 @@ mod string;
 mod study;
 mod time;
 
-use super::{Problems, Scenario, Warning};
+use crate::scenario::{Problems, Scenario, Warning};
 use report::Report;
 
 impl Scenario {

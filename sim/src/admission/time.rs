@@ -2,10 +2,9 @@
 
 use super::report::Report;
 use super::study;
-use crate::scenario::accuracy::TOLERANCES;
 use crate::scenario::{
-    Accuracy, AccuracyTarget, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TimeStepping,
-    TimeWindow,
+    Accuracy, AccuracyTarget, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TOLERANCES,
+    TimeStepping, TimeWindow,
 };
 use crate::string::StringMesh;
 

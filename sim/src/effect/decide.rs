@@ -1,12 +1,10 @@
 //! Which effects a scene calls for, and why.
 
-use std::f64::consts::PI;
-
 use serde::Serialize;
 
-use super::{ActiveEffects, AutoRule, Effect, Scenario, Section, SurveyStation, Switch};
-use crate::beam::BeamSection;
-use crate::model::FlowMomentum;
+use super::room;
+use super::scene::{LateralWave, Scene};
+use crate::scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 
 /// Change of frequencies below which the aggressive rule leaves an effect out.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -39,18 +37,21 @@ impl Scenario {
             let (is_active, reason) = match switch {
                 Switch::On => (true, "asked for".to_owned()),
                 Switch::Off => (false, "switched off".to_owned()),
-                Switch::Auto => match (called_for(effect, self, &active), self.effects.auto) {
-                    ((true, _), AutoRule::Aggressive) if self.frequency_change(effect) < NEGLIGIBLE => {
-                        let change = self.frequency_change(effect);
+                Switch::Auto => {
+                    let call = (room(effect).called_for)(&Scene { scenario: self, active: &active });
+                    let change = self.frequency_change(effect);
+                    let neglects = self.effects.auto == AutoRule::Aggressive;
+                    if call.active && neglects && change < NEGLIGIBLE {
                         (
                             false,
                             format!(
                                 "left out as small: it changes frequencies by about {change:.0e} of them"
                             ),
                         )
+                    } else {
+                        (call.active, call.reason.to_owned())
                     }
-                    ((is_active, reason), _) => (is_active, reason.to_owned()),
-                },
+                }
             };
             active.set(effect, is_active);
             EffectDecision { effect, switch, active: is_active, reason }
@@ -67,144 +68,23 @@ impl Scenario {
         active
     }
 
-    /// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string:
-    /// for gyroscopic moments, Coriolis terms and flow stiffness, the largest of any section; infinite for all others.
-    ///
-    /// A wave of wave number k has m w^2 = E I k^4, so that k^2 = w (m/(E I))^(1/2). To first order the rotary moments
-    /// 2 rho I W change w by rho I W k^2 / (m w), the Coriolis term c by c k / (2 m w), and the flows' centrifugal
-    /// stiffness S by S k^2 / (2 m w^2).
+    /// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
+    /// largest of any section; infinite where no such estimate is made.
     fn frequency_change(&self, effect: Effect) -> f64 {
-        let material = &self.string.material;
-        let frequency = self.operation.rotation_speed_rpm.abs() * PI / 30.0;
-        let of_section = |section: &Section| {
-            let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, material);
-            let flow = self.mud.as_ref().map(|mud| FlowMomentum::new(mud, &beam, self.well.hole_diameter));
-            let added =
-                flow.map_or(0.0, |flow| flow.bore_mass + flow.added_mass_coefficient * flow.displaced_mass);
-            let mass = material.density * beam.area + added;
-            let stiffness = material.youngs_modulus * beam.second_moment;
-            let wave_number = (frequency * (mass / stiffness).sqrt()).sqrt();
-            let change = match (effect, flow) {
-                (Effect::Gyroscopic, _) => material.density * beam.second_moment * wave_number.powi(2) / mass,
-                (Effect::FluidCoriolis, Some(flow)) => {
-                    flow.coriolis.abs() * wave_number / (2.0 * mass * frequency)
-                }
-                (Effect::FlowStiffness, Some(flow)) => {
-                    let stiffness = flow.bore_flux + flow.added_mass_coefficient * flow.annulus_flux;
-                    stiffness * wave_number.powi(2) / (2.0 * mass * frequency.powi(2))
-                }
-                _ => f64::INFINITY,
-            };
+        let Some(frequency_change) = room(effect).frequency_change else { return f64::INFINITY };
+        let of_section = |section| {
+            let change = frequency_change(&LateralWave::along(section, self));
             // Without rotation there is no such wave.
             if change.is_nan() { f64::INFINITY } else { change }
         };
         self.string.sections.iter().map(of_section).fold(0.0, f64::max)
-    }
-
-    /// Whether the hole is straight along the whole string.
-    fn is_straight(&self) -> bool {
-        let sections = self.string.sections.iter();
-        let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
-        self.well.survey.windows(2).all(|stations| {
-            let [above, below] = stations else { return true };
-            above.measured_depth >= length || same_direction(above, below)
-        })
-    }
-}
-
-fn same_direction(a: &SurveyStation, b: &SurveyStation) -> bool {
-    let is_vertical = a.inclination_deg == 0.0 || a.inclination_deg == 180.0;
-    a.inclination_deg == b.inclination_deg && (is_vertical || a.azimuth_deg == b.azimuth_deg)
-}
-
-/// Whether the scene calls for an effect, with `active` telling of those before it.
-fn called_for(effect: Effect, scenario: &Scenario, active: &ActiveEffects) -> (bool, &'static str) {
-    let turns = scenario.operation.rotation_speed_rpm != 0.0;
-    let frictionless = scenario.contact.static_friction == 0.0 && scenario.contact.dynamic_friction == 0.0;
-    let is_fluid = matches!(
-        effect,
-        Effect::FluidAddedMass
-            | Effect::FluidDamping
-            | Effect::FluidCoriolis
-            | Effect::FlowStiffness
-            | Effect::MudDrag
-            | Effect::Buoyancy
-    );
-    if is_fluid {
-        return match (&scenario.mud, effect) {
-            (None, _) => (false, "the hole is dry"),
-            (Some(_), Effect::FluidAddedMass | Effect::FluidDamping | Effect::Buoyancy) => {
-                (true, "there is mud")
-            }
-            (Some(mud), _) if mud.flow_rate == 0.0 => (false, "the mud stands still"),
-            (Some(_), _) => (true, "the mud flows"),
-        };
-    }
-    match effect {
-        Effect::Contact => {
-            (true, "the string may reach the wall; while it does not, only the distance is looked at")
-        }
-        Effect::Friction | Effect::FrictionTorque => match (active.contact, frictionless) {
-            (false, _) => (false, "there is no contact"),
-            (true, true) => (false, "the wall is without friction"),
-            (true, false) => (true, "the wall has friction"),
-        },
-        Effect::Unbalance => {
-            let masses = scenario.string.unbalance.iter().any(|mass| mass.mass != 0.0 && mass.radius != 0.0);
-            match (masses, turns) {
-                (false, _) => (false, "no mass is off the axis"),
-                (true, false) => (false, "the string does not turn"),
-                (true, true) => (true, "masses off the axis turn"),
-            }
-        }
-        Effect::Gyroscopic if turns => (true, "the string turns"),
-        Effect::Gyroscopic => (false, "the string does not turn"),
-        Effect::AxialStiffening => (true, "weight and weight on bit load the string"),
-        Effect::TorqueStiffening => match (scenario.operation.torque_on_bit != 0.0, active.friction_torque) {
-            (true, _) => (true, "torque on bit"),
-            (false, true) => (true, "friction twists the string"),
-            // A curved hole guides torque, but makes none.
-            (false, false) => (false, "nothing twists the string"),
-        },
-        Effect::WellBending if scenario.is_straight() => (false, "the hole is straight along the string"),
-        Effect::WellBending => (true, "the hole is curved"),
-        Effect::StructuralDamping => {
-            let damping = &scenario.damping;
-            match damping.mass_proportional != 0.0 || damping.stiffness_proportional != 0.0 {
-                true => (true, "the structure is damped"),
-                false => (false, "both coefficients are zero"),
-            }
-        }
-        Effect::Torsion => match (active.friction_torque, scenario.is_straight()) {
-            (true, _) => (true, "friction twists the string"),
-            (false, false) => (true, "the curved hole couples twist with bending"),
-            (false, true) => (false, "nothing makes the twist of a straight string move"),
-        },
-        Effect::AxialMotion if scenario.is_straight() => {
-            (false, "nothing makes a straight string move along itself")
-        }
-        Effect::AxialMotion => (true, "the curved hole couples axial motion with bending"),
-        Effect::Transient => {
-            let recording = &scenario.recording;
-            let in_time = !recording.nodes.is_empty()
-                || !recording.spectrum_windows.is_empty()
-                || recording.orbit_window.is_some()
-                || scenario.cost_study.is_some();
-            match in_time {
-                true => (true, "histories are asked for"),
-                false => {
-                    (false, "no node is recorded and no window asked for: statics and hydraulics are all")
-                }
-            }
-        }
-        _ => unreachable!("fluid effects are decided above"),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Effects, preset};
+    use crate::scenario::{Effects, SurveyStation, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

@@ -1,8 +1,8 @@
-//! From an element's chord frame to the frames of its two nodes (physics.md section 1).
+//! From an element's chord frame to the frames of its two nodes.
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::beam::{ElementMatrix, ElementVector};
+use super::{ElementMatrix, ElementVector};
 use crate::well::NodeFrame;
 
 /// The straight line between two nodes, with its own frame and the way back to the nodes' frames.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{
+use crate::scenario::{
     ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Mesh, MeshName, Mud, Operation,
     RayleighDamping, Recording, ScaledMesh, Scenario, TimeStepping, Well,
 };
@@ -80,11 +80,6 @@ impl Scenario {
         };
         postcard::to_stdvec(&canonical)
             .expect("postcard encodes structs, sequences and numbers of known length")
-    }
-
-    /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
-    pub(super) fn tree(&self) -> toml::Value {
-        toml::Value::try_from(self).expect("a scenario has only string keys and no value that TOML lacks")
     }
 
     fn without_negative_zeros(&self) -> Self {

@@ -1,0 +1,49 @@
+//! The wall of a hole as a string's nodes meet it.
+
+use super::ContactNode;
+use super::law::ContactParameters;
+use crate::scenario::{ActiveEffects, ContactLaw};
+
+/// The contact law, and the nodes that can touch.
+///
+/// Built once, with the model; statics, modes, sweep stability and the run in time take both from here.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    law: ContactParameters<f64>,
+    sites: Vec<Option<ContactNode<f64>>>,
+}
+
+impl Wall {
+    /// That of a law, with what contact needs to know of every node, or nothing where a node is no contact site: a held one.
+    /// Without contact no node is one.
+    pub fn new(
+        law: &ContactLaw,
+        effects: &ActiveEffects,
+        sites: impl Iterator<Item = Option<ContactNode<f64>>>,
+    ) -> Self {
+        Self {
+            law: ContactParameters::new(law, effects),
+            sites: sites.map(|site| site.filter(|_| effects.contact)).collect(),
+        }
+    }
+
+    /// The law.
+    pub fn law(&self) -> &ContactParameters<f64> {
+        &self.law
+    }
+
+    /// Of every node, what contact needs to know of it where it is a contact site.
+    pub fn sites(&self) -> &[Option<ContactNode<f64>>] {
+        &self.sites
+    }
+
+    /// The contact sites, with their nodes.
+    pub fn touchable(&self) -> impl Iterator<Item = (usize, &ContactNode<f64>)> {
+        self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
+    }
+
+    /// The same contact sites with another law.
+    pub fn with_law(&self, law: &ContactLaw, effects: &ActiveEffects) -> Self {
+        Self { law: ContactParameters::new(law, effects), sites: self.sites.clone() }
+    }
+}

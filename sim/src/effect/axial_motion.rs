@@ -1,0 +1,14 @@
+//! Axial motion: without it every axial displacement stays at its static value and is not solved for.
+
+use super::scene::{no, yes};
+use super::{Call, Room, Scene};
+
+pub(super) const ROOM: Room = Room { moves: Some(2), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    if scene.is_straight() {
+        no("nothing makes a straight string move along itself")
+    } else {
+        yes("the curved hole couples axial motion with bending")
+    }
+}

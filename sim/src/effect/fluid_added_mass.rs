@@ -1,0 +1,11 @@
+//! Added mass of the mud inside and outside, equation (28): without it only steel moves.
+
+use super::scene::has_mud;
+use super::{ElementInMotion, MotionTerms, Room};
+
+pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(has_mud) };
+
+fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+    let Some(momentum) = element.momentum else { return };
+    terms.mass = Some(element.lateral_mass * momentum.lateral_mass());
+}

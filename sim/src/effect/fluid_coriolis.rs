@@ -1,0 +1,20 @@
+//! Coriolis terms of both flows: without them a flow does no work on a bend that travels.
+
+use super::scene::{LateralWave, has_flow};
+use super::{Account, ElementInMotion, MotionTerms, Room};
+
+pub(super) const ROOM: Room =
+    Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(has_flow) };
+
+/// To first order the Coriolis term c changes w by c k / (2 m w).
+fn frequency_change(wave: &LateralWave) -> f64 {
+    wave.flow.map_or(f64::INFINITY, |flow| {
+        flow.coriolis.abs() * wave.wave_number / (2.0 * wave.mass * wave.frequency)
+    })
+}
+
+fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+    let Some(momentum) = element.momentum else { return };
+    let matrix = element.chord.matrix_to_nodes(&element.beam.coriolis()) * momentum.coriolis;
+    terms.add_damping(Account::Flow, matrix);
+}

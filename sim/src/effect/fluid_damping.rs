@@ -1,0 +1,11 @@
+//! Damping of lateral motion by the mud, by its axial flow (C_f) and by the string's rotation (k): without it the mud takes no energy.
+
+use super::scene::has_mud;
+use super::{Account, ElementInMotion, MotionTerms, Room};
+
+pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(has_mud) };
+
+fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+    let Some(flow) = element.flow else { return };
+    terms.add_damping(Account::Mud, element.lateral_mass * (flow.friction_damping + flow.rotation_damping));
+}

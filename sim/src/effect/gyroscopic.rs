@@ -1,0 +1,21 @@
+//! Gyroscopic coupling of the lateral rotations: without it forward and backward whirl have the same frequency.
+
+use super::scene::{LateralWave, no, yes};
+use super::{Account, Call, ElementInMotion, MotionTerms, Room, Scene};
+
+pub(super) const ROOM: Room =
+    Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    if scene.turns() { yes("the string turns") } else { no("the string does not turn") }
+}
+
+/// To first order the rotary moments 2 rho I W change w by rho I W k^2 / (m w), and the wave turns with the string: w = W.
+fn frequency_change(wave: &LateralWave) -> f64 {
+    wave.density * wave.beam.second_moment * wave.wave_number.powi(2) / wave.mass
+}
+
+fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+    let matrix = element.beam.gyroscopic(element.rotation_speed);
+    terms.add_damping(Account::NoWork, element.chord.matrix_to_nodes(&matrix));
+}

@@ -1,0 +1,24 @@
+//! Rayleigh damping: without it the structure takes no energy.
+
+use super::scene::{no, yes};
+use super::{Account, Call, ElementInMotion, MotionTerms, Room, Scene};
+
+pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    let damping = &scene.scenario.damping;
+    if damping.mass_proportional != 0.0 || damping.stiffness_proportional != 0.0 {
+        yes("the structure is damped")
+    } else {
+        no("both coefficients are zero")
+    }
+}
+
+fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+    let law = &element.damping;
+    let mut matrix = element.structural_mass * law.mass_proportional;
+    if law.stiffness_proportional != 0.0 {
+        matrix += element.structural_stiffness * law.stiffness_proportional;
+    }
+    terms.add_damping(Account::Structure, matrix);
+}

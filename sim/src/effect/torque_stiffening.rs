@@ -1,0 +1,19 @@
+//! Stiffening by the internal torque: without it torque couples no lateral motion.
+
+use super::scene::{no, yes};
+use super::{Call, ElementAtRest, RestTerms, Room, Scene};
+
+pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    match (scene.scenario.operation.torque_on_bit != 0.0, scene.active.friction_torque) {
+        (true, _) => yes("torque on bit"),
+        (false, true) => yes("friction twists the string"),
+        // A curved hole guides torque, but makes none.
+        (false, false) => no("nothing twists the string"),
+    }
+}
+
+fn at_rest(element: &ElementAtRest<'_>, terms: &mut RestTerms) {
+    terms.by_torque = Some(element.beam.torque_stiffening());
+}

@@ -1,0 +1,14 @@
+//! Torsional motion: without it every twist stays at its static value and is not solved for.
+
+use super::scene::{no, yes};
+use super::{Call, Room, Scene};
+
+pub(super) const ROOM: Room = Room { moves: Some(5), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    match (scene.active.friction_torque, scene.is_straight()) {
+        (true, _) => yes("friction twists the string"),
+        (false, false) => yes("the curved hole couples twist with bending"),
+        (false, true) => no("nothing makes the twist of a straight string move"),
+    }
+}

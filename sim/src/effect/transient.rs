@@ -1,0 +1,19 @@
+//! The run in time: without it a run ends after its equilibrium and hydraulic profile.
+
+use super::scene::{no, yes};
+use super::{Call, Room, Scene};
+
+pub(super) const ROOM: Room = Room::new(called_for);
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    let recording = &scene.scenario.recording;
+    let in_time = !recording.nodes.is_empty()
+        || !recording.spectrum_windows.is_empty()
+        || recording.orbit_window.is_some()
+        || scene.scenario.cost_study.is_some();
+    if in_time {
+        yes("histories are asked for")
+    } else {
+        no("no node is recorded and no window asked for: statics and hydraulics are all")
+    }
+}

@@ -1,0 +1,15 @@
+//! Bending of a straight pipe into the curved hole: without it the string is stress-free along the hole's axis.
+
+use super::scene::{no, yes};
+use super::{Call, ElementAtRest, RestTerms, Room, Scene};
+
+pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    if scene.is_straight() { no("the hole is straight along the string") } else { yes("the hole is curved") }
+}
+
+fn at_rest(element: &ElementAtRest<'_>, terms: &mut RestTerms) {
+    let [upper, lower] = element.frames;
+    terms.nodal -= element.stiffness * element.chord.tangent_rotations(upper, lower);
+}

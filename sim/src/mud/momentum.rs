@@ -1,0 +1,52 @@
+//! What the two flows past a section carry along: mass, momentum, and the annulus' added mass.
+
+use super::damping::added_mass_coefficient;
+use super::element::FlowGeometry;
+use crate::scenario::Mud;
+
+/// Masses and momentum fluxes of the two flows past one section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlowMomentum {
+    /// M_f U_i^2 \[N\].
+    pub bore_flux: f64,
+    /// rho_f A_o U_o^2 \[N\].
+    pub annulus_flux: f64,
+    /// Mass of mud in the bore per length M_f \[kg/m\].
+    pub bore_mass: f64,
+    /// Mass displaced per length rho_f A_o \[kg/m\].
+    pub displaced_mass: f64,
+    /// Added mass coefficient chi, equation (28).
+    pub added_mass_coefficient: f64,
+    /// Coriolis coefficient 2 M_f U_i - 2 chi rho_f A_o U_o \[kg/s\].
+    pub coriolis: f64,
+}
+
+impl FlowMomentum {
+    /// The fluxes for the mean speeds of `mud` past a section.
+    pub fn new(mud: &Mud, geometry: &FlowGeometry) -> Self {
+        let [bore_area, displaced_area] = [geometry.bore_area(), geometry.displaced_area()];
+        let bore_mass = mud.density * bore_area;
+        let displaced_mass = mud.density * displaced_area;
+        let bore_speed = if bore_area > 0.0 { mud.flow_rate / bore_area } else { 0.0 };
+        let annulus_speed = mud.flow_rate / geometry.annulus_area();
+        let chi = added_mass_coefficient(geometry);
+        Self {
+            bore_flux: bore_mass * bore_speed * bore_speed,
+            annulus_flux: displaced_mass * annulus_speed * annulus_speed,
+            bore_mass,
+            displaced_mass,
+            added_mass_coefficient: chi,
+            coriolis: 2.0 * (bore_mass * bore_speed - chi * displaced_mass * annulus_speed),
+        }
+    }
+
+    /// Mass of mud that moves sideways with the string, inside and outside \[kg/m\].
+    pub fn lateral_mass(&self) -> f64 {
+        self.bore_mass + self.added_mass_coefficient * self.displaced_mass
+    }
+
+    /// M_f U_i^2 + chi rho_f A_o U_o^2 \[N\]: by so much the flows lessen the tension that holds the string straight.
+    pub fn lateral_flux(&self) -> f64 {
+        self.bore_flux + self.added_mass_coefficient * self.annulus_flux
+    }
+}

@@ -1,0 +1,305 @@
+//! The runs of a study.
+
+use std::ops::Range;
+
+use super::StudyError;
+use crate::effect::EffectDecision;
+use crate::model::Model;
+use crate::scenario::{
+    Accuracy, AccuracyPreset, CostStudy, Effect, Integrator, MethodSteps, NodeChoice, Outputs, Recording,
+    Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
+};
+use crate::statics::Equilibrium;
+use crate::study::plan::{MachineSpeed, Plan};
+use crate::transient::{recorded_nodes, rk4_stability_limit};
+
+/// Step of the reference's RK4 \[s\], where that is stable; speeds are told against it.
+pub const RK4_STEP: f64 = 5e-5;
+
+/// Part of RK4's stability limit, found about the equilibrium, that a step may have.
+const BELOW_LIMIT: f64 = 0.95;
+
+/// Step \[s\] and most contact sweeps of the reference's ESDIRK4.
+const ESDIRK4_STEP: f64 = 1.25e-4;
+const ESDIRK4_SWEEPS: u32 = 30;
+
+/// One line of a study: one stepping of one scenario, run by one or more members.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedRow {
+    /// What it is for.
+    pub role: Role,
+    /// What the line is called; see [`CostRow::name`](super::CostRow::name).
+    pub name: String,
+    /// The scenario to simulate, with duration, windows and accuracy of the study.
+    pub scenario: Scenario,
+    /// Members of the ensemble that run it.
+    pub members: Range<u32>,
+}
+
+/// What a line of a study is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Role {
+    /// One of the two methods that make the reference; in an ablation the whole scenario.
+    Reference,
+    /// The whole scenario of an ablation, disturbed: where it parts from itself, no history can be trusted.
+    Twin,
+    /// A method and step.
+    Method,
+    /// A mesh, its target element lengths multiplied by `factor`.
+    Mesh {
+        /// Factor on all target element lengths.
+        factor: f64,
+    },
+    /// The scenario without one of its effects.
+    Without {
+        /// The effect.
+        effect: Effect,
+    },
+}
+
+/// The lines of a study, its reference first.
+///
+/// # Errors
+/// When the scenario has no equilibrium.
+pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
+    let study = scenario.cost_study.clone().unwrap_or_default();
+    let model = Model::new(scenario)?;
+    let duration = study.duration.unwrap_or(scenario.duration);
+    let base = Scenario {
+        recording: recording(scenario, duration, &model),
+        duration,
+        cost_study: None,
+        ensemble: 1,
+        ..scenario.clone()
+    };
+    if study.effects {
+        return Ok(ablation(scenario, &study, base));
+    }
+    let row = |role, name: &str, accuracy| PlannedRow {
+        role,
+        name: name.to_owned(),
+        scenario: Scenario { accuracy, ..base.clone() },
+        members: 0..study.members,
+    };
+    let interval = 1.0 / base.recording.rate_hz;
+    let reference = match &study.reference.methods {
+        Some(methods) => methods.clone(),
+        None => {
+            let limit = rk4_stability_limit(&model, &Equilibrium::find(&model)?)?;
+            usual_reference(interval, limit)
+        }
+    };
+    let mut rows: Vec<_> = reference
+        .into_iter()
+        .zip(["A", "B"])
+        .map(|(stepping, name)| row(Role::Reference, name, Accuracy::Explicit(stepping)))
+        .collect();
+    rows.extend(
+        study.presets.iter().map(|&preset| row(Role::Method, preset.name(), Accuracy::Preset(preset))),
+    );
+    let methods = study.methods.clone().unwrap_or_else(|| usual_methods(interval));
+    let steppings = methods.iter().flat_map(MethodSteps::steppings);
+    rows.extend(
+        steppings.map(|stepping| row(Role::Method, stepping.integrator.name(), Accuracy::Explicit(stepping))),
+    );
+    rows.extend(study.meshes().into_iter().map(|factor| {
+        let preset = AccuracyPreset::Reference;
+        let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
+        planned.scenario.mesh = planned.scenario.mesh.scaled(factor);
+        planned
+    }));
+    Ok(rows)
+}
+
+/// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
+/// their steps adapt themselves.
+pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
+    let cost = |row: &PlannedRow| {
+        let members = f64::from(row.members.end - row.members.start);
+        Some(members * Plan::new(&row.scenario, Some(speed)).ok()?.cpu_time()?)
+    };
+    rows.iter().map(cost).fold((0.0, 0), |(time, unknown), cost| match cost {
+        Some(cost) => (time + cost, unknown),
+        None => (time, unknown + 1),
+    })
+}
+
+/// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
+fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<PlannedRow> {
+    let decisions = scenario.decide_effects();
+    for decision in &decisions {
+        base.effects.set(decision.effect, if decision.active { Switch::On } else { Switch::Off });
+    }
+    let name = match base.accuracy {
+        Accuracy::Preset(preset) => preset.name(),
+        Accuracy::Target(_) => "tolerance",
+        Accuracy::Explicit(stepping) => stepping.integrator.name(),
+    };
+    let row = |role, members| PlannedRow { role, name: name.to_owned(), scenario: base.clone(), members };
+    let mut rows = vec![row(Role::Reference, 0..study.members)];
+    if study.members == 1 {
+        rows.push(row(Role::Twin, 1..2));
+    }
+    let in_play = decisions.iter().filter(|decision| decision.active && decision.effect != Effect::Transient);
+    rows.extend(in_play.map(|&EffectDecision { effect, .. }| {
+        let mut planned = row(Role::Without { effect }, 0..study.members);
+        planned.scenario.effects.set(effect, Switch::Off);
+        planned
+    }));
+    rows
+}
+
+/// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers, and
+/// where the duration is another one, orbits over its last third and spectra over its last sixth.
+fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
+    let asked = &scenario.recording;
+    let last = |part: f64| {
+        let from = (duration * (1.0 - part) * asked.rate_hz).round() / asked.rate_hz;
+        TimeWindow { from, to: duration }
+    };
+    let is_own = duration == scenario.duration;
+    let spectrum_window = if is_own { asked.spectrum_windows.last().copied() } else { Some(last(1.0 / 6.0)) };
+    let nodes = recorded_nodes(model).into_iter();
+    Recording {
+        rate_hz: asked.rate_hz,
+        nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
+        spectrum_windows: spectrum_window.into_iter().collect(),
+        orbit_window: Some(if is_own { scenario.orbit_window() } else { last(1.0 / 3.0) }),
+        stability: false,
+        outputs: Outputs::Full,
+    }
+}
+
+/// RK4 with its usual step or below its stability limit \[s\], and ESDIRK4 with a small step and converged sweeps.
+fn usual_reference(interval: f64, limit: f64) -> Vec<TimeStepping> {
+    let rk4 = part_of(interval, RK4_STEP.min(BELOW_LIMIT * limit));
+    let esdirk4 = TimeStepping::fixed(Integrator::Esdirk4, part_of(interval, ESDIRK4_STEP));
+    vec![
+        TimeStepping::fixed(Integrator::Rk4, rk4),
+        TimeStepping { contact_sweeps: ESDIRK4_SWEEPS, ..esdirk4 },
+    ]
+}
+
+/// The usual steps as parts of the recording interval \[s\].
+fn usual_methods(interval: f64) -> Vec<MethodSteps> {
+    let of = |(integrator, steps): (Integrator, [f64; 3])| {
+        let mut steps = steps.map(|step| part_of(interval, step)).to_vec();
+        steps.dedup();
+        MethodSteps::fixed(integrator, steps)
+    };
+    USUAL_STEPS.into_iter().map(of).collect()
+}
+
+/// The longest part of the interval that is no longer than `step` \[s\].
+fn part_of(interval: f64, step: f64) -> f64 {
+    interval / (interval / step * (1.0 - 1e-9)).ceil().max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::preset;
+
+    fn planned(change: impl Fn(&mut Scenario)) -> Vec<PlannedRow> {
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.cost_study = Some(CostStudy::default());
+        change(&mut scenario);
+        scenario.validate().unwrap();
+        let rows = plan(&scenario).unwrap();
+        for row in &rows {
+            row.scenario.validate().unwrap();
+        }
+        rows
+    }
+
+    #[test]
+    fn a_study_looks_at_what_is_read() {
+        let own = preset("paper-200m").unwrap();
+        let rows = planned(|_| {});
+        for row in &rows {
+            assert_eq!(row.scenario.duration, own.duration);
+            assert_eq!(row.scenario.orbit_window(), own.orbit_window());
+            let last = own.recording.spectrum_windows.last();
+            assert_eq!(row.scenario.recording.spectrum_windows.last(), last);
+            assert_eq!((row.scenario.recording.rate_hz, row.members.clone()), (1000.0, 0..1));
+        }
+        let names: Vec<_> = rows.iter().map(|row| row.name.as_str()).collect();
+        let alpha = ["generalized_alpha"; 3];
+        assert_eq!(names[..5], ["A", "B", "draft", "standard", "reference"]);
+        assert_eq!(names[5..], [&alpha[..], &["esdirk4"; 3]].concat());
+        let stepping = |row: &PlannedRow| row.scenario.accuracy.time_stepping();
+        assert_eq!(stepping(&rows[0]), TimeStepping::fixed(Integrator::Rk4, 5e-5));
+        assert_eq!((stepping(&rows[1]).step, stepping(&rows[1]).contact_sweeps), (1.25e-4, 30));
+    }
+
+    #[test]
+    fn a_shorter_study_looks_at_its_end() {
+        let rows = planned(|s| s.cost_study.as_mut().unwrap().duration = Some(6.0));
+        let recording = &rows[0].scenario.recording;
+        assert_eq!(recording.orbit_window, Some(TimeWindow { from: 4.0, to: 6.0 }));
+        assert_eq!(recording.spectrum_windows, [TimeWindow { from: 5.0, to: 6.0 }]);
+    }
+
+    #[test]
+    fn rk4s_reference_is_stable_on_finer_meshes_and_steps_are_parts_of_the_interval() {
+        let rows = planned(|s| {
+            // The limit is the tool joints' axial frequency: half their elements, half the step.
+            s.mesh.lengths_mut().unwrap().tool_joint *= 0.25;
+            s.recording.rate_hz = 800.0;
+            s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 6.25e-4));
+            s.cost_study.as_mut().unwrap().presets.clear();
+        });
+        let stepping = rows[0].scenario.accuracy.time_stepping();
+        assert!(stepping.step < 3e-5 && stepping.step > 1e-5, "{stepping:?}");
+        let steps = rows[2..].iter().map(|row| row.scenario.accuracy.time_stepping().step);
+        let parts = [3.0, 5.0, 10.0, 2.0, 3.0, 5.0];
+        assert_eq!(steps.collect::<Vec<_>>(), parts.map(|part| 1.0 / 800.0 / part));
+    }
+
+    #[test]
+    fn a_whole_error_needs_three_meshes() {
+        let meshes = |mesh_factors: &[f64]| -> Vec<f64> {
+            let rows = planned(|s| {
+                let study = s.cost_study.as_mut().unwrap();
+                (study.total, study.mesh_factors) = (Some(0.05), mesh_factors.to_vec());
+            });
+            let factor =
+                |row: &PlannedRow| if let Role::Mesh { factor } = row.role { Some(factor) } else { None };
+            rows.iter().filter_map(factor).collect()
+        };
+        assert_eq!(meshes(&[]), [1.0, 0.5, 0.25]);
+        assert_eq!(meshes(&[0.25, 4.0]), [4.0, 1.0, 0.25]);
+    }
+
+    #[test]
+    fn members_and_methods_are_those_asked_for() {
+        let adaptive =
+            MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
+        let rows = planned(|s| {
+            let study = s.cost_study.as_mut().unwrap();
+            study.members = 5;
+            study.presets = vec![AccuracyPreset::Draft];
+            study.methods = Some(vec![adaptive.clone()]);
+            study.mesh_factors = vec![0.5];
+        });
+        assert!(rows.iter().all(|row| row.members == (0..5)));
+        let roles: Vec<_> = rows[2..].iter().map(|row| row.role).collect();
+        let mesh = |factor| Role::Mesh { factor };
+        assert_eq!(roles, [Role::Method, Role::Method, mesh(1.0), mesh(0.5)]);
+        assert_eq!(rows[3].scenario.accuracy.time_stepping().tolerance, Some(1e-3));
+        assert_eq!(rows[4].name, "reference");
+
+        let speed = MachineSpeed {
+            statics_per_node: 0.0,
+            start_per_node: [0.0; 4],
+            step_per_node: [[1e-6; 3]; 4],
+            large_mesh_factor: 1.0,
+        };
+        // One row's steps are not known; 297 nodes, 60 s, five members of the others.
+        let draft_steps = Plan::new(&rows[2].scenario, None).unwrap().accuracies[0].steps.unwrap();
+        let (time, unknown) = expected_cpu_time(&rows[..4], &speed);
+        assert_eq!(unknown, 1);
+        let steps = 60.0 / 5e-5 + 60.0 / 1.25e-4 + draft_steps as f64;
+        assert!((time / (5.0 * 297e-6 * steps) - 1.0).abs() < 1e-9, "{time}");
+    }
+}

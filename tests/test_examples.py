@@ -56,5 +56,5 @@ def test_python_and_curl_give_the_same_table(server: str, tmp_path: Path) -> Non
     assert peaks[0]["amplitude"] == max(peak["amplitude"] for peak in peaks)
 
 
-def test_the_readme_shows_the_example_as_it_is() -> None:
-    assert (REPOSITORY / "examples" / "sweep.py").read_text() in (REPOSITORY / "README.md").read_text()
+def test_the_guide_shows_the_example_as_it_is() -> None:
+    assert (REPOSITORY / "examples" / "sweep.py").read_text() in (REPOSITORY / "docs" / "guide.md").read_text()

@@ -17,7 +17,7 @@ fn main() {
 }
 
 /// Numerically full blocks, diagonally dominant.
-fn matrix(seed: f64) -> BlockTridiagonal<f64> {
+fn matrix(seed: f64) -> BlockTridiagonal {
     let block = |row: usize, shift: f64| {
         Block::from_fn(|i, j| (seed + (row * 36 + i * 6 + j) as f64).sin() + if i == j { shift } else { 0.0 })
     };
@@ -28,7 +28,7 @@ fn matrix(seed: f64) -> BlockTridiagonal<f64> {
     }
 }
 
-fn vector(seed: f64) -> BlockVector<f64> {
+fn vector(seed: f64) -> BlockVector {
     (0..ROWS).map(|row| std::array::from_fn(|i| (seed + (6 * row + i) as f64).cos())).collect()
 }
 

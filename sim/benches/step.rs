@@ -1,5 +1,4 @@
-//! What one time step of the 200 m case costs, beside what the machine's caches and arithmetic allow, and whether sweep
-//! points side by side in a vector would be cheaper than one after the other.
+//! What one time step of the 200 m case costs, beside what the machine's caches and arithmetic allow.
 //! Run: `cargo bench -p drillsweep-sim --bench step`
 //!
 //! Every figure is the shortest of several repeats in the same process, so that ratios hold on a shared machine.
@@ -7,15 +6,13 @@
 use std::hint::black_box;
 
 use drillsweep_sim::control::Control;
-use drillsweep_sim::linalg::{
-    Block, BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric,
-};
+use drillsweep_sim::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric};
 use drillsweep_sim::model::Model;
 use drillsweep_sim::scenario::{Accuracy, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 
-/// Bytes of a block of one lane.
+/// Bytes of a block.
 const BLOCK: usize = 36 * 8;
 
 /// What the velocity of a stage is per displacement \[1/s\]: that of ESDIRK4 with 1 ms.
@@ -31,39 +28,29 @@ fn main() {
 
 fn report(out: &mut impl std::io::Write) -> std::io::Result<()> {
     let matrices = Matrices::of_the_base_case();
-    let (one, four) = (matrices.alone(), matrices.side_by_side());
+    let kernels = matrices.kernels();
 
     writeln!(out, "the machine, one core")?;
-    let bandwidth = [&one, &four].map(|kernels| stream(kernels.lanes * kernels.working_set));
-    for (kernels, rate) in [&one, &four].into_iter().zip(bandwidth) {
-        let kilobytes = kernels.lanes * kernels.working_set / 1024;
-        let lanes = kernels.lanes;
-        writeln!(
-            out,
-            "  reads {:6.1} GB/s from {kilobytes} KB, the matrices of {lanes} lane(s)",
-            rate / 1e9
-        )?;
-    }
+    let rate = stream(kernels.working_set);
+    let kilobytes = kernels.working_set / 1024;
+    writeln!(out, "  reads {:6.1} GB/s from {kilobytes} KB, the size of the matrices", rate / 1e9)?;
     let peak = multiply_add_rate();
     writeln!(out, "  fused multiply-adds {:.1} Gflop/s", peak / 1e9)?;
 
-    writeln!(out, "\nkernels, us for each lane           1 lane  4 lanes")?;
-    let mut row = |name: &str, value: &dyn Fn(&Kernels, f64) -> f64| {
-        let values = [value(&one, bandwidth[0]), value(&four, bandwidth[1])];
-        writeln!(out, "  {name:30} {:8.2} {:8.2}", values[0] * 1e6, values[1] * 1e6)
-    };
-    row("M a + C v", &|kernels, _| kernels.products)?;
-    row("solve", &|kernels, _| kernels.solve)?;
-    row("factor", &|kernels, _| kernels.factor)?;
-    row("a stage: one and two of them", &|kernels, _| kernels.products + 2.0 * kernels.solve)?;
-    row("its limit by cache reads", &|kernels, rate| kernels.bytes_per_stage as f64 / rate)?;
-    row("its limit by arithmetic", &|kernels, _| kernels.flops_per_stage as f64 / peak)?;
+    writeln!(out, "\nkernels, us")?;
+    let limit = kernels.bytes_per_stage as f64 / rate;
+    let mut row = |name: &str, value: f64| writeln!(out, "  {name:30} {:8.2}", value * 1e6);
+    row("M a + C v", kernels.products)?;
+    row("solve", kernels.solve)?;
+    row("factor", kernels.factor)?;
+    row("a stage: one and two of them", kernels.products + 2.0 * kernels.solve)?;
+    row("its limit by cache reads", limit)?;
+    row("its limit by arithmetic", kernels.flops_per_stage as f64 / peak)?;
 
     writeln!(
         out,
         "\nwhole steps, alone           us/step  CPU s/s  stages  us/stage  of the kernels' limit"
     )?;
-    let limit = one.bytes_per_stage as f64 / bandwidth[0];
     let fixed = |integrator, step| Accuracy::Explicit(TimeStepping::fixed(integrator, step));
     let methods = [
         ("generalized-alpha, 0.5 ms", fixed(Integrator::GeneralizedAlpha, 5e-4), 1.0, 0.5),
@@ -132,14 +119,13 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     timed
 }
 
-/// What the matrices' part of a stage takes for each of some lanes: `M a + C v` once, a solve in each of two contact sweeps.
+/// What the matrices' part of a stage takes: `M a + C v` once, a solve in each of two contact sweeps.
 struct Kernels {
-    lanes: usize,
     /// Shortest times \[s\].
     products: f64,
     solve: f64,
     factor: f64,
-    /// Bytes of the matrices of a lane.
+    /// Bytes of the matrices.
     working_set: usize,
     bytes_per_stage: usize,
     flops_per_stage: usize,
@@ -147,9 +133,9 @@ struct Kernels {
 
 /// Those of the base case and its stages.
 struct Matrices {
-    mass: BlockTridiagonal<f64>,
-    damping: BlockTridiagonal<f64>,
-    stage: BlockTridiagonal<f64>,
+    mass: BlockTridiagonal,
+    damping: BlockTridiagonal,
+    stage: BlockTridiagonal,
     load: Vec<[f64; 6]>,
 }
 
@@ -175,7 +161,7 @@ impl Matrices {
     }
 
     /// As a run does it.
-    fn alone(&self) -> Kernels {
+    fn kernels(&self) -> Kernels {
         let pair = MatrixPair::<Symmetric>::new(&self.mass, &self.damping);
         let load = NodalField::from_nodes(&self.load);
         let (x, y, mut product) = (load.clone(), load.clone(), load.clone());
@@ -188,7 +174,6 @@ impl Matrices {
         let solve = || factor.solve_field(black_box(&load), &mut between, &mut solution);
         let [products, solve, factor] = shortest(products, solve, &self.stage);
         Kernels {
-            lanes: 1,
             products,
             solve,
             factor,
@@ -197,44 +182,10 @@ impl Matrices {
             flops_per_stage: flops,
         }
     }
-
-    /// Four points in the lanes of a register, whose matrices have all their entries in common places.
-    fn side_by_side(&self) -> Kernels {
-        let (mass, damping) = (in_lanes::<Four>(&self.mass), in_lanes::<Four>(&self.damping));
-        let x = self.in_lanes();
-        let mut product = x.clone();
-        let matrix_size = 3 * BLOCK * self.rows();
-        let stage = in_lanes::<Four>(&self.stage);
-        let factor = Factor::new(&stage).expect("it is what a run solves");
-        let mut solution = x.clone();
-        let products = || {
-            mass.multiply_into(black_box(&x), &mut product);
-            damping.multiply_add(black_box(&x), &mut product);
-        };
-        let times = shortest(products, || factor.solve_into(black_box(&x), &mut solution), &stage);
-        let [products, solve, factor] = times.map(|time| time / 4.0);
-        Kernels {
-            lanes: 4,
-            products,
-            solve,
-            factor,
-            working_set: 3 * matrix_size,
-            bytes_per_stage: 4 * matrix_size,
-            flops_per_stage: 2 * 4 * matrix_size / 8,
-        }
-    }
-
-    fn in_lanes<L: Lane>(&self) -> Vec<[L; 6]> {
-        self.load.iter().map(|node| node.map(L::splat)).collect()
-    }
 }
 
-/// Shortest times \[s\] of the products, a solve and a factorisation, all lanes together.
-fn shortest<L: Lane>(
-    mut products: impl FnMut(),
-    mut solve: impl FnMut(),
-    matrix: &BlockTridiagonal<L>,
-) -> [f64; 3] {
+/// Shortest times \[s\] of the products, a solve and a factorisation.
+fn shortest(mut products: impl FnMut(), mut solve: impl FnMut(), matrix: &BlockTridiagonal) -> [f64; 3] {
     let mut shortest = [f64::INFINITY; 3];
     // In turn, as in a stage: the matrices compete for the cache.
     for _ in 0..400 {
@@ -249,18 +200,6 @@ fn shortest<L: Lane>(
         }));
     }
     shortest
-}
-
-/// The same matrix in every lane.
-fn in_lanes<L: Lane>(matrix: &BlockTridiagonal<f64>) -> BlockTridiagonal<L> {
-    let blocks = |blocks: &[Block<f64>]| {
-        blocks.iter().map(|block| Block::from_fn(|i, j| L::splat(block[(i, j)]))).collect()
-    };
-    BlockTridiagonal {
-        lower: blocks(&matrix.lower),
-        diagonal: blocks(&matrix.diagonal),
-        upper: blocks(&matrix.upper),
-    }
 }
 
 fn processor_time() -> f64 {

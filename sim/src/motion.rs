@@ -17,13 +17,13 @@ pub struct DynamicSystem<const D: usize = 6> {
     /// [`DynamicSystem::reduced_to`] leaves out those that are held at every node.
     pub places: [usize; D],
     /// Mass: structure and added mass of the mud.
-    pub mass: BlockTridiagonal<f64, D>,
+    pub mass: BlockTridiagonal<D>,
     /// Everything that multiplies velocities: Rayleigh damping, gyroscopic, mud damping, Coriolis.
-    pub damping: BlockTridiagonal<f64, D>,
+    pub damping: BlockTridiagonal<D>,
     /// Everything that multiplies displacements.
-    pub stiffness: BlockTridiagonal<f64, D>,
+    pub stiffness: BlockTridiagonal<D>,
     /// The parts of `damping` by the account of the energy ledger that their work belongs to, in the order of [`Account::ALL`].
-    damping_of: [BlockTridiagonal<f64, D>; Account::ALL.len()],
+    damping_of: [BlockTridiagonal<D>; Account::ALL.len()],
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
     pub load: NodalVector<D>,
@@ -142,7 +142,7 @@ impl Model {
 
 impl<const D: usize> DynamicSystem<D> {
     /// The part of `damping` whose work belongs to an account of the energy ledger.
-    pub fn damping_of(&self, account: Account) -> &BlockTridiagonal<f64, D> {
+    pub fn damping_of(&self, account: Account) -> &BlockTridiagonal<D> {
         &self.damping_of[account as usize]
     }
 
@@ -160,8 +160,8 @@ impl DynamicSystem {
 
     /// The same system without the degrees of freedom that are held at every node: `places` are the others.
     pub fn reduced_to<const D: usize>(&self, places: [usize; D]) -> DynamicSystem<D> {
-        let reduced = |matrix: &BlockTridiagonal<f64>| {
-            let of = |blocks: &[Block<f64>]| -> Vec<Block<f64, D>> {
+        let reduced = |matrix: &BlockTridiagonal| {
+            let of = |blocks: &[Block]| -> Vec<Block<D>> {
                 blocks.iter().map(|b| Block::from_fn(|i, j| b[(places[i], places[j])])).collect()
             };
             BlockTridiagonal {
@@ -186,7 +186,7 @@ impl DynamicSystem {
 
 /// Moves the constant forces of held degrees of freedom, at their equilibrium values, to the load.
 fn move_held_to_load(
-    stiffness: &BlockTridiagonal<f64>,
+    stiffness: &BlockTridiagonal,
     held: &[[bool; 6]],
     displacement: &[[f64; 6]],
     load: &mut NodalVector,

@@ -66,7 +66,7 @@ fn every_eigenvalue_of_a_band_is_found() {
     let pencil = Pencil::about(&model, &equilibrium);
     let free: Vec<usize> =
         pencil.held.as_flattened().iter().enumerate().filter(|(_, held)| !**held).map(|(i, _)| i).collect();
-    let dense = |matrix: &BlockTridiagonal<f64>| {
+    let dense = |matrix: &BlockTridiagonal| {
         let n = matrix.rows();
         let mut full = DMatrix::zeros(6 * n, 6 * n);
         for row in 0..n {
@@ -124,7 +124,7 @@ impl Beam {
         beam
     }
 
-    fn add(&mut self, of: fn(&mut Pencil) -> &mut BlockTridiagonal<f64>, matrix: &ElementMatrix) {
+    fn add(&mut self, of: fn(&mut Pencil) -> &mut BlockTridiagonal, matrix: &ElementMatrix) {
         let target = of(&mut self.pencil);
         for e in 0..target.rows() - 1 {
             add_element_matrix(target, e, matrix);

@@ -2,8 +2,7 @@
 
 use super::block::{Block, DOFS};
 use super::field::NodalField;
-use super::lane::{Lane, Mask};
-use super::operator::Operator;
+use super::split::SplitBlock;
 use super::tridiagonal::BlockTridiagonal;
 
 /// A factored [`BlockTridiagonal`], ready to solve.
@@ -12,54 +11,52 @@ use super::tridiagonal::BlockTridiagonal;
 /// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
 /// matrix can be regular and still fail; [`Factor::growth`] tells how much was lost.
 #[derive(Debug, Clone)]
-pub struct Factor<L: Lane, const D: usize = DOFS> {
+pub struct Factor<const D: usize = DOFS> {
     /// From the top end, in the order of elimination.
-    top: Chain<L, D>,
+    top: Chain<D>,
     /// From the bottom end, in the order of elimination.
-    bottom: Chain<L, D>,
-    middle: Elimination<L, D>,
+    bottom: Chain<D>,
+    middle: Elimination<D>,
     /// `-S^-1 U` of the middle row, S its pivot block.
-    middle_from_below: L::Operator<D>,
-    growth: L,
+    middle_from_below: SplitBlock<D>,
+    growth: f64,
 }
 
 /// A pivot block could not be inverted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the pivot block of row {row} is singular (lane {lane})")]
+#[error("the pivot block of row {row} is singular")]
 pub struct SingularBlock {
     /// Block row, counted from 0.
     pub row: usize,
-    /// The first lane in which it is singular.
-    pub lane: usize,
 }
 
 /// Rows eliminated one after the other from one end.
 #[derive(Debug, Clone)]
-struct Chain<L: Lane, const D: usize = DOFS> {
-    eliminations: Vec<Elimination<L, D>>,
+struct Chain<const D: usize = DOFS> {
+    eliminations: Vec<Elimination<D>>,
     /// `-S^-1` times the coupling to the next row inwards.
-    inward: Vec<L::Operator<D>>,
+    inward: Vec<SplitBlock<D>>,
 }
 
 /// What eliminating a row leaves for the way inwards; S is its pivot block.
 #[derive(Debug, Clone, Copy)]
-struct Elimination<L: Lane, const D: usize = DOFS> {
+struct Elimination<const D: usize = DOFS> {
     /// `S^-1`.
-    inverse: L::Operator<D>,
+    inverse: SplitBlock<D>,
     /// `-S^-1` times the coupling to the row before.
-    outward: L::Operator<D>,
+    outward: SplitBlock<D>,
 }
 
-impl<L: Lane, const D: usize> Factor<L, D> {
+impl<const D: usize> Factor<D> {
     /// Factors a matrix of at least one row.
     ///
     /// # Errors
     /// The row whose pivot block is singular to working precision, or holds values that are not finite.
-    pub fn new(matrix: &BlockTridiagonal<L, D>) -> Result<Self, SingularBlock> {
+    pub fn new(matrix: &BlockTridiagonal<D>) -> Result<Self, SingularBlock> {
         let rows = matrix.rows();
         assert!(rows > 0, "a matrix without rows");
         let middle = rows / 2;
-        let mut growth = L::splat(0.0);
+        let mut growth = 0.0;
 
         let mut top = Chain::with_capacity(middle);
         let mut from_above = Block::zero();
@@ -86,7 +83,7 @@ impl<L: Lane, const D: usize> Factor<L, D> {
         let negated = inverse.negated();
         Ok(Factor {
             middle: Elimination::new(&inverse, &negated.multiply_block(&matrix.lower[middle])),
-            middle_from_below: L::Operator::new(&negated.multiply_block(&matrix.upper[middle])),
+            middle_from_below: SplitBlock::new(&negated.multiply_block(&matrix.upper[middle])),
             top,
             bottom,
             growth,
@@ -100,18 +97,18 @@ impl<L: Lane, const D: usize> Factor<L, D> {
 
     /// Largest ratio of an entry of a pivot block to the largest entry of the matrix' own diagonal block in
     /// that row. About one in time stepping; the solution loses that factor of its precision.
-    pub fn growth(&self) -> L {
+    pub fn growth(&self) -> f64 {
         self.growth
     }
 
     /// Solves `A x = b`.
-    pub fn solve_into(&self, b: &[[L; D]], x: &mut [[L; D]]) {
+    pub fn solve_into(&self, b: &[[f64; D]], x: &mut [[f64; D]]) {
         x.copy_from_slice(b);
         self.solve_in_place(x);
     }
 
     /// Replaces a right-hand side by the solution.
-    pub fn solve_in_place(&self, x: &mut [[L; D]]) {
+    pub fn solve_in_place(&self, x: &mut [[f64; D]]) {
         self.solve_with(|_, x| *x, x, |_, value, x| *x = value);
     }
 
@@ -120,9 +117,9 @@ impl<L: Lane, const D: usize> Factor<L, D> {
     #[inline(always)]
     fn solve_with(
         &self,
-        right: impl Fn(usize, &[L; D]) -> [L; D],
-        between: &mut [[L; D]],
-        mut put: impl FnMut(usize, [L; D], &mut [L; D]),
+        right: impl Fn(usize, &[f64; D]) -> [f64; D],
+        between: &mut [[f64; D]],
+        mut put: impl FnMut(usize, [f64; D], &mut [f64; D]),
     ) {
         let rows = self.rows();
         assert_eq!(between.len(), rows);
@@ -130,8 +127,8 @@ impl<L: Lane, const D: usize> Factor<L, D> {
         let (above, rest) = between.split_at_mut(half);
         let [middle, below @ ..] = rest else { unreachable!("the middle row exists") };
 
-        let mut from_top = [L::splat(0.0); D];
-        let mut from_bottom = [L::splat(0.0); D];
+        let mut from_top = [0.0; D];
+        let mut from_bottom = [0.0; D];
         let mut bottom_rows = self.bottom.eliminations.iter().zip(below.iter_mut().rev());
         for (row, (elimination, x)) in self.top.eliminations.iter().zip(above.iter_mut()).enumerate() {
             from_top = elimination.apply(&right(row, x), &from_top);
@@ -161,7 +158,7 @@ impl<L: Lane, const D: usize> Factor<L, D> {
     }
 }
 
-impl<const D: usize> Factor<f64, D> {
+impl<const D: usize> Factor<D> {
     /// Solves `A x = b`; `between` is room for as many rows.
     ///
     /// # Panics
@@ -172,47 +169,45 @@ impl<const D: usize> Factor<f64, D> {
     }
 }
 
-impl<L: Lane, const D: usize> Chain<L, D> {
+impl<const D: usize> Chain<D> {
     fn with_capacity(rows: usize) -> Self {
         Chain { eliminations: Vec::with_capacity(rows), inward: Vec::with_capacity(rows) }
     }
 
     /// Adds a row and returns its inward block.
-    fn push(&mut self, inverse: Block<L, D>, outward: &Block<L, D>, inward: &Block<L, D>) -> Block<L, D> {
+    fn push(&mut self, inverse: Block<D>, outward: &Block<D>, inward: &Block<D>) -> Block<D> {
         let negated = inverse.negated();
         let inward = negated.multiply_block(inward);
         self.eliminations.push(Elimination::new(&inverse, &negated.multiply_block(outward)));
-        self.inward.push(L::Operator::new(&inward));
+        self.inward.push(SplitBlock::new(&inward));
         inward
     }
 }
 
-impl<L: Lane, const D: usize> Elimination<L, D> {
-    fn new(inverse: &Block<L, D>, outward: &Block<L, D>) -> Self {
-        Self { inverse: L::Operator::new(inverse), outward: L::Operator::new(outward) }
+impl<const D: usize> Elimination<D> {
+    fn new(inverse: &Block<D>, outward: &Block<D>) -> Self {
+        Self { inverse: SplitBlock::new(inverse), outward: SplitBlock::new(outward) }
     }
 
     /// `S^-1 b - S^-1 (coupling) previous`.
     #[inline(always)]
-    fn apply(&self, b: &[L; D], previous: &[L; D]) -> [L; D] {
+    fn apply(&self, b: &[f64; D], previous: &[f64; D]) -> [f64; D] {
         self.inverse.sum_of_products(b, &self.outward, previous)
     }
 }
 
 /// The inverse of a pivot block; counts its growth over the matrix' own block.
-fn invert<L: Lane, const D: usize>(
-    pivot: &Block<L, D>,
+fn invert<const D: usize>(
+    pivot: &Block<D>,
     row: usize,
-    original: &Block<L, D>,
-    growth: &mut L,
-) -> Result<Block<L, D>, SingularBlock> {
+    original: &Block<D>,
+    growth: &mut f64,
+) -> Result<Block<D>, SingularBlock> {
     let largest = pivot.largest();
     let (inverse, smallest_pivot) = pivot.inverse();
-    let regular =
-        smallest_pivot.greater_than(largest * L::splat(D as f64 * f64::EPSILON)) & inverse.is_finite();
-    if (!regular).any() {
-        let lane = (0..L::LANES).position(|lane| !regular.lane(lane)).unwrap_or(0);
-        return Err(SingularBlock { row, lane });
+    let regular = smallest_pivot > largest * (D as f64 * f64::EPSILON) && inverse.is_finite();
+    if !regular {
+        return Err(SingularBlock { row });
     }
     *growth = growth.max(largest / original.largest());
     Ok(inverse)

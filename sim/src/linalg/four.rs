@@ -4,7 +4,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use wide::f64x4;
 
-use super::{Block, Lane, Mask};
+use super::{Lane, Mask};
 
 /// Whether vectors multiply and add in one instruction. Without, they would round twice, and a lane alone once: then all goes lane by
 /// lane, at a twelfth of the speed, to the same bits.
@@ -127,7 +127,6 @@ impl Neg for Four {
 impl Lane for Four {
     const LANES: usize = 4;
     type Mask = FourMask;
-    type Operator<const D: usize> = Block<Four, D>;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -1,11 +1,9 @@
-//! The number type of the kernels.
+//! The number type of laws that are evaluated for one node or for several side by side.
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::operator::{Operator, SplitBlock};
-
-/// One value for each of [`Lane::LANES`] sweep points.
+/// One value for each of [`Lane::LANES`] nodes.
 ///
 /// Every operation acts on each lane alone and rounds as the same operation of one `f64` does, so a lane's
 /// bits do not depend on how many others lie beside it. Code over lanes chooses by [`Lane::select`] and may
@@ -27,9 +25,6 @@ pub trait Lane:
 
     /// One truth value for each lane.
     type Mask: Mask;
-
-    /// How a block is kept that is multiplied over and over.
-    type Operator<const D: usize>: Operator<Self, D>;
 
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
@@ -146,7 +141,6 @@ const ATAN_Q: [f64; 5] = [
 impl Lane for f64 {
     const LANES: usize = 1;
     type Mask = bool;
-    type Operator<const D: usize> = SplitBlock<D>;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

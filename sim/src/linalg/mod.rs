@@ -1,11 +1,10 @@
 //! Block-tridiagonal kernels, and the nodal vectors of a time step.
 //!
 //! A string is a chain, so every matrix of it couples a node to its two neighbours only: a
-//! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`]. These are written
-//! over a [`Lane`]: one `f64`, or several matrices side by side, with the same operations in the same order.
+//! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`].
 //!
 //! A time step holds four neighbouring nodes of one string side by side in a [`NodalField`], and multiplies by a [`MatrixPair`] or takes
-//! the form of a [`SkewPart`]. Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
+//! the form of a [`SkewPart`]. Laws of a node are written over a [`Lane`], one node or [`Four`], with the same operations in the same order. Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
 
 /// The body for every degree of freedom in turn, written out: left to itself, the compiler keeps a loop and counts entries in it.
 macro_rules! each_dof {
@@ -26,9 +25,9 @@ mod factor;
 mod field;
 mod four;
 mod lane;
-mod operator;
 mod pair;
 mod skew;
+mod split;
 mod tridiagonal;
 
 #[cfg(test)]
@@ -39,10 +38,9 @@ pub use factor::{Factor, SingularBlock};
 pub use field::{Neighbourhood, NodalField, after};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
-pub use operator::{Operator, SplitBlock};
 pub use pair::{General, MatrixPair, Storage, Symmetric};
 pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::{BlockTridiagonal, can_couple};
 
 /// One row of values for every node.
-pub type BlockVector<L, const D: usize = DOFS> = Vec<[L; D]>;
+pub type BlockVector<const D: usize = DOFS> = Vec<[f64; D]>;

@@ -35,7 +35,7 @@ pub trait Storage<const D: usize> {
     fn count(last_couples: bool) -> usize;
 
     /// Adds those of the rows from `first` on, zeros beyond the last one.
-    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>);
+    fn store(matrix: &BlockTridiagonal<D>, first: usize, last_couples: bool, entries: &mut Vec<Four>);
 
     /// Their product with x.
     fn product<const LAST: bool>(
@@ -50,7 +50,7 @@ impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     ///
     /// # Panics
     /// When they differ in size.
-    pub fn new(a: &BlockTridiagonal<f64, D>, b: &BlockTridiagonal<f64, D>) -> Self {
+    pub fn new(a: &BlockTridiagonal<D>, b: &BlockTridiagonal<D>) -> Self {
         assert_eq!(a.rows(), b.rows());
         let last_couples = [a, b].into_iter().any(BlockTridiagonal::last_couples);
         let mut entries = Vec::new();
@@ -121,7 +121,7 @@ impl<const D: usize> Storage<D> for General {
         3 * block_count::<D>(last_couples)
     }
 
-    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
+    fn store(matrix: &BlockTridiagonal<D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
         for column in 0..D {
             for (blocks, rows) in matrix.blocks() {
                 for row in (0..D).filter(|&row| can_couple::<D>(row, column, last_couples)) {
@@ -163,7 +163,7 @@ impl<const D: usize> Storage<D> for Symmetric {
         2 * block_count::<D>(last_couples)
     }
 
-    fn store(matrix: &BlockTridiagonal<f64, D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
+    fn store(matrix: &BlockTridiagonal<D>, first: usize, last_couples: bool, entries: &mut Vec<Four>) {
         for column in 0..D {
             for (blocks, rows) in matrix.blocks().into_iter().skip(1) {
                 for row in (0..D).filter(|&row| can_couple::<D>(row, column, last_couples)) {
@@ -216,7 +216,7 @@ const fn block_count<const D: usize>(last_couples: bool) -> usize {
 
 /// One entry of four blocks from `first` on; zeros where there is no block.
 fn side_by_side<const D: usize>(
-    blocks: &[Block<f64, D>],
+    blocks: &[Block<D>],
     start: usize,
     first: usize,
     place: (usize, usize),

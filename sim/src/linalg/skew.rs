@@ -33,9 +33,9 @@ pub type WeightedPair<'a, const D: usize> = (f64, &'a NodalField<D>, &'a NodalFi
 
 impl<const D: usize> SkewPart<D> {
     /// That of `m`, without entries up to `threshold`: rounding of terms that cancel.
-    pub fn new(m: &BlockTridiagonal<f64, D>, threshold: f64) -> Self {
+    pub fn new(m: &BlockTridiagonal<D>, threshold: f64) -> Self {
         let rows = m.rows();
-        let half_difference = |a: &Block<f64, D>, b: &Block<f64, D>, i: usize, j: usize| {
+        let half_difference = |a: &Block<D>, b: &Block<D>, i: usize, j: usize| {
             let half = 0.5 * (a[(i, j)] - b[(j, i)]);
             if half.abs() > threshold { half } else { 0.0 }
         };

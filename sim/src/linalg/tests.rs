@@ -11,12 +11,12 @@ impl Numbers {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn block(&mut self, diagonal: f64) -> Block<f64> {
+    fn block(&mut self, diagonal: f64) -> Block {
         Block::from_fn(|row, column| self.next() + if row == column { diagonal } else { 0.0 })
     }
 
     /// Nonsymmetric; block diagonally dominant from a `diagonal` of about 20.
-    fn matrix(&mut self, rows: usize, diagonal: f64) -> BlockTridiagonal<f64> {
+    fn matrix(&mut self, rows: usize, diagonal: f64) -> BlockTridiagonal {
         let mut matrix = BlockTridiagonal::zeros(rows);
         for row in 0..rows {
             matrix.add_block(row, row, &self.block(diagonal));
@@ -28,14 +28,14 @@ impl Numbers {
         matrix
     }
 
-    fn vector(&mut self, rows: usize) -> BlockVector<f64> {
+    fn vector(&mut self, rows: usize) -> BlockVector {
         (0..rows).map(|_| std::array::from_fn(|_| self.next())).collect()
     }
 }
 
 const ROW_COUNTS: [usize; 8] = [1, 2, 3, 4, 5, 17, 18, 64];
 
-fn dense(matrix: &BlockTridiagonal<f64>) -> DMatrix<f64> {
+fn dense(matrix: &BlockTridiagonal) -> DMatrix<f64> {
     let rows = matrix.rows();
     DMatrix::from_fn(DOFS * rows, DOFS * rows, |i, j| {
         let place = (i % DOFS, j % DOFS);
@@ -127,7 +127,7 @@ fn forms_of_the_skew_part_equal_dense_ones() {
             }
             let pairs = [(); 3].map(|()| (numbers.next(), numbers.vector(rows), numbers.vector(rows)));
             let skew = (dense(&matrix) - dense(&matrix).transpose()) * 0.5;
-            let form = |(weight, v, x): &(f64, BlockVector<f64>, BlockVector<f64>)| {
+            let form = |(weight, v, x): &(f64, BlockVector, BlockVector)| {
                 weight * (flat(v).transpose() * &skew * flat(x))[(0, 0)]
             };
             let expected = pairs.iter().map(form).sum::<f64>();
@@ -183,8 +183,8 @@ fn a_field_holds_what_its_nodes_hold() {
     }
 }
 
-fn transposed(matrix: &BlockTridiagonal<f64>) -> BlockTridiagonal<f64> {
-    let transposed = |block: &Block<f64>| Block::from_fn(|row, column| block[(column, row)]);
+fn transposed(matrix: &BlockTridiagonal) -> BlockTridiagonal {
+    let transposed = |block: &Block| Block::from_fn(|row, column| block[(column, row)]);
     let rows = matrix.rows();
     let mut out = BlockTridiagonal::zeros(rows);
     for row in 0..rows {
@@ -228,7 +228,7 @@ fn solutions_equal_dense_solutions() {
     }
 }
 
-fn field_solution<const D: usize>(factor: &Factor<f64, D>, b: &[[f64; D]]) -> BlockVector<f64, D> {
+fn field_solution<const D: usize>(factor: &Factor<D>, b: &[[f64; D]]) -> BlockVector<D> {
     let mut x = NodalField::zeros(b.len());
     factor.solve_field(&NodalField::from_nodes(b), &mut vec![[0.0; D]; b.len()], &mut x);
     x.to_nodes()
@@ -264,7 +264,7 @@ fn solutions_of_nodes_with_fewer_degrees_of_freedom_give_their_right_hand_side()
         let mut numbers = Numbers(13);
         for rows in ROW_COUNTS {
             let full = numbers.matrix(rows, 20.0);
-            let part = |blocks: &[Block<f64>]| -> Vec<Block<f64, D>> {
+            let part = |blocks: &[Block]| -> Vec<Block<D>> {
                 blocks.iter().map(|block| Block::from_fn(|i, j| block[(i, j)])).collect()
             };
             let matrix = BlockTridiagonal {
@@ -272,7 +272,7 @@ fn solutions_of_nodes_with_fewer_degrees_of_freedom_give_their_right_hand_side()
                 diagonal: part(&full.diagonal),
                 upper: part(&full.upper),
             };
-            let b: BlockVector<f64, D> = (0..rows).map(|_| std::array::from_fn(|_| numbers.next())).collect();
+            let b: BlockVector<D> = (0..rows).map(|_| std::array::from_fn(|_| numbers.next())).collect();
             let factor = Factor::new(&matrix).expect("diagonally dominant");
             let x = field_solution(&factor, &b);
             let mut product = b.clone();
@@ -293,8 +293,7 @@ fn solutions_of_nodes_with_fewer_degrees_of_freedom_give_their_right_hand_side()
 /// A permutation has no non-zero diagonal: only pivoting inside the block inverts it.
 #[test]
 fn blocks_are_inverted_with_pivoting() {
-    let permutation: Block<f64> =
-        Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
+    let permutation: Block = Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
     let (inverse, smallest_pivot) = permutation.inverse();
     assert_eq!(inverse, Block::from_fn(|row, column| permutation[(column, row)]));
     assert_eq!(smallest_pivot, 1.0);
@@ -313,7 +312,7 @@ fn a_singular_pivot_block_is_reported_with_its_row() {
             block[(row, 5)] = block[(row, 0)] - 3.0 * block[(row, 2)];
         }
         let error = Factor::new(&matrix).expect_err("two columns depend");
-        assert_eq!(error, SingularBlock { row: singular, lane: 0 });
+        assert_eq!(error, SingularBlock { row: singular });
     }
 }
 
@@ -369,61 +368,14 @@ fn arctangent_equals_the_system_library() {
     assert!(Lane::atan(f64::NAN).is_nan());
 }
 
-/// Four different matrices side by side; their weak diagonals make each lane swap its own rows.
 #[test]
-fn a_lane_has_the_bits_of_a_run_alone() {
-    let mut numbers = Numbers(7);
-    let rows = 9;
-    let alone: [_; 4] = std::array::from_fn(|_| {
-        (numbers.matrix(rows, 1.0), numbers.matrix(rows, 1.0), numbers.vector(rows), numbers.vector(rows))
-    });
-    let matrix = |choose: &dyn Fn(usize) -> BlockTridiagonal<f64>| {
-        let lanes: [_; 4] = std::array::from_fn(choose);
-        let blocks = |side: &dyn Fn(&BlockTridiagonal<f64>) -> &Vec<Block<f64>>| {
-            let entry =
-                |row: usize, i, j| Four::new(std::array::from_fn(|lane| side(&lanes[lane])[row][(i, j)]));
-            (0..rows).map(|row| Block::from_fn(|i, j| entry(row, i, j))).collect()
-        };
-        BlockTridiagonal {
-            lower: blocks(&|matrix| &matrix.lower),
-            diagonal: blocks(&|matrix| &matrix.diagonal),
-            upper: blocks(&|matrix| &matrix.upper),
-        }
-    };
-    let vector = |choose: &dyn Fn(usize) -> BlockVector<f64>| -> BlockVector<Four> {
-        let lanes: [_; 4] = std::array::from_fn(choose);
-        let value = |row: usize, dof: usize| Four::new(std::array::from_fn(|lane| lanes[lane][row][dof]));
-        (0..rows).map(|row| std::array::from_fn(|dof| value(row, dof))).collect()
-    };
-    let (a, b) = (matrix(&|lane| alone[lane].0.clone()), matrix(&|lane| alone[lane].1.clone()));
-    let (x, y) = (vector(&|lane| alone[lane].2.clone()), vector(&|lane| alone[lane].3.clone()));
-
-    let mut products = y.clone();
-    a.multiply_add(&x, &mut products);
-    let mut solutions = y.clone();
-    let splat = Four::splat;
-    let combined = BlockTridiagonal::combine(splat(0.3), &a, splat(-0.7), &b, splat(0.11), &a);
-    Factor::new(&combined).expect("random blocks are regular").solve_into(&x, &mut solutions);
-
-    for (lane, (a, b, x, y)) in alone.iter().enumerate() {
-        let mut product = y.clone();
-        a.multiply_add(x, &mut product);
-        assert_eq!(lane_of(&products, lane), product);
-        let mut solution = y.clone();
-        let combined = BlockTridiagonal::combine(0.3, a, -0.7, b, 0.11, a);
-        Factor::new(&combined).expect("random blocks are regular").solve_into(x, &mut solution);
-        assert_eq!(lane_of(&solutions, lane), solution);
-    }
-}
-
-#[test]
-fn a_singular_lane_is_named() {
-    let mut matrix = BlockTridiagonal::<Four>::zeros(3);
+fn a_singular_row_is_named() {
+    let mut matrix = BlockTridiagonal::<DOFS>::zeros(3);
     for row in 0..3 {
         matrix.add_block(row, row, &Block::identity());
     }
-    matrix.diagonal[1][(2, 2)].set_lane(3, 0.0);
-    assert_eq!(Factor::new(&matrix).expect_err("a zero row"), SingularBlock { row: 1, lane: 3 });
+    matrix.diagonal[1][(2, 2)] = 0.0;
+    assert_eq!(Factor::new(&matrix).expect_err("a zero row"), SingularBlock { row: 1 });
 }
 
 #[test]
@@ -433,8 +385,4 @@ fn arctangent_of_a_lane_has_the_bits_of_one_alone() {
     for (lane, value) in values.into_iter().enumerate() {
         assert_eq!(together.lane(lane), Lane::atan(value));
     }
-}
-
-fn lane_of(vector: &[[Four; DOFS]], lane: usize) -> BlockVector<f64> {
-    vector.iter().map(|row| row.map(|value| value.lane(lane))).collect()
 }

@@ -4,20 +4,19 @@ use std::ops::Range;
 
 use super::block::{Block, DOFS, Sum};
 use super::factor::SingularBlock;
-use super::lane::Lane;
 
 /// A square matrix of n x n blocks, zero but on three diagonals.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BlockTridiagonal<L, const D: usize = DOFS> {
+pub struct BlockTridiagonal<const D: usize = DOFS> {
     /// `lower[i]` stands at (i, i - 1); `lower[0]` takes no part.
-    pub lower: Vec<Block<L, D>>,
+    pub lower: Vec<Block<D>>,
     /// `diagonal[i]` stands at (i, i).
-    pub diagonal: Vec<Block<L, D>>,
+    pub diagonal: Vec<Block<D>>,
     /// `upper[i]` stands at (i, i + 1); the last one takes no part.
-    pub upper: Vec<Block<L, D>>,
+    pub upper: Vec<Block<D>>,
 }
 
-impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
+impl<const D: usize> BlockTridiagonal<D> {
     /// The zero matrix of `rows` block rows.
     pub fn zeros(rows: usize) -> Self {
         let zero = vec![Block::zero(); rows];
@@ -33,7 +32,7 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
     ///
     /// # Panics
     /// When the place is outside the three diagonals.
-    pub fn add_block(&mut self, row: usize, column: usize, block: &Block<L, D>) {
+    pub fn add_block(&mut self, row: usize, column: usize, block: &Block<D>) {
         assert!(row < self.rows() && column < self.rows(), "block ({row}, {column}) of {} rows", self.rows());
         if row == column {
             self.diagonal[row].add(block);
@@ -47,8 +46,8 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
     }
 
     /// `a A + b B + c C`.
-    pub fn combine(a: L, matrix_a: &Self, b: L, matrix_b: &Self, c: L, matrix_c: &Self) -> Self {
-        let blocks = |a_blocks: &[Block<L, D>], b_blocks: &[Block<L, D>], c_blocks: &[Block<L, D>]| {
+    pub fn combine(a: f64, matrix_a: &Self, b: f64, matrix_b: &Self, c: f64, matrix_c: &Self) -> Self {
+        let blocks = |a_blocks: &[Block<D>], b_blocks: &[Block<D>], c_blocks: &[Block<D>]| {
             let rows = a_blocks.iter().zip(b_blocks).zip(c_blocks);
             rows.map(|((block_a, block_b), block_c)| {
                 Block::from_fn(|row, column| {
@@ -66,17 +65,17 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
     }
 
     /// `y = A x`.
-    pub fn multiply_into(&self, x: &[[L; D]], y: &mut [[L; D]]) {
+    pub fn multiply_into(&self, x: &[[f64; D]], y: &mut [[f64; D]]) {
         self.for_rows(x, y, |_, product| product);
     }
 
     /// `y = y + A x`.
-    pub fn multiply_add(&self, x: &[[L; D]], y: &mut [[L; D]]) {
+    pub fn multiply_add(&self, x: &[[f64; D]], y: &mut [[f64; D]]) {
         self.for_rows(x, y, |y, product| std::array::from_fn(|dof| y[dof] + product[dof]));
     }
 
     #[inline(always)]
-    fn for_rows(&self, x: &[[L; D]], y: &mut [[L; D]], finish: impl Fn([L; D], [L; D]) -> [L; D]) {
+    fn for_rows(&self, x: &[[f64; D]], y: &mut [[f64; D]], finish: impl Fn([f64; D], [f64; D]) -> [f64; D]) {
         let rows = y.len();
         assert!(self.rows() == rows && x.len() == rows);
         for (row, y) in y.iter_mut().enumerate() {
@@ -85,7 +84,7 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
     }
 
     #[inline(always)]
-    fn row_product(&self, row: usize, x: &[[L; D]]) -> [L; D] {
+    fn row_product(&self, row: usize, x: &[[f64; D]]) -> [f64; D] {
         let mut sum = self.diagonal[row].add_product(&x[row], Sum::zero());
         if row > 0 {
             sum = self.lower[row].add_product(&x[row - 1], sum);
@@ -95,9 +94,7 @@ impl<L: Lane, const D: usize> BlockTridiagonal<L, D> {
         }
         sum.total()
     }
-}
 
-impl<const D: usize> BlockTridiagonal<f64, D> {
     /// The blocks on the diagonal of the inverse.
     ///
     /// Eliminating all rows above and below row i leaves the pivot `S_i + T_i - A_ii` there, S being the pivots of an elimination from
@@ -105,15 +102,11 @@ impl<const D: usize> BlockTridiagonal<f64, D> {
     ///
     /// # Errors
     /// When a pivot block is singular.
-    pub fn inverse_diagonal(&self) -> Result<Vec<Block<f64, D>>, SingularBlock> {
+    pub fn inverse_diagonal(&self) -> Result<Vec<Block<D>>, SingularBlock> {
         let rows = self.rows();
-        let inverse = |pivot: &Block<f64, D>, row: usize| {
+        let inverse = |pivot: &Block<D>, row: usize| {
             let (inverse, smallest) = pivot.inverse();
-            if smallest > 0.0 && inverse.is_finite() {
-                Ok(inverse)
-            } else {
-                Err(SingularBlock { row, lane: 0 })
-            }
+            if smallest > 0.0 && inverse.is_finite() { Ok(inverse) } else { Err(SingularBlock { row }) }
         };
         let mut pivots = self.diagonal.clone();
         for row in 1..rows {
@@ -142,7 +135,7 @@ impl<const D: usize> BlockTridiagonal<f64, D> {
     }
 
     /// The blocks below, on and above the diagonal, with the rows that have one.
-    pub(super) fn blocks(&self) -> [(&[Block<f64, D>], Range<usize>); 3] {
+    pub(super) fn blocks(&self) -> [(&[Block<D>], Range<usize>); 3] {
         let rows = self.rows();
         [(&self.lower, 1..rows), (&self.diagonal, 0..rows), (&self.upper, 0..rows - 1)]
     }

@@ -150,7 +150,7 @@ pub fn add_element_vector(target: &mut [[f64; 6]], element: usize, f: &ElementVe
 }
 
 /// Adds an element matrix to the blocks of element `element`.
-pub fn add_element_matrix(target: &mut BlockTridiagonal<f64>, element: usize, m: &ElementMatrix) {
+pub fn add_element_matrix(target: &mut BlockTridiagonal, element: usize, m: &ElementMatrix) {
     for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let block = Block::from_fn(|i, j| m[(6 * row + i, 6 * column + j)]);
         target.add_block(element + row, element + column, &block);
@@ -158,7 +158,7 @@ pub fn add_element_matrix(target: &mut BlockTridiagonal<f64>, element: usize, m:
 }
 
 /// Empties the rows and columns of held degrees of freedom.
-pub(crate) fn clear_held(matrix: &mut BlockTridiagonal<f64>, held: &[[bool; 6]]) {
+pub(crate) fn clear_held(matrix: &mut BlockTridiagonal, held: &[[bool; 6]]) {
     let n = held.len();
     for row in 0..n {
         let neighbours = [row.checked_sub(1), Some(row), Some(row + 1).filter(|&next| next < n)];

@@ -11,11 +11,11 @@ use crate::statics::Equilibrium;
 #[derive(Debug, Clone)]
 pub struct Pencil {
     /// Mass.
-    pub mass: BlockTridiagonal<f64>,
+    pub mass: BlockTridiagonal,
     /// Damping, Coriolis and gyroscopic terms, and what closed contacts add.
-    pub damping: BlockTridiagonal<f64>,
+    pub damping: BlockTridiagonal,
     /// Stiffness, and what closed contacts add.
-    pub stiffness: BlockTridiagonal<f64>,
+    pub stiffness: BlockTridiagonal,
     /// Degrees of freedom that do not move; their rows and columns are empty.
     pub held: Vec<[bool; DOFS]>,
 }
@@ -23,9 +23,9 @@ pub struct Pencil {
 impl Pencil {
     /// A pencil of given matrices, rows and columns of held degrees of freedom emptied.
     pub fn new(
-        mut mass: BlockTridiagonal<f64>,
-        mut damping: BlockTridiagonal<f64>,
-        mut stiffness: BlockTridiagonal<f64>,
+        mut mass: BlockTridiagonal,
+        mut damping: BlockTridiagonal,
+        mut stiffness: BlockTridiagonal,
         held: Vec<[bool; DOFS]>,
     ) -> Self {
         for matrix in [&mut mass, &mut damping, &mut stiffness] {
@@ -42,7 +42,7 @@ impl Pencil {
         Self::new(system.mass, damping, stiffness, system.held)
     }
 
-    pub(super) fn matrices(&self) -> [&BlockTridiagonal<f64>; 3] {
+    pub(super) fn matrices(&self) -> [&BlockTridiagonal; 3] {
         [&self.mass, &self.damping, &self.stiffness]
     }
 
@@ -70,8 +70,8 @@ impl Pencil {
 pub(super) fn add_contact(
     model: &Model,
     equilibrium: &Equilibrium,
-    stiffness: &mut BlockTridiagonal<f64>,
-    damping: &mut BlockTridiagonal<f64>,
+    stiffness: &mut BlockTridiagonal,
+    damping: &mut BlockTridiagonal,
 ) {
     for (node, site) in model.wall.touchable() {
         let [u, v, ..] = equilibrium.displacement[node];
@@ -88,7 +88,7 @@ pub(super) fn add_contact(
 }
 
 /// A real matrix times a complex vector.
-pub(super) fn times(matrix: &BlockTridiagonal<f64>, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
+pub(super) fn times(matrix: &BlockTridiagonal, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let part = |part: fn(&Complex<f64>) -> f64| {
         let (nodes, _) = x.as_chunks::<DOFS>();
         let values: NodalVector = nodes.iter().map(|node| node.each_ref().map(part)).collect();

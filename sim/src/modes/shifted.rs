@@ -26,7 +26,7 @@ impl ShiftedPencil {
     /// eigenvalue to working precision or a value is not finite.
     pub(super) fn new(
         shift: Complex<f64>,
-        [mass, damping, stiffness]: [&BlockTridiagonal<f64>; 3],
+        [mass, damping, stiffness]: [&BlockTridiagonal; 3],
         held: &[[bool; DOFS]],
     ) -> Option<Self> {
         let size = DOFS * mass.rows();

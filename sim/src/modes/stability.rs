@@ -135,7 +135,7 @@ fn kind(
     pair: &Eigenpair,
     moves: ModeKind,
 ) -> InstabilityKind {
-    let zero = || BlockTridiagonal::<f64>::zeros(model.node_count());
+    let zero = || BlockTridiagonal::zeros(model.node_count());
     let [mut compression, mut torque, mut flow, mut coriolis, mut wall, mut rubbing] =
         std::array::from_fn(|_| zero());
     for (e, element) in model.elements.iter().enumerate() {
@@ -158,7 +158,7 @@ fn kind(
         clear_held(matrix, &pencil.held);
     }
     // Mean power of a force -(K + l C) x on the velocity l x.
-    let power = |stiffness: &BlockTridiagonal<f64>, damping: Option<&BlockTridiagonal<f64>>| -> f64 {
+    let power = |stiffness: &BlockTridiagonal, damping: Option<&BlockTridiagonal>| -> f64 {
         let mut force = times(stiffness, &pair.shape);
         if let Some(damping) = damping {
             for (force, damped) in force.iter_mut().zip(times(damping, &pair.shape)) {

@@ -105,7 +105,7 @@ fn linearise(
     wall: &Wall,
     load: &[[f64; 6]],
     displacement: &[[f64; 6]],
-) -> (NodalVector, BlockTridiagonal<f64>) {
+) -> (NodalVector, BlockTridiagonal) {
     let n = model.node_count();
     let mut residual = load.to_vec();
     let mut tangent = BlockTridiagonal::zeros(n);
@@ -142,7 +142,7 @@ fn linearise(
     crate::model::clear_held(&mut tangent, &held);
     for (node, held) in held.iter().enumerate() {
         for (dof, _) in held.iter().enumerate().filter(|(_, held)| **held) {
-            let block: &mut Block<f64> = &mut tangent.diagonal[node];
+            let block: &mut Block = &mut tangent.diagonal[node];
             block[(dof, dof)] = 1.0;
             residual[node][dof] = 0.0;
         }

@@ -98,8 +98,8 @@ impl EnergyRow {
 /// Accumulates work; [`Ledger::row`] closes the balance.
 #[derive(Debug, Clone)]
 pub(super) struct Ledger<const D: usize> {
-    mass: BlockTridiagonal<f64, D>,
-    stiffness: BlockTridiagonal<f64, D>,
+    mass: BlockTridiagonal<D>,
+    stiffness: BlockTridiagonal<D>,
     load: NodalVector<D>,
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
     forms: Forms<3, D>,

@@ -192,17 +192,17 @@ impl<const D: usize> Forces<D> {
     }
 
     /// How the nodes give way to their own contact forces, from the blocks on the diagonal of a stage matrix' inverse.
-    pub(super) fn compliance(&self, inverse: &[Block<f64, D>]) -> Compliance {
+    pub(super) fn compliance(&self, inverse: &[Block<D>]) -> Compliance {
         let site = |(first, site): (usize, &ContactNode<Four>)| {
-            let of_lanes = |value: &dyn Fn(&Block<f64, D>, f64) -> f64| {
+            let of_lanes = |value: &dyn Fn(&Block<D>, f64) -> f64| {
                 Four::new(std::array::from_fn(|lane| {
                     inverse
                         .get(first + lane)
                         .map_or(0.0, |block| value(block, site.contact_radius.lane(lane)))
                 }))
             };
-            let lateral = |block: &Block<f64, D>| 0.5 * (block[(0, 0)] + block[(1, 1)]);
-            let twist = |block: &Block<f64, D>| if self.has_twist { block[(D - 1, D - 1)] } else { 0.0 };
+            let lateral = |block: &Block<D>| 0.5 * (block[(0, 0)] + block[(1, 1)]);
+            let twist = |block: &Block<D>| if self.has_twist { block[(D - 1, D - 1)] } else { 0.0 };
             GroupCompliance {
                 lateral: of_lanes(&|block, _| lateral(block)),
                 surface: of_lanes(&|block, radius| lateral(block) + radius * radius * twist(block)),

@@ -51,12 +51,12 @@ pub(super) struct Integrals<const N: usize> {
 /// equal neighbours the Coriolis matrices' boundary terms cancel: theirs lives where the section changes.
 #[derive(Debug, Clone)]
 struct SymmetricPart<const D: usize> {
-    diagonal: Vec<(usize, Block<f64, D>)>,
-    upper: Vec<(usize, Block<f64, D>)>,
+    diagonal: Vec<(usize, Block<D>)>,
+    upper: Vec<(usize, Block<D>)>,
 }
 
 impl<const N: usize, const D: usize> Forms<N, D> {
-    pub(super) fn new(symmetric: [&BlockTridiagonal<f64, D>; N], skew: &BlockTridiagonal<f64, D>) -> Self {
+    pub(super) fn new(symmetric: [&BlockTridiagonal<D>; N], skew: &BlockTridiagonal<D>) -> Self {
         let zero = NodalField::zeros(skew.rows());
         let last_couples = symmetric.iter().any(|matrix| matrix.last_couples());
         let moments = vec![Four::ZERO; zero.groups().len() * count::<D>(last_couples)];
@@ -259,10 +259,10 @@ impl<const D: usize> SymmetricPart<D> {
         sum
     }
 
-    fn new(m: &BlockTridiagonal<f64, D>) -> Self {
+    fn new(m: &BlockTridiagonal<D>) -> Self {
         let part = symmetric_part(m);
         let threshold = CANCELLED * largest(m);
-        let present = |blocks: &[Block<f64, D>]| {
+        let present = |blocks: &[Block<D>]| {
             blocks.iter().copied().enumerate().filter(|(_, block)| largest_entry(block) > threshold).collect()
         };
         let above = part.upper.len() - 1;
@@ -271,22 +271,22 @@ impl<const D: usize> SymmetricPart<D> {
 }
 
 /// `(m + m^T) / 2`.
-pub(super) fn symmetric_part<const D: usize>(m: &BlockTridiagonal<f64, D>) -> BlockTridiagonal<f64, D> {
+pub(super) fn symmetric_part<const D: usize>(m: &BlockTridiagonal<D>) -> BlockTridiagonal<D> {
     BlockTridiagonal::combine(0.5, m, 0.5, &transpose(m), 0.0, m)
 }
 
-fn largest<const D: usize>(m: &BlockTridiagonal<f64, D>) -> f64 {
+fn largest<const D: usize>(m: &BlockTridiagonal<D>) -> f64 {
     m.lower.iter().chain(&m.diagonal).chain(&m.upper).map(largest_entry).fold(0.0, f64::max)
 }
 
-fn largest_entry<const D: usize>(block: &Block<f64, D>) -> f64 {
+fn largest_entry<const D: usize>(block: &Block<D>) -> f64 {
     block.columns.as_flattened().iter().fold(0.0_f64, |most, v| most.max(v.abs()))
 }
 
-fn transpose<const D: usize>(m: &BlockTridiagonal<f64, D>) -> BlockTridiagonal<f64, D> {
+fn transpose<const D: usize>(m: &BlockTridiagonal<D>) -> BlockTridiagonal<D> {
     let n = m.rows();
     let mut t = BlockTridiagonal::zeros(n);
-    let flip = |block: &Block<f64, D>| Block::from_fn(|row, column| block[(column, row)]);
+    let flip = |block: &Block<D>| Block::from_fn(|row, column| block[(column, row)]);
     for i in 0..n {
         t.diagonal[i] = flip(&m.diagonal[i]);
         if i + 1 < n {
@@ -307,7 +307,7 @@ mod tests {
     }
 
     /// `full` of every hundred rows carry blocks, whose last degree of freedom couples with all others or with the two before it.
-    fn matrix(rows: usize, full: usize, last_couples: bool) -> BlockTridiagonal<f64> {
+    fn matrix(rows: usize, full: usize, last_couples: bool) -> BlockTridiagonal {
         let mut m = BlockTridiagonal::zeros(rows);
         for row in (0..rows).filter(|row| row % 100 < full) {
             let block = |shift: usize| {
@@ -329,7 +329,7 @@ mod tests {
         (0..rows).map(|row| std::array::from_fn(|i| (seed + (6 * row + i) as f64).cos())).collect()
     }
 
-    fn product(a: &[[f64; DOFS]], m: &BlockTridiagonal<f64>, b: &[[f64; DOFS]]) -> f64 {
+    fn product(a: &[[f64; DOFS]], m: &BlockTridiagonal, b: &[[f64; DOFS]]) -> f64 {
         let mut y = vec![[0.0; DOFS]; b.len()];
         m.multiply_into(b, &mut y);
         a.as_flattened().iter().zip(y.as_flattened()).map(|(a, y)| a * y).sum()

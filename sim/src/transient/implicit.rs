@@ -23,7 +23,7 @@ const LOOSE: SweepChange = SweepChange { lateral: 1e-5, friction: 0.05 };
 /// The matrix of the stages of one step length, factored.
 #[derive(Debug, Clone)]
 pub(super) struct StageMatrix<const D: usize> {
-    factor: Factor<f64, D>,
+    factor: Factor<D>,
     coefficients: StageCoefficients,
     /// What the right-hand side has at the held degrees of freedom.
     held_values: Vec<f64>,
@@ -90,7 +90,7 @@ pub(super) struct StageCoefficients {
 impl StageCoefficients {
     /// `c_a M + c_v C + K`, held degrees of freedom with a diagonal of the size of their node's other entries: next to 1e15 a one would
     /// count as zero. It is a power of two, which costs no digits.
-    pub(super) fn matrix<const D: usize>(&self, system: &DynamicSystem<D>) -> BlockTridiagonal<f64, D> {
+    pub(super) fn matrix<const D: usize>(&self, system: &DynamicSystem<D>) -> BlockTridiagonal<D> {
         let mut matrix = BlockTridiagonal::combine(
             self.acceleration,
             &system.mass,

@@ -22,7 +22,7 @@ const SMALLEST_STEP_RATIO: f64 = 1e-6;
 /// Fixed-step or step-doubling RK4.
 #[derive(Debug, Clone)]
 pub(super) struct Rk4<const D: usize> {
-    mass: Factor<f64, D>,
+    mass: Factor<D>,
     damping_and_stiffness: MatrixPair<General, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
@@ -214,9 +214,7 @@ impl<const D: usize> Rk4<D> {
 }
 
 /// The mass matrix, factored; held degrees of freedom have a unit diagonal.
-pub(super) fn mass_factor<const D: usize>(
-    system: &DynamicSystem<D>,
-) -> Result<Factor<f64, D>, SingularBlock> {
+pub(super) fn mass_factor<const D: usize>(system: &DynamicSystem<D>) -> Result<Factor<D>, SingularBlock> {
     let mut mass = system.mass.clone();
     for (node, dof) in held_list(system) {
         mass.diagonal[node][(dof, dof)] = 1.0;

@@ -181,7 +181,7 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
 fn largest_ratio(
     model: &Model,
     system: &DynamicSystem,
-    matrix: &BlockTridiagonal<f64>,
+    matrix: &BlockTridiagonal,
     closed: impl Fn(&ContactNode<f64>) -> f64,
 ) -> Result<f64, SingularBlock> {
     let mass = mass_factor(system)?;
@@ -214,7 +214,7 @@ fn largest_ratio(
     Ok(largest)
 }
 
-fn mass_norm(mass: &BlockTridiagonal<f64>, x: &[[f64; 6]]) -> f64 {
+fn mass_norm(mass: &BlockTridiagonal, x: &[[f64; 6]]) -> f64 {
     let mut product = vec![[0.0; 6]; x.len()];
     mass.multiply_into(x, &mut product);
     dot(x, &product)

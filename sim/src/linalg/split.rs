@@ -1,46 +1,14 @@
 //! Blocks as a solve reads them.
 
-use std::fmt::Debug;
-
-use super::block::{Block, Sum};
+use super::block::Block;
 use super::four::Four;
 use super::lane::Lane;
 
-/// A block that is multiplied over and over, kept the way that is read fastest.
-///
-/// Every way of keeping gives the same bits: even columns add up in one sum and odd ones in another, and these are added in the end.
-pub trait Operator<L: Lane, const D: usize>: Copy + Debug + Send + Sync {
-    /// That of a block.
-    fn new(block: &Block<L, D>) -> Self;
-
-    /// `self x + other y`.
-    fn sum_of_products(&self, x: &[L; D], other: &Self, y: &[L; D]) -> [L; D];
-
-    /// `sum + self x`.
-    fn multiply_add(&self, x: &[L; D], sum: &[L; D]) -> [L; D];
-}
-
-/// Several matrices side by side fill the registers as they are.
-impl<L: Lane, const D: usize> Operator<L, D> for Block<L, D> {
-    fn new(block: &Block<L, D>) -> Self {
-        *block
-    }
-
-    #[inline(always)]
-    fn sum_of_products(&self, x: &[L; D], other: &Self, y: &[L; D]) -> [L; D] {
-        other.add_product(y, self.add_product(x, Sum::zero())).total()
-    }
-
-    #[inline(always)]
-    fn multiply_add(&self, x: &[L; D], sum: &[L; D]) -> [L; D] {
-        Block::multiply_add(self, x, *sum)
-    }
-}
-
-/// A block of one matrix. Columns of six rows fill a register and a half, and some would lie across two cache lines; so the rows from the
-/// fifth on lie apart, those of two columns in one register.
+/// A block that is multiplied over and over, kept the way that is read fastest. Columns of six rows fill a register and a half, and some would lie across two cache lines; so the rows from the
+/// fifth on lie apart, those of two columns in one register. Even columns add up in one sum and odd ones in another, and these are added in
+/// the end, as in products of [`Block`]: the bits are the same.
 #[derive(Debug, Clone, Copy)]
-pub struct SplitBlock<const D: usize> {
+pub(super) struct SplitBlock<const D: usize> {
     /// The first four rows of each column.
     heads: [Four; D],
     /// The other rows of columns 0 and 1, 2 and 3, 4 and 5; zeros where there are none.
@@ -56,8 +24,9 @@ struct SplitSum {
     tail: Four,
 }
 
-impl<const D: usize> Operator<f64, D> for SplitBlock<D> {
-    fn new(block: &Block<f64, D>) -> Self {
+impl<const D: usize> SplitBlock<D> {
+    /// That of a block.
+    pub(super) fn new(block: &Block<D>) -> Self {
         let at = |row: usize, column: usize| {
             if row < D && column < D { block[(row, column)] } else { 0.0 }
         };
@@ -70,14 +39,16 @@ impl<const D: usize> Operator<f64, D> for SplitBlock<D> {
         }
     }
 
+    /// `self x + other y`.
     #[inline(always)]
-    fn sum_of_products(&self, x: &[f64; D], other: &Self, y: &[f64; D]) -> [f64; D] {
+    pub(super) fn sum_of_products(&self, x: &[f64; D], other: &Self, y: &[f64; D]) -> [f64; D] {
         let zero = SplitSum { heads: [Four::ZERO; 2], tail: Four::ZERO };
         other.add_product(y, self.add_product(x, zero)).total()
     }
 
+    /// `sum + self x`.
     #[inline(always)]
-    fn multiply_add(&self, x: &[f64; D], sum: &[f64; D]) -> [f64; D] {
+    pub(super) fn multiply_add(&self, x: &[f64; D], sum: &[f64; D]) -> [f64; D] {
         let at = |row: usize| if row < D { sum[row] } else { 0.0 };
         let start = SplitSum {
             heads: [Four::new([at(0), at(1), at(2), at(3)]), Four::ZERO],
@@ -85,9 +56,7 @@ impl<const D: usize> Operator<f64, D> for SplitBlock<D> {
         };
         self.add_product(x, start).total()
     }
-}
 
-impl<const D: usize> SplitBlock<D> {
     #[inline(always)]
     fn add_product(&self, x: &[f64; D], mut sum: SplitSum) -> SplitSum {
         for (column, head) in self.heads.iter().enumerate() {

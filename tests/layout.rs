@@ -10,12 +10,20 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 const ARROWS: &[(&str, &[&str])] = &[
     ("drillsweep-sim", &[]),
     ("drillsweep-api", &["drillsweep-sim"]),
+    ("drillsweep-chart", &["drillsweep-api", "drillsweep-sim"]),
     ("drillsweep-store", &[]),
-    ("drillsweep-server", &["drillsweep-api", "drillsweep-store"]),
+    ("drillsweep-server", &["drillsweep-api", "drillsweep-chart", "drillsweep-store"]),
     ("drillsweep-worker", &["drillsweep-api", "drillsweep-sim", "drillsweep-store"]),
     (
         "drillsweep",
-        &["drillsweep-api", "drillsweep-server", "drillsweep-sim", "drillsweep-store", "drillsweep-worker"],
+        &[
+            "drillsweep-api",
+            "drillsweep-chart",
+            "drillsweep-server",
+            "drillsweep-sim",
+            "drillsweep-store",
+            "drillsweep-worker",
+        ],
     ),
 ];
 
@@ -26,6 +34,9 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("parquet", &["drillsweep-store"]),
     ("axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),
+    ("tiny-skia", &["drillsweep-chart"]),
+    ("ttf-parser", &["drillsweep-chart"]),
+    ("notosans", &["drillsweep-chart"]),
 ];
 
 fn metadata() -> Metadata {
@@ -50,7 +61,7 @@ fn crates_use_each_other_only_along_the_arrows() {
 }
 
 #[test]
-fn only_the_store_knows_sql_and_only_the_server_serves_http() {
+fn only_the_store_knows_sql_only_the_server_serves_http_and_only_chart_rasterises() {
     for package in &metadata().packages {
         for dependency in dependencies(package) {
             if let Some((_, allowed)) = CONFINED.iter().find(|(name, _)| *name == dependency) {

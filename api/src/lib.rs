@@ -2,19 +2,17 @@
 //!
 //! A [`SweepRequest`] is [expanded](expand()) into the points to compute; what comes of them is shown as a
 //! [`Sweep`], as [points](point) and as [tables](table::Table); what goes wrong as [problems](problem). The
-//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored, and [`picture`]s show them.
+//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
-pub mod chart;
 pub mod cost;
 mod design;
 pub mod dry_run;
 pub mod event;
 pub mod expand;
 pub mod npz;
-pub mod picture;
 pub mod point;
 pub mod preset;
 pub mod problem;

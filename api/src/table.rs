@@ -9,6 +9,8 @@ use utoipa::openapi::schema::AnyOfBuilder;
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
+use crate::problem::ProblemDetails;
+
 /// A table by columns, all of one length. A value that does not exist is `null`, never NaN.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
 pub struct Table {
@@ -114,6 +116,13 @@ impl Table {
             }
         }
         Ok(selected)
+    }
+
+    /// The problem that the table has no such column; it names those that there are.
+    pub fn no_such_column(&self, name: &str) -> Box<ProblemDetails> {
+        let names: Vec<&str> = self.columns.keys().map(String::as_str).collect();
+        let detail = format!("there is no such column; there are {}", names.join(", "));
+        ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
     }
 
     /// The number of rows.

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use drillsweep_api::cost::{Measure, PNG_WIDTH, chart, csv, summary, summary_csv, summary_text, text};
+use drillsweep_api::cost::{Measure, csv, summary, summary_csv, summary_text, text};
+use drillsweep_chart::{PNG_WIDTH, work_precision};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::cost::CostReport;
 use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
@@ -221,8 +222,8 @@ fn write(report: &CostReport, directory: &Path, measure: Option<Measure>) -> any
     let mut files =
         vec![("cost.csv", csv(report).into_bytes()), ("cost.json", serde_json::to_vec_pretty(report)?)];
     if report.compared().next().is_some() {
-        let chart = chart(report, measure.unwrap_or_else(|| Measure::usual(report)));
-        files.extend([("cost.svg", chart.svg().into_bytes()), ("cost.png", chart.png(PNG_WIDTH)?)]);
+        let drawing = work_precision(report, measure.unwrap_or_else(|| Measure::usual(report)));
+        files.extend([("cost.svg", drawing.svg().into_bytes()), ("cost.png", drawing.png(PNG_WIDTH)?)]);
     }
     for (name, bytes) in files {
         write_file(&directory.join(name), &bytes)?;

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use axum::body::Bytes;
-use drillsweep_api::chart::Hole;
 use drillsweep_api::view::node::{self, Choice};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{Column, PointState, ProblemDetails, ProblemKind, Table};
+use drillsweep_chart::Hole;
 use drillsweep_store::{
     Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
 };

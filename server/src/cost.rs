@@ -3,7 +3,8 @@
 use axum::extract::State;
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::cost::{CostReport, Measure, PNG_WIDTH, chart, csv};
+use drillsweep_api::cost::{CostReport, Measure, csv};
+use drillsweep_chart::{PNG_WIDTH, work_precision};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
@@ -26,7 +27,7 @@ pub(crate) struct CostQuery {
     format: CostFormat,
     /// Which error a chart shows; absent means the first of orbit size, radius deviation and trajectory that has any.
     #[param(inline)]
-    measure: Option<ChartMeasure>,
+    measure: Option<Measure>,
 }
 
 /// The formats in which a study is served.
@@ -42,18 +43,6 @@ enum CostFormat {
     Svg,
     /// The chart, as pixels.
     Png,
-}
-
-/// The error that a chart shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-enum ChartMeasure {
-    /// Of the orbit's size, over the orbit window.
-    OrbitSize,
-    /// Of the standard deviation of the distance from the hole's axis, over the orbit window.
-    RadiusDeviation,
-    /// Of the trajectory, up to where histories part.
-    Trajectory,
 }
 
 impl CostFormat {
@@ -103,18 +92,11 @@ pub(crate) async fn show(
             let detail = "must be json or csv: a study of effects has no chart";
             return Err(Error::parameter("format", None, detail));
         }
-        let measure = match measure {
-            Some(ChartMeasure::OrbitSize) => Measure::OrbitSize,
-            Some(ChartMeasure::RadiusDeviation) => Measure::RadiusDeviation,
-            Some(ChartMeasure::Trajectory) => Measure::Trajectory,
-            None => Measure::usual(&report),
-        };
+        let drawing = || work_precision(&report, measure.unwrap_or_else(|| Measure::usual(&report)));
         let body = match format {
             CostFormat::Json | CostFormat::Csv => csv(&report).into_bytes(),
-            CostFormat::Svg => chart(&report, measure).svg().into_bytes(),
-            CostFormat::Png => {
-                chart(&report, measure).png(PNG_WIDTH).map_err(|error| Error::internal(&error))?
-            }
+            CostFormat::Svg => drawing().svg().into_bytes(),
+            CostFormat::Png => drawing().png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
         };
         Ok(answer(body, format))
     })

@@ -3,9 +3,8 @@
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::chart::{PNG_WIDTH, no_such_column};
-use drillsweep_api::picture::Drawing;
 use drillsweep_api::{Column, ProblemDetails, ProblemKind, Table, npz};
+use drillsweep_chart::{Drawing, PNG_WIDTH};
 use drillsweep_store::{ColumnData, TableError, encode_parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
@@ -199,7 +198,7 @@ pub(crate) fn respond_or_draw(
     let table = match fields.filter(|_| !format.is_picture()) {
         None => table,
         Some(fields) => {
-            selected = table.select(fields).map_err(|missing| no_such_column(table, &missing))?;
+            selected = table.select(fields).map_err(|missing| table.no_such_column(&missing))?;
             &selected
         }
     };

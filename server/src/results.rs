@@ -3,8 +3,8 @@
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::chart;
 use drillsweep_api::view::{history, node, orbit, spectrum};
+use drillsweep_chart as chart;
 use drillsweep_store::Store;
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};

@@ -7,12 +7,12 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
-use drillsweep_api::chart;
 use drillsweep_api::view::points;
 use drillsweep_api::{
     AppendRequest, DryRun, Expansion, LIMITS, PHYSICS_VERSION, ProblemKind, RunRequest, Sweep, SweepList,
     SweepPatch, SweepRequest, SweepState, check_patch, expand, expand_added, sample,
 };
+use drillsweep_chart as chart;
 use drillsweep_store::{
     Addition, AppendOutcome, CachePolicy, NewSweep, NewVerification, SubmitOutcome, SweepChanges, SweepFilter,
 };

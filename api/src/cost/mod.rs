@@ -1,11 +1,11 @@
-//! What a cost study found, for people: a text for terminals, a table, and a picture.
+//! What a cost study found, for people: a text for terminals, a table, and which error a chart shows.
 
-mod chart;
+mod measure;
 mod summary;
 mod table;
 mod text;
 
-pub use chart::{Measure, PNG_WIDTH, chart};
+pub use measure::Measure;
 pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_csv, summary_text};
 pub use table::{csv, table};
 pub use text::text;
@@ -13,7 +13,7 @@ pub use text::text;
 pub use drillsweep_sim::study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
 
 /// A step in the unit that reads best, to three digits: `1 ms`, `0.25 ms`, `58.8 µs`.
-fn step_text(step: f64) -> String {
+pub fn step_text(step: f64) -> String {
     let (value, unit) = match step {
         step if step >= 1.0 => (step, "s"),
         step if step >= 9.995e-5 => (step * 1e3, "ms"),
@@ -23,7 +23,7 @@ fn step_text(step: f64) -> String {
 }
 
 /// A number to three digits, without zeros at the end.
-fn three_digits(value: f64) -> String {
+pub fn three_digits(value: f64) -> String {
     let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
     let decimals = usize::try_from(3 - whole_digits).unwrap_or(0).min(12);
     let text = format!("{value:.decimals$}");

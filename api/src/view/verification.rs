@@ -340,7 +340,7 @@ pub(crate) fn bias_column(statistic: &str) -> String {
 }
 
 /// Whether a column of a table is the bias of a statistic.
-pub(crate) fn is_bias_column(name: &str) -> bool {
+pub fn is_bias_column(name: &str) -> bool {
     name.strip_prefix(BIAS).is_some_and(|statistic| Quantity::of(statistic).is_some())
 }
 

@@ -1,19 +1,16 @@
-//! Pictures of results: which columns of a table are shown, in which units, under which names.
+//! Pictures of tables: which columns are shown, in which units, under which names.
 //!
 //! Each function takes the very table that is served as JSON or CSV and gives a [`Drawing`] of it.
 
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_api::table::{Column, Table};
+use drillsweep_api::units;
+use drillsweep_api::view::verification::{Findings, is_bias_column};
 use indexmap::{IndexMap, IndexSet};
 use serde_json::Value;
 
 use crate::picture::axis::three_digits;
 use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, Shade, SweepMap, Upright};
-use crate::problem::ProblemDetails;
-use crate::table::{Column, Table};
-use crate::units;
-use crate::view::verification::{Findings, is_bias_column};
-
-/// Width of a picture as PNG: twice its natural size, so that it is sharp on fine screens and in print.
-pub const PNG_WIDTH: u32 = 1600;
 
 /// Lines of a spectrum that are named in its picture.
 const NAMED_LINES: usize = 6;
@@ -291,7 +288,7 @@ impl<'t> Shown<'t> {
         let mut unit = None;
         for name in names {
             let Some((name, _)) = table.columns.get_key_value(*name) else {
-                return Err(no_such_column(table, name));
+                return Err(table.no_such_column(name));
             };
             let of_column = units::unit(name);
             if columns.is_empty() {
@@ -374,7 +371,7 @@ fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
             let detail = "is a column of texts, which a picture cannot show";
             Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into())
         }
-        None => Err(no_such_column(table, name)),
+        None => Err(table.no_such_column(name)),
     }
 }
 
@@ -388,13 +385,6 @@ fn numeric(table: &Table) -> impl Iterator<Item = &str> {
 
 fn is_varied(table: &Table, name: &str) -> bool {
     numbers(table, name).is_ok_and(|values| values.windows(2).any(|pair| pair[0] != pair[1]))
-}
-
-/// The problem that a table has no such column.
-pub fn no_such_column(table: &Table, name: &str) -> Box<ProblemDetails> {
-    let names: Vec<&str> = table.columns.keys().map(String::as_str).collect();
-    let detail = format!("there is no such column; there are {}", names.join(", "));
-    ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
 }
 
 #[cfg(test)]

@@ -1,0 +1,86 @@
+//! Which error of a cost study a diagram shows.
+
+use std::str::FromStr;
+
+use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// The error that a chart shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Of the orbit's size, over the orbit window.
+    OrbitSize,
+    /// Of the standard deviation of the distance from the hole's axis, over the orbit window.
+    RadiusDeviation,
+    /// Of the trajectory, up to where histories part.
+    Trajectory,
+}
+
+impl Measure {
+    /// All measures, the usual ones first.
+    const ALL: [Measure; 3] = [Measure::OrbitSize, Measure::RadiusDeviation, Measure::Trajectory];
+
+    /// Orbit size; the deviation of the radius, or else trajectories, where no run has an error of orbit size to show.
+    pub fn usual(report: &CostReport) -> Self {
+        let has_any = |measure: &Measure| report.compared().any(|row| measure.of(row) > 0.0);
+        Measure::ALL.into_iter().find(has_any).unwrap_or(Measure::OrbitSize)
+    }
+
+    /// The size of a run's error, relative; zero, which no diagram shows, where it has none.
+    pub fn of(self, row: &CostRow) -> f64 {
+        let bias = |quantity| Some(row.errors.as_ref()?.statistic(quantity)?.bias.abs());
+        let error = match self {
+            Measure::Trajectory => row.errors.as_ref().and_then(|errors| errors.trajectory),
+            Measure::OrbitSize => bias(Quantity::OrbitSize),
+            Measure::RadiusDeviation => bias(Quantity::RadiusDeviation),
+        };
+        error.unwrap_or(0.0)
+    }
+
+    /// The name on the wire.
+    fn name(self) -> &'static str {
+        match self {
+            Measure::Trajectory => "trajectory",
+            Measure::OrbitSize => "orbit_size",
+            Measure::RadiusDeviation => "radius_deviation",
+        }
+    }
+}
+
+impl FromStr for Measure {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Measure::ALL.into_iter().find(|measure| measure.name() == name);
+        found.ok_or_else(|| "must be orbit_size, radius_deviation or trajectory".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::tests::report;
+
+    #[test]
+    fn trajectories_are_shown_where_there_is_nothing_else() {
+        let mut report = report();
+        assert_eq!(Measure::usual(&report), Measure::OrbitSize);
+        for row in report.references.iter_mut().chain(&mut report.methods) {
+            if let Some(errors) = &mut row.errors {
+                errors.orbit_size = None;
+            }
+        }
+        assert_eq!(Measure::usual(&report), Measure::Trajectory);
+    }
+
+    #[test]
+    fn a_measure_is_read_as_it_is_written() {
+        for measure in Measure::ALL {
+            let written = serde_json::to_value(measure).unwrap();
+            assert_eq!(written.as_str().unwrap().parse(), Ok(measure));
+        }
+        assert!("orbit".parse::<Measure>().is_err());
+    }
+}

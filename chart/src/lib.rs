@@ -1,0 +1,16 @@
+//! Pictures of results, as SVG and PNG.
+//!
+//! [`profile`], [`history`], [`orbit`], [`spectrum`] and [`sweep`] take the very table that is served as JSON or CSV and choose
+//! what of it is shown, in which units, under which names; [`work_precision`] does so for a cost study. What they give is laid out
+//! on a page and written by [`picture`], which knows nothing of tables.
+
+mod cost;
+pub mod picture;
+mod table;
+
+pub use cost::work_precision;
+pub use picture::{Drawing, PictureError};
+pub use table::{Hole, caption, history, orbit, profile, spectrum, sweep};
+
+/// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
+pub const PNG_WIDTH: u32 = 1600;

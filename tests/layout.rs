@@ -34,8 +34,8 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("parquet", &["drillsweep-store"]),
     ("axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),
-    ("tiny-skia", &["drillsweep-chart"]),
-    ("ttf-parser", &["drillsweep-chart"]),
+    ("resvg", &["drillsweep-chart"]),
+    ("skrifa", &["drillsweep-chart"]),
     ("notosans", &["drillsweep-chart"]),
 ];
 

@@ -1,6 +1,6 @@
 //! A laid-out picture: shapes on a page, in the order in which they are painted.
 
-use super::{PictureError, marker::Marker, raster, svg, text::Text};
+use super::{PictureError, marker::Marker, png, svg, text::Text};
 
 /// A place on the page: from the left and from the top, in page units (CSS pixels).
 pub(super) type Position = [f64; 2];
@@ -24,9 +24,10 @@ impl Drawing {
     ///
     /// # Errors
     ///
-    /// [`PictureError::Size`] if the width is zero or the image would be too large.
+    /// [`PictureError::Size`] if the width is zero or the image would be too large, [`PictureError::Drawing`] if the drawing
+    /// has more shapes than the rasteriser takes.
     pub fn png(&self, width: u32) -> Result<Vec<u8>, PictureError> {
-        raster::png(self, width)
+        png::write(self, width)
     }
 
     /// The width of the page in CSS pixels: the width at which text has its natural size.

@@ -1,9 +1,9 @@
 //! Pictures of results, as SVG and PNG.
 //!
 //! A chart, such as a [`WorkPrecisionChart`] or a [`LinePlot`], lays itself out as a [`Drawing`]: a list of shapes in a fixed
-//! page. The drawing is then written as SVG or rasterised as PNG, both from the same shapes and with the same
-//! font metrics, so the two show the same picture. The font for PNG is built in: nothing depends on what the
-//! machine has installed.
+//! page. The drawing is written as SVG, and PNG is that SVG in pixels, so the two show the same picture. Labels keep clear
+//! of each other by the metrics of the font that PNG is set in. That font is built in: nothing depends on what the machine
+//! has installed.
 //!
 //! A further kind of picture is one file that builds a [`Drawing`] from a [`PlotAxis`] for each direction,
 //! the plot area with its grid, and the placing of labels.
@@ -16,7 +16,7 @@ mod line_plot;
 mod marker;
 mod orbit;
 mod plot_area;
-mod raster;
+mod png;
 mod svg;
 mod sweep_map;
 mod text;
@@ -26,6 +26,6 @@ pub use axis::{PlotAxis, Tick};
 pub use drawing::Drawing;
 pub use line_plot::{Label, Line, LinePlot, Shade, Upright};
 pub use orbit::OrbitPlot;
-pub use raster::PictureError;
+pub use png::PictureError;
 pub use sweep_map::{MapPoint, SweepMap};
 pub use work_precision::{Point, Series, WantedAccuracy, WorkPrecisionChart};

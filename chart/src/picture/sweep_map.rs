@@ -273,8 +273,8 @@ fn colour(fraction: f64) -> Colour {
 
 #[cfg(test)]
 mod tests {
+    use resvg::tiny_skia::Pixmap;
     use roxmltree::Document;
-    use tiny_skia::Pixmap;
 
     use super::*;
 

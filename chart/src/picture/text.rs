@@ -2,7 +2,10 @@
 
 use std::sync::LazyLock;
 
-use ttf_parser::{Face, GlyphId};
+use skrifa::charmap::Charmap;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::{FontRef, MetadataProvider};
 
 use super::drawing::{Colour, Position};
 
@@ -33,15 +36,37 @@ pub(super) enum Weight {
     Bold,
 }
 
-static REGULAR: LazyLock<Face<'static>> = LazyLock::new(|| parse(notosans::REGULAR_TTF));
-static BOLD: LazyLock<Face<'static>> = LazyLock::new(|| parse(notosans::BOLD_TTF));
+/// The size of superscripts in that of their text, and how far above its baseline they stand.
+pub(super) const RAISED_SIZE: f64 = 0.68;
+pub(super) const RAISED_RISE: f64 = 0.36;
 
-fn parse(font: &'static [u8]) -> Face<'static> {
-    Face::parse(font, 0).expect("the built-in font is well-formed")
+/// What the built-in font says of the widths of its glyphs.
+struct Metrics {
+    charmap: Charmap<'static>,
+    glyphs: GlyphMetrics<'static>,
+    units_per_em: f64,
+}
+
+static REGULAR: LazyLock<Metrics> = LazyLock::new(|| Metrics::of(notosans::REGULAR_TTF));
+static BOLD: LazyLock<Metrics> = LazyLock::new(|| Metrics::of(notosans::BOLD_TTF));
+
+impl Metrics {
+    fn of(font: &'static [u8]) -> Self {
+        let font = FontRef::new(font).expect("the built-in font is well-formed");
+        let glyphs = font.glyph_metrics(Size::unscaled(), LocationRef::default());
+        let units_per_em = font.metrics(Size::unscaled(), LocationRef::default()).units_per_em;
+        Self { charmap: font.charmap(), glyphs, units_per_em: f64::from(units_per_em) }
+    }
+
+    /// From a glyph's origin to that of the next, in the size of the text.
+    fn advance(&self, character: char) -> f64 {
+        let glyph = self.charmap.map(character).unwrap_or_default();
+        f64::from(self.glyphs.advance_width(glyph).unwrap_or(0.0)) / self.units_per_em
+    }
 }
 
 impl Weight {
-    pub(super) fn face(self) -> &'static Face<'static> {
+    fn metrics(self) -> &'static Metrics {
         match self {
             Self::Regular => &REGULAR,
             Self::Bold => &BOLD,
@@ -60,20 +85,6 @@ impl Text {
     ) -> Self {
         Self { content: content.into(), at, anchor, size, weight: Weight::Regular, colour, upwards: false }
     }
-
-    /// The glyphs from left to right.
-    pub(super) fn glyphs(&self) -> impl Iterator<Item = Glyph> {
-        glyphs(&self.content, self.size, self.weight)
-    }
-
-    /// The distance from the start of the text to its anchor.
-    pub(super) fn anchor_offset(&self) -> f64 {
-        match self.anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => width(&self.content, self.size, self.weight) / 2.0,
-            Anchor::End => width(&self.content, self.size, self.weight),
-        }
-    }
 }
 
 /// How much wider text may be in the font of an SVG viewer that has not got ours.
@@ -85,40 +96,25 @@ pub(super) fn room(text: &str, size: f64, weight: Weight) -> f64 {
 }
 
 /// The width of a line of text in the built-in font, in page units.
-fn width(text: &str, size: f64, weight: Weight) -> f64 {
-    glyphs(text, size, weight).last().map_or(0.0, |glyph| glyph.end)
+pub(super) fn width(text: &str, size: f64, weight: Weight) -> f64 {
+    ends(text, size, weight).last().unwrap_or(0.0)
 }
 
-/// A glyph in its place in a line; lengths are in page units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Glyph {
-    pub(super) id: GlyphId,
-    pub(super) size: f64,
-    /// From the start of the line to the glyph's origin.
-    pub(super) start: f64,
-    /// From the start of the line to the next glyph's origin.
-    end: f64,
-    /// How far above the baseline the glyph stands.
-    pub(super) rise: f64,
-}
-
-fn glyphs(text: &str, size: f64, weight: Weight) -> impl Iterator<Item = Glyph> {
-    let face = weight.face();
-    text.chars().scan(0.0, move |pen, character| {
-        let (character, size, rise) = match plain_of_superscript(character) {
-            Some(plain) => (plain, size * 0.68, size * 0.36),
-            None => (character, size, 0.0),
+/// Where each character of a line ends, from its start, in page units.
+fn ends(text: &str, size: f64, weight: Weight) -> impl Iterator<Item = f64> {
+    let metrics = weight.metrics();
+    text.chars().scan(0.0, move |end, character| {
+        let (character, size) = match plain_of_superscript(character) {
+            Some(plain) => (plain, size * RAISED_SIZE),
+            None => (character, size),
         };
-        let id = face.glyph_index(character).unwrap_or_default();
-        let advance = f64::from(face.glyph_hor_advance(id).unwrap_or(0)) / f64::from(face.units_per_em());
-        let start = *pen;
-        *pen += advance * size;
-        Some(Glyph { id, size, start, end: *pen, rise })
+        *end += metrics.advance(character) * size;
+        Some(*end)
     })
 }
 
-/// Superscripts are set as small raised signs: the font has no superscript minus.
-fn plain_of_superscript(character: char) -> Option<char> {
+/// The sign that a superscript is a raised one of.
+pub(super) fn plain_of_superscript(character: char) -> Option<char> {
     const SUPERSCRIPTS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
     SUPERSCRIPTS
         .chars()
@@ -137,7 +133,7 @@ pub(super) fn line(text: &str, size: f64, weight: Weight, max_width: f64) -> Str
         return line;
     }
     let room = max_width - room("…", size, weight);
-    let fitting = glyphs(&line, size, weight).take_while(|glyph| glyph.end * VIEWERS_FONT <= room).count();
+    let fitting = ends(&line, size, weight).take_while(|end| end * VIEWERS_FONT <= room).count();
     let start: String = line.chars().take(fitting).collect();
     format!("{}…", start.trim_end())
 }
@@ -160,21 +156,22 @@ mod tests {
     fn the_font_has_the_signs_of_axes_and_units() {
         for character in "0123456789×−…·°µωΔ %".chars() {
             for weight in [Weight::Regular, Weight::Bold] {
-                assert!(weight.face().glyph_index(character).is_some(), "{character} in {weight:?}");
+                assert!(weight.metrics().charmap.map(character).is_some(), "{character} in {weight:?}");
             }
         }
     }
 
     #[test]
-    fn superscripts_are_small_and_raised() {
-        let plain: Vec<_> = glyphs("10−3", 12.0, Weight::Regular).collect();
-        let power: Vec<_> = glyphs("10⁻³", 12.0, Weight::Regular).collect();
-        for (plain, raised) in plain.iter().zip(&power).skip(2) {
-            assert_eq!(raised.id, plain.id);
-            assert!(raised.size < plain.size && raised.rise > 0.0);
-        }
+    fn superscripts_are_small() {
+        let widths = |text| -> Vec<f64> {
+            let ends: Vec<f64> = ends(text, 12.0, Weight::Regular).collect();
+            ends.iter().zip([&0.0].into_iter().chain(&ends)).map(|(end, start)| end - start).collect()
+        };
+        let (plain, power) = (widths("10−3"), widths("10⁻³"));
         assert_eq!(plain[..2], power[..2]);
-        assert!(power[3].end < plain[3].end);
+        for (plain, raised) in plain.iter().zip(&power).skip(2) {
+            assert!((raised / plain - RAISED_SIZE).abs() < 1e-12, "{raised} of {plain}");
+        }
     }
 
     #[test]

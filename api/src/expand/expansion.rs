@@ -1,0 +1,229 @@
+//! What a request expands into, and what a point is known by.
+
+use drillsweep_sim::PHYSICS_VERSION;
+use drillsweep_sim::scenario::{Outputs, Problem, Scenario};
+use indexmap::IndexMap;
+use serde_json::{Map, Value, json};
+
+use crate::problem::FieldProblem;
+use crate::request::AxisName;
+
+/// What a request expands into: one scenario, and what each point changes in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expansion {
+    /// Preset or scenario with the changes of the request. At the swept fields it has the values of point 1.
+    pub base: Scenario,
+    /// The swept parameters, in order.
+    pub axes: Vec<AxisName>,
+    /// The points, by ordinal.
+    pub points: Vec<SweepPoint>,
+    /// The reference runs that verify some of the points, as [`Expansion::references`] gives them, where the request wants some.
+    pub verification: Option<Box<Expansion>>,
+    /// What can be simulated but is probably not meant, with JSON Pointers into the request.
+    pub warnings: Vec<FieldProblem>,
+}
+
+impl Expansion {
+    /// The scenario to simulate at a point of this expansion.
+    pub fn scenario(&self, point: &SweepPoint) -> Scenario {
+        let mut scenario = self.base.clone();
+        for (name, &value) in self.axes.iter().zip(&point.values) {
+            // Each of these was made once, when the point was validated.
+            let _ = set_number(&mut scenario, name.scenario_path(), value);
+        }
+        scenario
+    }
+
+    /// What a point changes in the base, by path: with [`compose`] the point's scenario again.
+    pub fn changes(&self, point: &SweepPoint) -> Map<String, Value> {
+        let change = |(name, value): (&AxisName, &f64)| (name.scenario_path().to_owned(), number(*value));
+        self.axes.iter().zip(&point.values).map(change).collect()
+    }
+
+    /// The swept parameters of a point in the order of the axes, then the scenario's other parameters with a name.
+    pub fn parameters(&self, point: &SweepPoint) -> IndexMap<String, f64> {
+        let swept =
+            self.axes.iter().zip(&point.values).map(|(name, value)| (name.as_str().to_owned(), *value));
+        let is_swept = |path: &str| self.axes.iter().any(|name| name.scenario_path() == path);
+        let mud = self.base.mud.as_ref();
+        let others =
+            AxisName::NAMED.into_iter().filter(|(_, path)| !is_swept(path)).filter_map(|(name, _)| {
+                let value = if name == "flow_rate" { mud?.flow_rate } else { mud?.density };
+                Some((name.to_owned(), value))
+            });
+        swept.chain(others).collect()
+    }
+}
+
+/// One point to compute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepPoint {
+    /// Number of the point in its sweep, from 1.
+    pub ordinal: u32,
+    /// The values of the swept parameters, in the order of the axes.
+    pub values: Vec<f64>,
+    /// Content hash of physics version and scenario: equal keys, equal results.
+    pub key: PointKey,
+    /// The key of the same point with everything kept, where this one keeps less: its result will do.
+    pub fuller_key: Option<PointKey>,
+}
+
+impl SweepPoint {
+    /// The point of this scenario, which is left as it was.
+    pub(super) fn new(ordinal: u32, values: Vec<f64>, scenario: &mut Scenario) -> Self {
+        let key_of_point = key(scenario);
+        let fuller_key = (scenario.recording.outputs != Outputs::Full).then(|| {
+            let outputs = std::mem::take(&mut scenario.recording.outputs);
+            let fuller = key(scenario);
+            scenario.recording.outputs = outputs;
+            fuller
+        });
+        SweepPoint { ordinal, values, key: key_of_point, fuller_key }
+    }
+}
+
+/// The content hash of a point.
+pub type PointKey = [u8; 32];
+
+/// A point's key as it is written on the wire, in hexadecimal.
+pub fn key_text(key: &PointKey) -> String {
+    blake3::Hash::from_bytes(*key).to_hex().to_string()
+}
+
+/// The content hash of a scenario: BLAKE3 over a domain tag, the physics version and the scenario's
+/// canonical bytes.
+pub fn key(scenario: &Scenario) -> PointKey {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(b"drillsweep point\0");
+    hasher.update(&PHYSICS_VERSION.to_le_bytes());
+    hasher.update(&scenario.canonical_bytes());
+    hasher.finalize().into()
+}
+
+/// The scenario of a stored point: its base with its changes, both as JSON text.
+///
+/// # Errors
+/// When either text is not what a release of the same physics version writes.
+pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
+    let mut scenario = Scenario::from_json(base)?;
+    let malformed = |error: serde_json::Error| Problem {
+        path: String::new(),
+        got: String::new(),
+        message: format!("the point's changes cannot be read: {error}"),
+    };
+    let changes: IndexMap<String, f64> = serde_json::from_str(changes).map_err(malformed)?;
+    for (path, value) in changes {
+        set_number(&mut scenario, &path, value)?;
+    }
+    Ok(scenario)
+}
+
+/// Sets a numeric field. Whole numbers go by way of the written form, which says what is wrong with others.
+pub(super) fn set_number(scenario: &mut Scenario, path: &str, value: f64) -> Result<(), Problem> {
+    match scenario.number_mut(path) {
+        Some(number) => *number = value,
+        None => {
+            let refused = |problem: Problem| match problem.got.as_str() {
+                "" => problem,
+                _ => Problem { got: number(value).to_string(), ..problem },
+            };
+            *scenario = scenario.with(path, number(value)).map_err(refused)?;
+        }
+    }
+    Ok(())
+}
+
+/// A number as JSON, a whole one without its decimal point.
+pub(super) fn number(value: f64) -> Value {
+    const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative()) {
+        json!(value as i64)
+    } else {
+        json!(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_sim::scenario::preset;
+
+    use super::*;
+    use crate::expand::expand;
+    use crate::expand::tests::{expansion, problems, request};
+
+    #[test]
+    fn equal_points_have_equal_keys_however_they_are_asked_for() {
+        let key_of = |body| key_text(&expand(&request(body)).unwrap().points[0].key);
+        let by_preset = key_of(json!({"preset": "paper-200m"}));
+        let mut scenario = serde_json::to_value(preset("paper-200m").unwrap()).unwrap();
+        scenario["name"] = "another name".into();
+        let mud = scenario["mud"].clone();
+        let by_scenario = key_of(json!({"scenario": scenario}));
+        let by_set = key_of(json!({"preset": "paper-200m", "set": {"mud.flow_rate": mud["flow_rate"]}}));
+        let by_axis =
+            key_of(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [mud["flow_rate"]]}}}));
+        assert_eq!(by_preset, by_scenario);
+        assert_eq!(by_preset, by_set);
+        assert_eq!(by_preset, by_axis);
+        assert_ne!(by_preset, key_of(json!({"preset": "paper-200m", "set": {"mud.flow_rate": 0.02}})));
+        assert_eq!(by_preset.len(), 64);
+    }
+
+    #[test]
+    fn what_is_kept_belongs_to_the_point_and_is_checked_where_it_was_written() {
+        let of = |outputs: Value| json!({"preset": "paper-200m", "outputs": outputs});
+        let key_of = |body| expand(&request(body)).unwrap().points[0].key;
+        let whole = key_of(json!({"preset": "paper-200m"}));
+        assert_eq!(key_of(of(json!("full"))), whole);
+        assert_ne!(key_of(of(json!("summary"))), whole);
+        let fuller = |body| expand(&request(body)).unwrap().points[0].fuller_key;
+        assert_eq!(fuller(of(json!("summary"))), Some(whole));
+        assert_eq!(fuller(of(json!("full"))), None);
+        let by_path = json!({"preset": "paper-200m", "set": {"recording.outputs": "summary"}});
+        assert_eq!(key_of(of(json!("summary"))), key_of(by_path));
+        let found = problems(of(json!({"orbits": {"nodes": [{"node": 49}, {"node": 48}], "decimation": 0}})));
+        let pointers: Vec<_> = found.iter().map(|(pointer, ..)| pointer.as_str()).collect();
+        assert_eq!(pointers, ["/outputs/orbits/decimation", "/outputs/orbits/nodes/1/node"]);
+    }
+
+    #[test]
+    fn every_numeric_field_is_an_axis_by_its_path() {
+        let set = json!({"contact.law": "per_length"});
+        let expansion = expansion(json!({"preset": "paper-200m", "set": set, "axes": {
+            "operation.rotation_speed_rpm": {"values": [90, 120]},
+            "contact.stiffness_per_length": {"from": 1e7, "to": 2e7, "count": 2},
+            "ensemble": {"values": [4]},
+            "accuracy.step": {"values": [1e-3, 5e-4]}
+        }}));
+        assert_eq!(expansion.points.len(), 8);
+        for point in &expansion.points {
+            let [speed, stiffness, members, step] = point.values[..] else { panic!("{point:?}") };
+            let scenario = preset("paper-200m")
+                .unwrap()
+                .with("operation.rotation_speed_rpm", json!(speed))
+                .and_then(|scenario| scenario.with("contact.law", json!("per_length")))
+                .and_then(|scenario| scenario.with("contact.stiffness_per_length", json!(stiffness)))
+                .and_then(|scenario| scenario.with("ensemble", json!(members as u32)))
+                .and_then(|scenario| scenario.with("accuracy.step", json!(step)))
+                .unwrap();
+            assert_eq!(expansion.scenario(point), scenario);
+            assert_eq!(point.key, key(&scenario));
+            // What is stored of the point is the point.
+            let changes = Value::Object(expansion.changes(point)).to_string();
+            assert_eq!(compose(&expansion.base.to_json(), &changes).unwrap(), scenario);
+        }
+        let parameters = expansion.parameters(&expansion.points[7]);
+        let names: Vec<&str> = parameters.keys().map(String::as_str).collect();
+        assert_eq!(
+            names,
+            [
+                "operation.rotation_speed_rpm",
+                "contact.stiffness_per_length",
+                "ensemble",
+                "accuracy.step",
+                "flow_rate",
+                "mud_density"
+            ]
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! From a request to the points to compute, or to everything that is wrong with it.
+
+mod base;
+mod expansion;
+mod layout;
+mod members;
+mod points;
+mod problems;
+mod references;
+
+pub use expansion::{Expansion, PointKey, SweepPoint, compose, key, key_text};
+pub use members::check_patch;
+
+use base::{check_without_axes, resolve, set_fields};
+use layout::Layout;
+use members::check_members;
+use points::points;
+use problems::Found;
+use references::references;
+
+use crate::problem::ProblemDetails;
+use crate::request::{AppendRequest, SweepRequest};
+use crate::verify::sample;
+
+/// The points of a request, every one of them validated.
+///
+/// In a grid points are ordered like the digits of a counter: the last axis turns fastest, the first slowest.
+///
+/// # Errors
+/// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request; of very
+/// many the first hundred.
+pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
+    let mut problems = Found::default();
+    check_members(request, &mut problems);
+    let layout = Layout::new(request, &mut problems);
+    let expansion = resolve(request, &mut problems).and_then(|mut base| {
+        let Some(layout) = layout else {
+            check_without_axes(request, &base, &mut problems);
+            return None;
+        };
+        let fields_hold = set_fields(request, &layout, &mut base, &mut problems);
+        if fields_hold {
+            let mut expansion = points(request, &layout, base, &mut problems);
+            if let Some(verify) = request.verify.filter(|_| problems.is_empty()) {
+                let total = expansion.points.len();
+                let sample = sample(verify, total, 0, total);
+                expansion.verification =
+                    Some(Box::new(references(&expansion, &sample, "/verify", &mut problems)));
+            }
+            return Some(expansion);
+        }
+        check_without_axes(request, &base, &mut problems);
+        None
+    });
+    match expansion {
+        Some(expansion) if problems.is_empty() => Ok(expansion),
+        _ => Err(problems.into_refusal()),
+    }
+}
+
+/// The points that are to be added to the sweep that `original` asked for, as a sweep of their own. Their parameters have the
+/// names that they have in that sweep.
+///
+/// # Errors
+/// As [`expand`]; also if their parameters are not those of the sweep.
+pub fn expand_added(added: AppendRequest, original: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
+    let mut expansion = expand(&added.of(original)?)?;
+    for name in &mut expansion.axes {
+        if let Some(known) = original.names().find(|known| known.scenario_path() == name.scenario_path()) {
+            *name = known.clone();
+        }
+    }
+    Ok(expansion)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::problem::FieldProblem;
+
+    pub(super) fn request(body: Value) -> SweepRequest {
+        serde_json::from_value(body).unwrap()
+    }
+
+    /// What a refused request is refused for: pointer, value and message.
+    pub(super) fn problems(body: Value) -> Vec<(String, Option<Value>, String)> {
+        let details = expand(&request(body)).expect_err("the request must be refused");
+        assert_eq!(details.status, 422);
+        let of = |error: FieldProblem| (error.pointer.unwrap_or_default(), error.got, error.detail);
+        details.errors.into_iter().map(of).collect()
+    }
+
+    pub(super) fn pointers(body: Value) -> Vec<String> {
+        problems(body).into_iter().map(|(pointer, ..)| pointer).collect()
+    }
+
+    pub(super) fn expansion(body: Value) -> Expansion {
+        expand(&request(body)).unwrap_or_else(|problem| panic!("{problem}"))
+    }
+
+    #[test]
+    fn a_run_is_a_sweep_of_one_point() {
+        let run: crate::RunRequest =
+            serde_json::from_value(json!({"preset": "paper-200m", "set": {"duration": 65}})).unwrap();
+        let expansion = expand(&run.into()).unwrap();
+        assert_eq!(expansion.points.len(), 1);
+        assert_eq!(expansion.points[0].ordinal, 1);
+        assert_eq!(expansion.scenario(&expansion.points[0]).duration, 65.0);
+    }
+}

@@ -1,0 +1,104 @@
+//! The points of a request, validated.
+
+use drillsweep_sim::scenario::{Problem, Problems, Scenario, Warning};
+use drillsweep_sim::transient::step_problem;
+
+use super::expansion::{Expansion, SweepPoint, set_number};
+use super::layout::Layout;
+use super::problems::{Found, MOST_PROBLEMS};
+use crate::request::{AxisName, SweepRequest};
+
+/// All points. The first is validated in full, the others where the axes may have made a difference.
+pub(super) fn points(
+    request: &SweepRequest,
+    layout: &Layout<'_>,
+    base: Scenario,
+    problems: &mut Found,
+) -> Expansion {
+    let mut warnings = Found::default();
+    let mut points = Vec::with_capacity(layout.total);
+    let mut scenario = base.clone();
+    let paths: Vec<&str> = layout.names.iter().map(AxisName::scenario_path).collect();
+    for (index, ordinal) in (0..layout.total).zip(1..) {
+        let values = layout.values(index);
+        let set =
+            paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let checked = set.map_err(Problems::from).and_then(|()| match index {
+            0 => scenario.validate(),
+            _ => scenario.validate_changes(paths.iter().copied()),
+        });
+        match checked {
+            Ok(of_scenario) => {
+                for Warning { path, message } in of_scenario {
+                    let problem = Problem { path, got: String::new(), message };
+                    warnings.add(request, |path| layout.place(index, path), &problem);
+                }
+            }
+            Err(Problems(of_scenario)) => {
+                for problem in &of_scenario {
+                    problems.add(request, |path| layout.place(index, path), problem);
+                }
+                if problems.len() >= MOST_PROBLEMS {
+                    break;
+                }
+                continue;
+            }
+        }
+        points.push(SweepPoint::new(ordinal, values, &mut scenario));
+    }
+    let warnings = warnings.into_vec();
+    let expansion = Expansion { base, axes: layout.names.clone(), points, verification: None, warnings };
+    // The stability limit of an explicit step takes an equilibrium to find: the extreme points stand for all.
+    if problems.is_empty() {
+        for index in layout.extremes(&expansion.points) {
+            if let Some(problem) = step_problem(&expansion.scenario(&expansion.points[index])) {
+                problems.add(request, |path| layout.place(index, path), &problem);
+            }
+        }
+    }
+    expansion
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use crate::expand::tests::{pointers, problems};
+
+    #[test]
+    fn unsafe_time_stepping_is_refused_with_what_would_be_valid() {
+        let of = |accuracy: Value| {
+            problems(
+                json!({"preset": "paper-200m", "set": {"accuracy": accuracy}, "axes": {"flow_rate": {"values": [0.01, 0.02]}}}),
+            )
+        };
+        let beyond = of(json!({"integrator": "rk4", "step": 1e-4}));
+        assert_eq!(beyond.len(), 1, "{beyond:?}");
+        // The method's limit of stability in this scene is 6.37e-5 s.
+        assert!(beyond[0].0.starts_with("/set/accuracy") && beyond[0].2.contains("6.3"), "{beyond:?}");
+        let undamped = of(json!({"integrator": "generalized_alpha", "step": 5e-4, "spectral_radius": 1.0}));
+        assert!(undamped.len() == 1 && undamped[0].2.contains("0 to 0.95"), "{undamped:?}");
+        let one_sweep = of(json!({"integrator": "esdirk4", "step": 1e-3, "contact_sweeps": 1}));
+        assert!(one_sweep.len() == 1 && one_sweep[0].2.contains("2 to"), "{one_sweep:?}");
+    }
+
+    #[test]
+    fn what_is_left_out_for_later_points_would_not_have_been_found() {
+        // The second point is bad in the one thing that its axis decides, whichever part of the scenario that is in.
+        for (path, values) in [
+            ("mud.flow_index", [0.5, -0.5]),
+            ("contact.stiffness", [1e6, -1.0]),
+            ("well.hole_diameter", [0.22, 0.1]),
+            ("string.gauges[0].measured_depth", [150.0, 500.0]),
+            ("mesh.collar", [0.5, -1.0]),
+            ("recording.rate_hz", [1000.0, -1.0]),
+            ("duration", [60.0, 0.0]),
+            ("damping.mass_proportional", [0.1, -0.1]),
+            ("accuracy.step", [1e-3, -1e-3]),
+        ] {
+            let body = json!({"preset": "paper-200m", "axes": {path: {"values": values}}});
+            let found = pointers(body);
+            assert!(found.iter().any(|pointer| pointer.starts_with("/")), "{path}: {found:?}");
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What is wrong with a request, and where in it that is written.
+
+use drillsweep_sim::scenario::Problem;
+use indexmap::IndexMap;
+use serde_json::Value;
+
+use crate::problem::{FieldProblem, ProblemDetails, pointer_token};
+use crate::request::SweepRequest;
+
+/// Problems of one request that are reported at most: a hundred thousand points may each have their own.
+pub(super) const MOST_PROBLEMS: usize = 100;
+
+/// Distinct problems, in the order in which they were found, up to [`MOST_PROBLEMS`].
+#[derive(Default)]
+pub(super) struct Found(IndexMap<(String, String), Option<Value>>);
+
+impl Found {
+    pub(super) fn push(&mut self, pointer: impl Into<String>, got: Option<Value>, detail: impl Into<String>) {
+        if self.0.len() < MOST_PROBLEMS {
+            self.0.entry((pointer.into(), detail.into())).or_insert(got);
+        }
+    }
+
+    /// Notes a problem of a scenario, at the place of the request that decides the field: `place` knows the axes'.
+    pub(super) fn add(
+        &mut self,
+        request: &SweepRequest,
+        place: impl Fn(&str) -> Option<String>,
+        problem: &Problem,
+    ) {
+        let got = match problem.got.as_str() {
+            "" => None,
+            got => Some(serde_json::from_str(got).unwrap_or_else(|_| got.into())),
+        };
+        let message = &problem.message;
+        if let Some(pointer) = place(&problem.path) {
+            return self.push(pointer, got, message);
+        }
+        match written(request, &problem.path) {
+            (pointer, false) => self.push(pointer, got, message),
+            (pointer, true) => self.push(pointer, got, format!("{}: {message}", problem.path)),
+        }
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The answer to a request that has these problems.
+    pub(super) fn into_refusal(self) -> Box<ProblemDetails> {
+        Box::new(ProblemDetails::invalid_request(self.into_vec()))
+    }
+
+    pub(super) fn into_vec(self) -> Vec<FieldProblem> {
+        let problem =
+            |((pointer, detail), got)| FieldProblem { pointer: Some(pointer), parameter: None, got, detail };
+        self.0.into_iter().map(problem).collect()
+    }
+}
+
+/// Where in a request a field of the scenario is written outside the axes, and whether that is the preset that it
+/// names rather than the field itself.
+fn written(request: &SweepRequest, path: &str) -> (String, bool) {
+    let field = scenario_pointer(path);
+    if let Some(rest) = field.strip_prefix("/recording/outputs").filter(|_| request.outputs.is_some()) {
+        return (format!("/outputs{rest}"), false);
+    }
+    // The longest path wins: it was applied last.
+    let of_set = request
+        .set
+        .keys()
+        .filter_map(|path| Some((path, field.strip_prefix(&scenario_pointer(path))?)))
+        .filter(|(path, rest)| rest.is_empty() || (rest.starts_with('/') && !path.is_empty()))
+        .max_by_key(|(path, _)| path.len());
+    if let Some((path, rest)) = of_set {
+        return (format!("/set/{}{rest}", pointer_token(path)), false);
+    }
+    match request.scenario {
+        Some(_) => (format!("/scenario{field}"), false),
+        None => ("/preset".to_owned(), true),
+    }
+}
+
+/// The path of a field, such as `string.sections[1].count`, as a JSON Pointer into the scenario.
+fn scenario_pointer(path: &str) -> String {
+    Problem { path: path.to_owned(), got: String::new(), message: String::new() }.pointer()
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_sim::scenario::preset;
+    use serde_json::json;
+
+    use super::*;
+    use crate::expand::tests::{pointers, problems};
+
+    #[test]
+    fn every_problem_is_reported_at_once_where_it_was_written() {
+        let body = json!({
+            "preset": "paper-200m",
+            "priority": 11,
+            "set": {"mud.flow_index": -1},
+            "axes": {
+                "flow_rate": {"values": [0.01, 0.04, -0.06]},
+                "mud_density": {"from": -5, "to": 2100, "count": 3}
+            }
+        });
+        let mut found = pointers(body);
+        found.sort();
+        assert_eq!(
+            found,
+            ["/axes/flow_rate/values/2", "/axes/mud_density/from", "/priority", "/set/mud.flow_index"]
+        );
+    }
+
+    #[test]
+    fn a_problem_of_many_points_is_reported_once() {
+        let body = json!({
+            "preset": "paper-200m",
+            "set": {"mud.flow_index": -1},
+            "axes": {"flow_rate": {"from": 0.01, "to": 0.06, "count": 50}}
+        });
+        let found = problems(body);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].1, Some(json!(-1)));
+    }
+
+    #[test]
+    fn problems_of_a_whole_scenario_point_into_it() {
+        let mut scenario = serde_json::to_value(preset("paper-200m").unwrap()).unwrap();
+        scenario["mud"]["flow_index"] = json!(-0.5);
+        scenario["contact"]["stiffness"] = json!(-1);
+        let mut found = pointers(json!({"scenario": scenario}));
+        found.sort();
+        assert_eq!(found, ["/scenario/contact/stiffness", "/scenario/mud/flow_index"]);
+    }
+
+    #[test]
+    fn of_very_many_problems_the_first_hundred_are_reported() {
+        let body = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": vec![-1.0; 5_000]}}});
+        assert_eq!(problems(body).len(), MOST_PROBLEMS);
+    }
+}

@@ -1,0 +1,154 @@
+//! The reference runs that verify points.
+
+use std::iter::{once, repeat};
+
+use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Problem, Problems};
+
+use super::expansion::{Expansion, SweepPoint, set_number};
+use super::problems::Found;
+use crate::problem::ProblemDetails;
+use crate::request::AxisName;
+
+impl Expansion {
+    /// The reference runs that verify the points at these indices: the same scenarios at the accuracy `reference`, under the points'
+    /// ordinals. Parameters of the accuracy itself are left out.
+    ///
+    /// # Errors
+    /// When there is nothing to verify, or the reference cannot run such a point; of the request as a whole.
+    pub fn references(&self, indices: &[usize]) -> Result<Expansion, Box<ProblemDetails>> {
+        let mut problems = Found::default();
+        let references = references(self, indices, "", &mut problems);
+        match problems.is_empty() {
+            true => Ok(references),
+            false => Err(problems.into_refusal()),
+        }
+    }
+}
+
+/// The reference runs of [`Expansion::references`]; what is wrong is noted at this pointer. The first is validated in full, the others where the axes may have made a
+/// difference.
+pub(super) fn references(
+    expansion: &Expansion,
+    indices: &[usize],
+    pointer: &str,
+    problems: &mut Found,
+) -> Expansion {
+    let mut base = expansion.base.clone();
+    let reference = Accuracy::Preset(AccuracyPreset::Reference);
+    if base.accuracy == reference {
+        problems.push(
+            pointer,
+            None,
+            "the points are of the accuracy `reference` already, which verifies others",
+        );
+    }
+    if base.cost_study.is_some() || !base.active_effects().transient {
+        problems.push(
+            pointer,
+            None,
+            "there is no run in time to verify: a cost study, or an equilibrium alone",
+        );
+    }
+    base.accuracy = reference;
+    let kept: Vec<usize> = (0..expansion.axes.len())
+        .filter(|axis| !expansion.axes[*axis].scenario_path().starts_with("accuracy."))
+        .collect();
+    let axes: Vec<AxisName> = kept.iter().map(|axis| expansion.axes[*axis].clone()).collect();
+    let paths: Vec<&str> = axes.iter().map(AxisName::scenario_path).collect();
+    let mut scenario = base.clone();
+    let mut points = Vec::with_capacity(indices.len());
+    for (point, is_first) in
+        indices.iter().map(|index| &expansion.points[*index]).zip(once(true).chain(repeat(false)))
+    {
+        let values: Vec<f64> = kept.iter().map(|axis| point.values[*axis]).collect();
+        let set =
+            paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let checked = set.map_err(Problems::from).and_then(|()| match is_first {
+            true => scenario.validate(),
+            false => scenario.validate_changes(paths.iter().copied()),
+        });
+        match checked {
+            Ok(_) => points.push(SweepPoint::new(point.ordinal, values, &mut scenario)),
+            // The point itself is valid: it is the reference that the scenario does not allow.
+            Err(Problems(of_scenario)) => {
+                for Problem { path, message, .. } in of_scenario {
+                    problems.push(pointer, None, format!("the reference cannot run this: {path}: {message}"));
+                }
+            }
+        }
+    }
+    Expansion { base, axes, points, verification: None, warnings: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_sim::scenario::Scenario;
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::expand::tests::{pointers, problems, request};
+    use crate::expand::{compose, expand, expansion::key};
+
+    #[test]
+    fn a_sample_is_verified_by_the_same_scenarios_at_the_reference() {
+        let body = json!({"preset": "paper-200m", "verify": 4, "outputs": "summary", "set": {"accuracy": "draft"}, "axes": {
+            "flow_rate": {"from": 0.01, "to": 0.06, "count": 6}, "mud_density": {"from": 1200, "to": 2100, "count": 10}}});
+        let expansion = expand(&request(body.clone())).unwrap();
+        let references = expansion.verification.as_deref().unwrap();
+        assert_eq!(Some(references), expand(&request(body.clone())).unwrap().verification.as_deref());
+        let ordinals: Vec<u32> = references.points.iter().map(|point| point.ordinal).collect();
+        assert_eq!(ordinals.len(), 4);
+        for (k, ordinal) in (0..4).zip(&ordinals) {
+            assert!((15 * k + 1..=15 * k + 15).contains(ordinal), "one of each fourth: {ordinals:?}");
+        }
+        for reference in &references.points {
+            let point = &expansion.points[reference.ordinal as usize - 1];
+            let wanted = Scenario {
+                accuracy: Accuracy::Preset(AccuracyPreset::Reference),
+                ..expansion.scenario(point)
+            };
+            assert_eq!(references.scenario(reference), wanted);
+            assert_eq!(
+                (reference.key, references.parameters(reference)),
+                (key(&wanted), expansion.parameters(point))
+            );
+            let stored = |of: &Expansion| serde_json::to_string(&of.base).unwrap();
+            let changes = serde_json::to_string(&references.changes(reference)).unwrap();
+            assert_eq!(compose(&stored(references), &changes).unwrap(), wanted);
+        }
+        // Who asks for that very point asks for the same work.
+        let first = &references.points[0];
+        let asked = json!({"preset": "paper-200m", "outputs": "summary", "set": {
+            "accuracy": "reference", "mud.flow_rate": first.values[0], "mud.density": first.values[1]}});
+        let asked = expand(&request(asked)).unwrap();
+        assert_eq!((asked.points[0].key, asked.points[0].fuller_key), (first.key, first.fuller_key));
+        assert_eq!(asked.verification, None);
+
+        // What is swept of the accuracy itself does not reach the reference.
+        let steps = json!({"preset": "paper-200m", "verify": 2, "set": {"accuracy": {"integrator": "esdirk4", "step": 1e-3}},
+            "axes": {"accuracy.step": {"values": [1e-3, 5e-4]}}});
+        let references = expand(&request(steps)).unwrap().verification.unwrap();
+        assert_eq!(references.points[0].key, references.points[1].key);
+        assert!(references.axes.is_empty());
+    }
+
+    #[test]
+    fn what_cannot_be_verified_is_refused_where_it_was_asked_for() {
+        let of = |verify: Value, set: Value| json!({"preset": "paper-200m", "verify": verify, "set": set});
+        for verify in [json!(0), json!(-1), json!(1.5), json!(-0.05)] {
+            let [(pointer, got, detail)] = problems(of(verify.clone(), json!({}))).try_into().unwrap();
+            assert_eq!((pointer.as_str(), got), ("/verify", Some(verify)));
+            assert!(detail.contains("a part of the points"), "{detail}");
+        }
+        for (set, said) in [
+            (json!({"accuracy": "reference"}), "accuracy `reference` already"),
+            (json!({"effects.transient": "off"}), "no run in time to verify"),
+        ] {
+            let [(pointer, got, detail)] = problems(of(json!(0.5), set)).try_into().unwrap();
+            assert_eq!((pointer.as_str(), got), ("/verify", None));
+            assert!(detail.contains(said), "{detail}");
+        }
+        // Beside other problems only what is wrong with the wish itself.
+        assert_eq!(pointers(of(json!(0.5), json!({"duration": -1}))), ["/set/duration"]);
+    }
+}

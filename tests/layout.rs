@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
@@ -151,7 +152,75 @@ fn modules_of_the_simulation_use_only_what_lies_below_them() {
     assert!(arrows > 100, "the arrows were not found");
 }
 
-fn rust_files(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+#[test]
+fn no_module_of_the_server_imports_itself_by_way_of_others() {
+    let metadata = metadata();
+    let server =
+        metadata.packages.iter().find(|package| package.name.as_str() == "drillsweep-server").unwrap();
+    let root = server.manifest_path.parent().unwrap().as_std_path().join("src");
+    let mut sources = Vec::new();
+    rust_files(&root, &mut sources);
+    let modules: BTreeMap<String, String> = sources
+        .iter()
+        .map(|path| {
+            let text = std::fs::read_to_string(path).unwrap();
+            (module(path.strip_prefix(&root).unwrap()), text.split("#[cfg(test)]").next().unwrap().to_owned())
+        })
+        .collect();
+    assert!(modules.len() > 20 && modules.contains_key("route::sweeps"), "the sources were not found");
+
+    // Modules that import none but those already taken out are taken out, until what is left imports itself.
+    let mut left: BTreeMap<&str, BTreeSet<String>> = modules
+        .iter()
+        .map(|(name, code)| {
+            assert!(!code.contains("super::"), "{name} is looked at by its `crate::` paths only");
+            let mut imported: BTreeSet<String> =
+                imports(code).into_iter().filter_map(|path| known(path, &modules)).collect();
+            imported.remove(name);
+            (name.as_str(), imported)
+        })
+        .collect();
+    assert!(left["route::sweeps"].contains("guard::quota"), "imports are not found: {left:?}");
+    loop {
+        let names: BTreeSet<String> = left.keys().map(|name| (*name).to_owned()).collect();
+        left.retain(|_, imported| !imported.is_disjoint(&names));
+        if left.len() == names.len() {
+            break;
+        }
+    }
+    assert!(left.is_empty(), "modules that import each other are among {:?}", left.keys());
+}
+
+/// The path of a module from that of its file.
+fn module(file: &Path) -> String {
+    let parts: Vec<_> =
+        file.with_extension("").iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+    parts.join("::").trim_end_matches("::mod").to_owned()
+}
+
+/// The paths below `crate::` that code names, those in braces one by one.
+fn imports(code: &str) -> Vec<String> {
+    let of = |path: &str| {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+        let end = path.find(|c| !is_part(c)).unwrap_or(path.len());
+        let (stem, rest) = path.split_at(end);
+        match rest.strip_prefix('{').and_then(|rest| rest.split_once('}')) {
+            Some((names, _)) => names.split(',').map(|name| format!("{stem}{}", name.trim())).collect(),
+            None => vec![stem.to_owned()],
+        }
+    };
+    code.split("crate::").skip(1).flat_map(of).collect()
+}
+
+/// The module that a path leads into.
+fn known(mut path: String, modules: &BTreeMap<String, String>) -> Option<String> {
+    while !modules.contains_key(&path) {
+        path.truncate(path.rfind("::")?);
+    }
+    Some(path)
+}
+
+fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {

@@ -72,7 +72,7 @@ fn command(data: &Path, collector: &str, arguments: &[&str]) -> Command {
         .env("OTEL_EXPORTER_OTLP_ENDPOINT", collector)
         .env("OTEL_BSP_SCHEDULE_DELAY", "50")
         // What is traced does not depend on what is logged.
-        .env("DRILLSWEEP_LOG", "off,drillsweep_server::app=info")
+        .env("DRILLSWEEP_LOG", "off,drillsweep_server::serve=info")
         .env("NO_COLOR", "1");
     command
 }

@@ -3,34 +3,14 @@
 //! [`serve`] runs it on a listener until told to stop; [`router`] is the same without the network, for tests
 //! and for embedding; [`openapi`] is the document that it serves.
 
+mod answer;
 mod app;
-mod artifact;
-mod auth;
-mod convert;
-mod cost;
-mod docs;
-mod error;
-mod events;
-mod export;
-mod extract;
-mod files;
-mod format;
-mod health;
-mod limit;
-mod maintenance;
-mod metrics;
-mod middleware;
-mod openapi;
-mod points;
-mod results;
+mod guard;
+mod route;
 mod router;
-mod scenarios;
-mod status;
-mod sweeps;
-mod verification;
-mod work;
+mod serve;
 
-pub use app::{Config, DEFAULT_ADDRESS, Listeners, ServeError, serve};
-pub use limit::OwnerLimits;
-pub use openapi::{openapi, openapi_json};
-pub use router::router;
+pub use app::Config;
+pub use app::limit::OwnerLimits;
+pub use router::{openapi, openapi_json, router};
+pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

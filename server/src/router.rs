@@ -1,7 +1,10 @@
-//! All routes, in the order in which a newcomer should read them.
+//! All routes, in the order in which a newcomer should read them, and the OpenAPI document that they make up.
+
+use std::sync::LazyLock;
 
 use axum::Router;
-use axum::http::{Method, Uri};
+use axum::http::{Method, Uri, header};
+use axum::response::IntoResponse;
 use axum::routing::get;
 use drillsweep_api::ProblemKind;
 use drillsweep_store::Store;
@@ -9,11 +12,12 @@ use tokio::sync::watch;
 use utoipa::OpenApi;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
+use crate::answer::document::{Document, Problems};
+use crate::answer::error::Error;
 use crate::app::{App, Config};
-use crate::error::Error;
-use crate::{
-    cost, docs, events, export, files, health, middleware, openapi, points, results, scenarios, status,
-    sweeps, verification,
+use crate::guard::middleware;
+use crate::route::{
+    cost, docs, events, export, files, health, points, results, scenarios, status, sweeps, verification,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -31,8 +35,8 @@ pub(crate) fn routes(app: &App) -> Router {
 }
 
 /// Routes and their OpenAPI document; none for programs can exist without its entry there.
-pub(crate) fn documented() -> OpenApiRouter<App> {
-    OpenApiRouter::with_openapi(openapi::Document::openapi())
+fn documented() -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(sweeps::create, sweeps::list))
         .routes(routes!(sweeps::show, sweeps::change))
         .routes(routes!(sweeps::cancel))
@@ -62,12 +66,41 @@ pub(crate) fn documented() -> OpenApiRouter<App> {
         .routes(routes!(status::workers))
         .routes(routes!(status::queue))
         .routes(routes!(status::limits))
-        .routes(routes!(openapi::show))
+        .routes(routes!(show))
         // For people: no part of what programs talk to.
         .route("/docs", get(docs::start))
         .route("/docs/{name}", get(docs::file))
         .routes(routes!(health::alive))
         .routes(routes!(health::ready))
+}
+
+/// The OpenAPI 3.1 document of the service.
+pub fn openapi() -> utoipa::openapi::OpenApi {
+    documented().into_openapi()
+}
+
+/// The document as it is served and committed: indented JSON with a final newline.
+pub fn openapi_json() -> &'static str {
+    static TEXT: LazyLock<String> = LazyLock::new(|| {
+        let mut text =
+            openapi().to_pretty_json().expect("a document made of strings and numbers has a JSON form");
+        text.push('\n');
+        text
+    });
+    &TEXT
+}
+
+/// The OpenAPI document of the service
+#[utoipa::path(
+    get,
+    path = "/openapi.json",
+    tag = "service",
+    operation_id = "get_openapi",
+    security(()),
+    responses((status = 200, description = "The document", content_type = "application/json"), Problems)
+)]
+async fn show() -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/json")], openapi_json())
 }
 
 async fn no_such_route(uri: Uri) -> Error {

@@ -20,9 +20,9 @@ use tower_http::request_id::{MakeRequestId, PropagateRequestIdLayer, RequestId, 
 use tower_http::trace::TraceLayer;
 use tracing::Span;
 
+use crate::answer::error::Error;
 use crate::app::App;
-use crate::error::Error;
-use crate::{auth, metrics};
+use crate::guard::{auth, measure};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
@@ -36,7 +36,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(SetRequestIdLayer::new(REQUEST_ID, RequestIds))
             .layer(TraceLayer::new_for_http().make_span_with(span).on_request(()).on_response(log_response))
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
-            .layer(from_fn_with_state(app.clone(), metrics::measure))
+            .layer(from_fn_with_state(app.clone(), measure::measure))
             .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
             .layer(from_fn(tell_unchanged))
             .layer(from_fn(write_problems))

@@ -3,9 +3,9 @@
 use axum::Json;
 use drillsweep_api::{ProblemKind, ScenarioDetail, ScenarioList, preset_detail, presets};
 
-use crate::error::{Error, Result};
-use crate::extract::Path;
-use crate::openapi::Problems;
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::Path;
 
 /// The preset scenarios
 #[utoipa::path(

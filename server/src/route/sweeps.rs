@@ -21,18 +21,18 @@ use serde::Deserialize;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
+use crate::answer::convert;
+use crate::answer::document::{Conditional, PictureResponse, Problems};
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{self, Path, Query, value};
+use crate::answer::format::{self, Format};
+use crate::answer::work::blocking;
 use crate::app::App;
-use crate::auth::Caller;
-use crate::convert;
-use crate::error::{Error, Result};
-use crate::extract::{self, Path, Query, value};
-use crate::format::{self, Format};
-use crate::limit;
-use crate::openapi::{Conditional, PictureResponse, Problems};
-use crate::results::PictureQuery;
-use crate::status::WORKER_SILENCE;
-use crate::verification::Verified;
-use crate::work::blocking;
+use crate::guard::auth::Caller;
+use crate::guard::quota;
+use crate::route::results::PictureQuery;
+use crate::route::status::WORKER_SILENCE;
+use crate::route::verification::Verified;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
@@ -157,7 +157,7 @@ async fn submit(
     }
     if cache != CachePolicy::Only {
         let added = new_sweep.points.len() + new_sweep.verification.runs.len();
-        limit::check_open_points(&app, &new_sweep.owner, added).await?;
+        quota::check_open_points(&app, &new_sweep.owner, added).await?;
     }
     let id = match app.store.submit_sweep(&new_sweep).await? {
         SubmitOutcome::Created => new_sweep.id,
@@ -533,7 +533,7 @@ pub(crate) async fn append(
             .await?
         }
     };
-    limit::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
+    quota::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
     let base_json = convert::write(&expansion.base)?;
     let addition = Addition {
         base_json: &base_json,

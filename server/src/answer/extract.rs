@@ -8,7 +8,7 @@ use drillsweep_api::problem::pointer_token;
 use drillsweep_api::{FieldProblem, LIMITS, ProblemDetails, ProblemKind};
 use serde::de::{DeserializeOwned, Error as _};
 
-use crate::error::Error;
+use crate::answer::error::Error;
 
 /// A JSON body, together with the bytes that came in.
 pub(crate) struct Json<T> {

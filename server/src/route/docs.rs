@@ -7,8 +7,8 @@ use axum::response::{IntoResponse, Redirect, Response};
 use drillsweep_api::ProblemKind;
 use utoipa_swagger_ui::Config;
 
-use crate::error::{Error, Result};
-use crate::extract::Path;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::Path;
 
 /// What the pages show.
 static CONFIG: LazyLock<Arc<Config<'static>>> = LazyLock::new(|| Arc::new(Config::from("/openapi.json")));

@@ -51,7 +51,7 @@ impl Error {
         Error { retry_after: Some(seconds), ..Error::new(kind, detail) }
     }
 
-    /// The problem, to be written out by [`crate::middleware::write_problems`].
+    /// The problem, to be written out where the id of the request is known.
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem
     }

@@ -7,10 +7,10 @@ use axum::extract::State;
 use drillsweep_api::{LIMITS, Limits, Queue, Worker, WorkerList};
 use drillsweep_store::WorkerRecord;
 
+use crate::answer::convert::timestamp;
+use crate::answer::document::Problems;
+use crate::answer::error::Result;
 use crate::app::App;
-use crate::convert::timestamp;
-use crate::error::Result;
-use crate::openapi::Problems;
 
 /// Workers that have been silent for longer are not listed: five times the lease's renewal.
 pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);

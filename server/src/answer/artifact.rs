@@ -12,8 +12,8 @@ use drillsweep_store::{
     Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
 };
 
-use crate::convert;
-use crate::error::{Error, Result};
+use crate::answer::convert;
+use crate::answer::error::{Error, Result};
 
 /// One table of a point's result, as Parquet.
 pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Bytes> {

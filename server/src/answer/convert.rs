@@ -16,7 +16,7 @@ use jiff::Timestamp;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use crate::error::{Error, Result};
+use crate::answer::error::{Error, Result};
 
 /// Whose share a sweep counts against when its request does not say.
 const DEFAULT_OWNER: &str = "default";

@@ -1,10 +1,8 @@
-//! The OpenAPI document of the service.
+//! What the OpenAPI document says of the service as a whole, and of answers that many routes give.
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
 
 use axum::http::header;
-use axum::response::IntoResponse;
 use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList, Table};
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
@@ -13,8 +11,7 @@ use utoipa::openapi::{
 };
 use utoipa::{IntoParams, IntoResponses, Modify, OpenApi, ToSchema};
 
-use crate::format::{Asked, Format, PictureFormat, TableFormat};
-use crate::router;
+use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
 
 /// What the document says about the service as a whole; the routes add themselves.
 #[derive(OpenApi)]
@@ -142,33 +139,4 @@ impl IntoResponses for PointPageResponse {
 
 fn reference<T: ToSchema>() -> Ref {
     Ref::from_schema_name(T::name())
-}
-
-/// The OpenAPI 3.1 document of the service.
-pub fn openapi() -> utoipa::openapi::OpenApi {
-    router::documented().into_openapi()
-}
-
-/// The document as it is served and committed: indented JSON with a final newline.
-pub fn openapi_json() -> &'static str {
-    static TEXT: LazyLock<String> = LazyLock::new(|| {
-        let mut text =
-            openapi().to_pretty_json().expect("a document made of strings and numbers has a JSON form");
-        text.push('\n');
-        text
-    });
-    &TEXT
-}
-
-/// The OpenAPI document of the service
-#[utoipa::path(
-    get,
-    path = "/openapi.json",
-    tag = "service",
-    operation_id = "get_openapi",
-    security(()),
-    responses((status = 200, description = "The document", content_type = "application/json"), Problems)
-)]
-pub(crate) async fn show() -> impl IntoResponse {
-    ([(header::CONTENT_TYPE, "application/json")], openapi_json())
 }

@@ -14,12 +14,12 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use utoipa::IntoParams;
 
+use crate::answer::convert;
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{Path, Query, value};
 use crate::app::App;
-use crate::convert;
-use crate::error::{Error, Result};
-use crate::extract::{Path, Query, value};
-use crate::openapi::Problems;
-use crate::sweeps::{PROGRESS_INTERVAL, load};
+use crate::route::sweeps::{PROGRESS_INTERVAL, load};
 
 const LAST_EVENT_ID: &str = "last-event-id";
 

@@ -16,11 +16,11 @@ use utoipa::IntoParams;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{Path, Query, value};
 use crate::app::App;
-use crate::error::{Error, Result};
-use crate::extract::{Path, Query, value};
-use crate::openapi::Problems;
-use crate::verification::Verified;
+use crate::route::verification::Verified;
 
 /// Bytes that are sent at once.
 const CHUNK: usize = 256 << 10;
@@ -61,7 +61,7 @@ pub(crate) async fn export(
     Path(id): Path<String>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
-    let sweep = crate::sweeps::load_whole(&app, &id).await?;
+    let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
     let archive =

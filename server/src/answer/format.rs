@@ -9,7 +9,7 @@ use drillsweep_store::{ColumnData, TableError, encode_parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-use crate::error::{Error, Result};
+use crate::answer::error::{Error, Result};
 
 /// The formats in which tables are served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]

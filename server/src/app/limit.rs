@@ -1,14 +1,12 @@
-//! How fast an owner may ask, and how much they may have in the queue.
+//! What one owner may ask of the service, and how fast.
 
 use std::num::NonZeroU32;
-use std::time::Duration;
 
 use drillsweep_api::{LIMITS, ProblemKind};
 use governor::clock::{Clock, DefaultClock};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 
-use crate::app::App;
-use crate::error::{Error, Result};
+use crate::answer::error::{Error, Result};
 
 /// What one owner may ask of the service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,20 +50,4 @@ impl RequestLimiter {
             Error::too_many(ProblemKind::TooManyRequests, "too many requests at once", wait)
         })
     }
-}
-
-/// Refuses points that would make an owner's part of the queue longer than allowed. The check is not one transaction
-/// with the submission: submissions at the same instant may exceed it by their own size.
-pub(crate) async fn check_open_points(app: &App, owner: &str, added: usize) -> Result<()> {
-    /// Points take seconds to minutes: sooner there is no use in trying again.
-    const WAIT: Duration = Duration::from_secs(60);
-    let limit = app.config.owner_limits.open_points;
-    let open = app.store.open_work(owner).await?;
-    if open + added as u64 <= limit {
-        return Ok(());
-    }
-    let detail = format!(
-        "{owner} has {open} points that wait or run and may have {limit}; {added} more have no room until some are done"
-    );
-    Err(Error::too_many(ProblemKind::QuotaExceeded, detail, WAIT))
 }

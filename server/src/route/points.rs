@@ -11,12 +11,12 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::IntoParams;
 
+use crate::answer::convert;
+use crate::answer::document::{PointPageResponse, Problems};
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{self, Path, Query, value};
 use crate::app::App;
-use crate::convert;
-use crate::error::{Error, Result};
-use crate::extract::{self, Path, Query, value};
-use crate::openapi::{PointPageResponse, Problems};
-use crate::results::PointPath;
+use crate::route::results::PointPath;
 
 /// Which points are listed.
 #[derive(Deserialize, IntoParams)]

@@ -10,13 +10,13 @@ use headers::{ETag, HeaderMapExt, IfNoneMatch, IfRange};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
+use crate::answer::artifact;
+use crate::answer::convert;
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::Path;
 use crate::app::App;
-use crate::artifact;
-use crate::convert;
-use crate::error::{Error, Result};
-use crate::extract::Path;
-use crate::openapi::Problems;
-use crate::results::PointPath;
+use crate::route::results::PointPath;
 
 /// Which file.
 #[derive(Deserialize, IntoParams)]

@@ -1,14 +1,10 @@
-//! What is counted for operators, as Prometheus text on a listener of its own.
+//! What is counted for operators, as Prometheus text.
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU64;
+use std::time::Duration;
 
-use axum::Router;
-use axum::extract::{MatchedPath, Request, State};
-use axum::http::{Method, header};
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::http::{Method, StatusCode};
 use drillsweep_store::Census;
 use prometheus_client::encoding::EncodeLabelSet;
 use prometheus_client::encoding::text::encode;
@@ -18,11 +14,10 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::{Registry, Unit};
 
-use crate::app::{App, EVENT_STREAMS};
-use crate::error::{Error, Result};
+use crate::answer::error::{Error, Result};
 
-/// The media type of what [`encode`] writes.
-const TEXT: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+/// The media type of [`Metrics::text`].
+pub(crate) const TEXT: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 /// Upper ends \[s\] of the ranges in which requests are counted by their duration.
 const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.5, 2.0, 10.0];
@@ -85,8 +80,16 @@ impl Metrics {
         Metrics { registry: Mutex::new(registry), requests, streams, expired_leases, census }
     }
 
-    fn text(&self, census: &Census) -> Result<String> {
+    /// Counts a request by the route that answered it.
+    pub(crate) fn count(&self, method: &Method, route: String, status: StatusCode, duration: Duration) {
+        let labels = RequestLabels { method: method_name(method), route, status: status.as_u16() };
+        self.requests.get_or_create(&labels).observe(duration.as_secs_f64());
+    }
+
+    /// Everything that is counted, with what the database knows and the number of event streams that are open.
+    pub(crate) fn text(&self, census: &Census, streams: usize) -> Result<String> {
         let registry = self.registry.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        self.streams.set(streams as i64);
         self.census.set(census);
         let mut text = String::new();
         encode(&mut text, &registry).map_err(|error| Error::internal(&error))?;
@@ -146,22 +149,6 @@ impl CensusGauges {
     }
 }
 
-/// Times every request; the route is that of the router, so that there are only as many as there are routes.
-pub(crate) async fn measure(
-    State(app): State<App>,
-    matched: Option<MatchedPath>,
-    request: Request,
-    next: Next,
-) -> Response {
-    let start = std::time::Instant::now();
-    let method = method_name(request.method());
-    let response = next.run(request).await;
-    let route = matched.map_or_else(|| "none".to_owned(), |matched| matched.as_str().to_owned());
-    let labels = RequestLabels { method, route, status: response.status().as_u16() };
-    app.metrics.requests.get_or_create(&labels).observe(start.elapsed().as_secs_f64());
-    response
-}
-
 /// A client may make up methods; the metrics must not grow by them.
 fn method_name(method: &Method) -> &'static str {
     match *method {
@@ -173,22 +160,5 @@ fn method_name(method: &Method) -> &'static str {
         Method::DELETE => "DELETE",
         Method::OPTIONS => "OPTIONS",
         _ => "other",
-    }
-}
-
-/// `/metrics`, for the listener of its own.
-pub(crate) fn router(app: App) -> Router {
-    Router::new().route("/metrics", get(show)).with_state(app)
-}
-
-async fn show(State(app): State<App>) -> Response {
-    let answer = async {
-        let census = app.store.census(crate::status::WORKER_SILENCE).await?;
-        app.metrics.streams.set((EVENT_STREAMS - app.streams.available_permits()) as i64);
-        app.metrics.text(&census)
-    };
-    match answer.await {
-        Ok(text) => ([(header::CONTENT_TYPE, TEXT)], text).into_response(),
-        Err(error) => error.into_response(),
     }
 }

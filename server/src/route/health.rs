@@ -5,22 +5,17 @@ use std::time::Duration;
 use axum::Json;
 use axum::extract::State;
 use drillsweep_api::Health;
-use tokio::sync::Mutex;
 use tokio::time::{Instant, timeout};
 
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
 use crate::app::App;
-use crate::error::{Error, Result};
-use crate::openapi::Problems;
 
 /// How long an answer holds: everybody may ask, and each try writes to the disk.
 const FRESH: Duration = Duration::from_secs(1);
 
 /// How long the store may take: a writer with a big sweep is given its time.
 const PATIENCE: Duration = Duration::from_secs(5);
-
-/// When the store was last seen to work.
-#[derive(Default)]
-pub(crate) struct Readiness(Mutex<Option<Instant>>);
 
 /// Whether the process answers at all
 #[utoipa::path(

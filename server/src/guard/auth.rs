@@ -13,8 +13,8 @@ use axum::response::{IntoResponse, Response};
 use drillsweep_api::ProblemKind;
 use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
 
+use crate::answer::error::{Error, Result};
 use crate::app::App;
-use crate::error::{Error, Result};
 
 /// What everybody may ask for: health checks have no tokens, and the document is what a client begins with.
 const OPEN: [&str; 5] = ["/livez", "/readyz", "/openapi.json", "/docs", "/docs/{name}"];

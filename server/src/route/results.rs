@@ -10,14 +10,14 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
+use crate::answer::artifact::{self, Recording, SpectrumSource};
+use crate::answer::convert;
+use crate::answer::document::{Conditional, PictureResponse, Problems, TableResponse};
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{self, Format, PictureFormat, TableFormat};
+use crate::answer::work::blocking;
 use crate::app::App;
-use crate::artifact::{self, Recording, SpectrumSource};
-use crate::convert;
-use crate::error::{Error, Result};
-use crate::extract::{Path, Query, value};
-use crate::format::{self, Format, PictureFormat, TableFormat};
-use crate::openapi::{Conditional, PictureResponse, Problems, TableResponse};
-use crate::work::blocking;
 
 /// Which point's result.
 #[derive(Deserialize, IntoParams)]

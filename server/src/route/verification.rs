@@ -10,14 +10,14 @@ use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::{self, Findings, VerifiedPoint};
 use drillsweep_store::{Store, TableRecord};
 
+use crate::answer::convert;
+use crate::answer::document::{Conditional, Problems, TableResponse};
+use crate::answer::error::Result;
+use crate::answer::extract::{Path, Query};
+use crate::answer::format::{self, Format};
+use crate::answer::work::blocking;
 use crate::app::App;
-use crate::convert;
-use crate::error::Result;
-use crate::extract::{Path, Query};
-use crate::format::{self, Format};
-use crate::openapi::{Conditional, Problems, TableResponse};
-use crate::results::TableQuery;
-use crate::work::blocking;
+use crate::route::results::TableQuery;
 
 /// The points of a sweep that are verified, and what they show.
 #[derive(Default)]

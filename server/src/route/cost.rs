@@ -8,13 +8,13 @@ use drillsweep_chart::{PNG_WIDTH, work_precision};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
+use crate::answer::artifact;
+use crate::answer::document::Problems;
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{Path, Query};
+use crate::answer::work::blocking;
 use crate::app::App;
-use crate::artifact;
-use crate::error::{Error, Result};
-use crate::extract::{Path, Query};
-use crate::openapi::Problems;
-use crate::results::PointPath;
-use crate::work::blocking;
+use crate::route::results::PointPath;
 
 /// How a study is served.
 #[derive(Deserialize, IntoParams)]

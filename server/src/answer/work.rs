@@ -1,6 +1,6 @@
 //! Work that takes the processor.
 
-use crate::error::{Error, Result};
+use crate::answer::error::{Error, Result};
 
 /// Runs what takes the processor for longer than a request may hold a thread of the runtime.
 pub(crate) async fn blocking<T: Send + 'static>(

@@ -1,47 +1,19 @@
-//! The service as a whole: what its handlers share, and its life from listening to drained.
+//! The service's life, from listening to drained.
 
-use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::Arc;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use drillsweep_store::{Store, StoreError, TokensPresent};
 use tokio::net::TcpListener;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::watch;
+use tokio::time::MissedTickBehavior;
 
-use crate::health::Readiness;
-use crate::limit::{OwnerLimits, RequestLimiter};
-use crate::metrics::{self, Metrics};
-use crate::{maintenance, router};
+use crate::app::{App, Config};
+use crate::route::metrics;
+use crate::router;
 
 /// Where the service listens unless told otherwise: this machine only.
-pub const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 7340);
-
-/// Event streams that may be open at once; each looks at the store some times a second.
-pub(crate) const EVENT_STREAMS: usize = 1_000;
-
-/// How the service keeps house.
-#[derive(Debug, Clone)]
-pub struct Config {
-    /// How often points of dead workers are given back to the queue.
-    pub reap_interval: Duration,
-    /// How often a long poll looks for a change.
-    pub poll_interval: Duration,
-    /// How long open requests may take to end once the service is told to stop.
-    pub drain_timeout: Duration,
-    /// What one owner may ask for.
-    pub owner_limits: OwnerLimits,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Config {
-            reap_interval: Duration::from_secs(5),
-            poll_interval: Duration::from_millis(200),
-            drain_timeout: Duration::from_secs(10),
-            owner_limits: OwnerLimits::default(),
-        }
-    }
-}
+pub const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 7340);
 
 /// Where the service listens.
 #[derive(Debug)]
@@ -50,34 +22,6 @@ pub struct Listeners {
     pub api: TcpListener,
     /// For `/metrics`, which needs no token: to be reached by the operator's Prometheus only.
     pub metrics: Option<TcpListener>,
-}
-
-/// What the handlers share.
-#[derive(Clone)]
-pub(crate) struct App {
-    pub(crate) store: Store,
-    pub(crate) config: Arc<Config>,
-    /// Turns true when the service is told to stop; long polls and event streams end on it.
-    pub(crate) stopping: watch::Receiver<bool>,
-    pub(crate) limiter: Arc<RequestLimiter>,
-    pub(crate) metrics: Arc<Metrics>,
-    pub(crate) readiness: Arc<Readiness>,
-    /// Places for event streams.
-    pub(crate) streams: Arc<Semaphore>,
-}
-
-impl App {
-    pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
-        App {
-            store,
-            stopping,
-            limiter: Arc::new(RequestLimiter::new(&config.owner_limits)),
-            metrics: Arc::new(Metrics::new()),
-            readiness: Arc::default(),
-            streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
-            config: Arc::new(config),
-        }
-    }
 }
 
 /// Why the service ended early, or did not begin.
@@ -124,7 +68,7 @@ pub async fn serve(
     let (stop, stopping) = watch::channel(false);
     let mut stopped = stopping.clone();
     let app = App::new(store, config, stopping);
-    let reaper = tokio::spawn(maintenance::reap_expired_leases(app.clone()));
+    let reaper = tokio::spawn(reap_expired_leases(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         tokio::spawn(async move { axum::serve(listener, routes).await })
@@ -147,4 +91,26 @@ pub async fn serve(
         observed.abort();
     }
     result
+}
+
+/// Gives the points of dead workers back to the queue, time after time, until the service stops. Workers do
+/// the same when they claim; this keeps what clients see right when there are none.
+async fn reap_expired_leases(mut app: App) {
+    let mut ticks = tokio::time::interval(app.config.reap_interval);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        tokio::select! {
+            _ = ticks.tick() => {}
+            // An error means that the service is gone.
+            _ = app.stopping.wait_for(|stopping| *stopping) => return,
+        }
+        match app.store.reap_expired().await {
+            Ok(0) => {}
+            Ok(number) => {
+                app.metrics.expired_leases.inc_by(number);
+                tracing::warn!(number, "leases have run out; their points wait for a worker again");
+            }
+            Err(error) => tracing::error!(%error, "expired leases could not be looked for"),
+        }
+    }
 }

@@ -1,0 +1,70 @@
+//! What the handlers share, and how the service is set up.
+
+pub(crate) mod limit;
+pub(crate) mod metrics;
+pub(crate) mod readiness;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use drillsweep_store::Store;
+use tokio::sync::{Semaphore, watch};
+
+use crate::app::limit::{OwnerLimits, RequestLimiter};
+use crate::app::metrics::Metrics;
+use crate::app::readiness::Readiness;
+
+/// Event streams that may be open at once; each looks at the store some times a second.
+pub(crate) const EVENT_STREAMS: usize = 1_000;
+
+/// How the service keeps house.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// How often points of dead workers are given back to the queue.
+    pub reap_interval: Duration,
+    /// How often a long poll looks for a change.
+    pub poll_interval: Duration,
+    /// How long open requests may take to end once the service is told to stop.
+    pub drain_timeout: Duration,
+    /// What one owner may ask for.
+    pub owner_limits: OwnerLimits,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            reap_interval: Duration::from_secs(5),
+            poll_interval: Duration::from_millis(200),
+            drain_timeout: Duration::from_secs(10),
+            owner_limits: OwnerLimits::default(),
+        }
+    }
+}
+
+/// What the handlers share.
+#[derive(Clone)]
+pub(crate) struct App {
+    pub(crate) store: Store,
+    pub(crate) config: Arc<Config>,
+    /// Turns true when the service is told to stop; long polls and event streams end on it.
+    pub(crate) stopping: watch::Receiver<bool>,
+    pub(crate) limiter: Arc<RequestLimiter>,
+    pub(crate) metrics: Arc<Metrics>,
+    pub(crate) readiness: Arc<Readiness>,
+    /// Places for event streams.
+    pub(crate) streams: Arc<Semaphore>,
+}
+
+impl App {
+    pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
+        App {
+            store,
+            stopping,
+            limiter: Arc::new(RequestLimiter::new(&config.owner_limits)),
+            metrics: Arc::new(Metrics::new()),
+            readiness: Arc::default(),
+            streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
+            config: Arc::new(config),
+        }
+    }
+}

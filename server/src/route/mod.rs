@@ -1,0 +1,15 @@
+//! The routes, a file for each thing that is asked about.
+
+pub(crate) mod cost;
+pub(crate) mod docs;
+pub(crate) mod events;
+pub(crate) mod export;
+pub(crate) mod files;
+pub(crate) mod health;
+pub(crate) mod metrics;
+pub(crate) mod points;
+pub(crate) mod results;
+pub(crate) mod scenarios;
+pub(crate) mod status;
+pub(crate) mod sweeps;
+pub(crate) mod verification;

@@ -87,7 +87,7 @@ fn stocky_simply_supported_frequencies_converge_to_timoshenkos() {
 
 #[test]
 fn gyroscopic_effect_raises_forward_and_lowers_backward_whirl() {
-    // Characteristic equation of the spinning Timoshenko shaft; the sign convention of physics.md section 2.
+    // Characteristic equation of the spinning Timoshenko shaft, in the signs of docs/model/beam.md, Gyroscopic matrix.
     let (s, length, omega) = (collar(), 1.0, 2000.0);
     let expected_forward = timoshenko_whirl(&s, length, 1.0, omega, 1.0, 12000.0);
     let expected_backward = -timoshenko_whirl(&s, length, 1.0, omega, -12000.0, -1.0);
@@ -187,7 +187,7 @@ fn pipe_conveying_fluid_diverges_at_pi_pinned_and_two_pi_clamped() {
 
 #[test]
 fn cantilever_conveying_fluid_flutters_at_the_published_speeds() {
-    // hydraulics.md V7 (16 Hermite elements; beta = 0.2 is Gregory and Paidoussis 1966).
+    // Speeds and frequencies of an independent program with 16 Hermite elements; beta = 0.2 is in Gregory and Paidoussis (1966).
     let (s, length) = (thin_rod(), 10.0);
     let beam = StraightBeam::new(s, length, 16);
     let e = &beam.element;

@@ -42,8 +42,8 @@ fn rigid_translation_of_the_whole_string_costs_no_force() {
 
 #[test]
 fn torque_is_conserved_round_a_frictionless_curved_hole() {
-    // physics.md section 1: with nodes held on the axis the torque at the top equals that at the bit. The full
-    // rotation in place of the twist rule would leave 0.75 of it.
+    // With nodes held on the axis the torque at the top equals that at the bit. The full rotation in place of the
+    // twist rule (docs/model/well.md, Chord frame) would leave 0.75 of it.
     let leak = |dogleg: f64| {
         let model = Model::new(&horizontal_arc(dogleg)).expect("valid");
         let n = model.node_count();

@@ -716,7 +716,7 @@ proptest! {
         prop_assert!(here.friction_coefficient > 0.0 && here.friction_gradient > 0.0);
         prop_assert!(here.bore_friction_gradient > 0.0 && here.apparent_viscosity > 0.0);
         prop_assert!(here.rotation_damping > 0.0 && here.friction_damping > 0.0);
-        // F_L + A_o G_a, from physics.md section 4.
+        // F_L + A_o G_a (docs/model/mud.md, Drag).
         let effective = here.drag_per_length
             + PI / 4.0 * geometry.outer_diameter.powi(2) * here.friction_gradient;
         prop_assert!((here.effective_drag_per_length / effective - 1.0).abs() < 1e-12);

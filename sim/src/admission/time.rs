@@ -18,7 +18,7 @@ pub(super) const FEWEST_SAMPLES: f64 = 8.0;
 const MOST_SAMPLES: f64 = 1e7;
 
 /// Generalized-alpha's largest spectral radius at infinity that two contact sweeps are known to be safe with
-/// (performance.md section 3).
+/// (docs/model/motion.md, Generalized-alpha).
 const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
 
 /// Runs of one point at most.

@@ -119,7 +119,7 @@ impl BeamElement {
         self.integrate(|r| outer(&r.u, &r.u_slope) + outer(&r.v, &r.v_slope))
     }
 
-    /// End term N(l)^T N'(l) of a flow that leaves the element's lower end freely (physics.md section 5).
+    /// End term N(l)^T N'(l) of a flow that leaves the element's lower end freely (docs/model/mud.md, Flow stiffness).
     pub fn flow_end(&self) -> ElementMatrix {
         let r = self.rows(1.0);
         outer(&r.u, &r.u_slope) + outer(&r.v, &r.v_slope)

@@ -1,4 +1,4 @@
-//! Two-node Timoshenko beam elements in their chord frame (physics.md sections 2 and 5).
+//! Two-node Timoshenko beam elements in their chord frame (docs/model/beam.md).
 //!
 //! A 12-vector holds (u, v, w, theta_x, theta_y, theta_z) of the upper node, then of the lower one. u and v
 //! are lateral, w points downhole; u' = theta_y - gamma_x and v' = -theta_x + gamma_y. Every integral is

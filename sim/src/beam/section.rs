@@ -26,7 +26,7 @@ pub struct BeamSection {
 }
 
 impl BeamSection {
-    /// The section of a pipe (physics.md section 2).
+    /// The section of a pipe (docs/model/beam.md, Section).
     pub fn pipe(outer_diameter: f64, inner_diameter: f64, material: &Material) -> Self {
         let nu = material.poissons_ratio;
         let ratio = (inner_diameter / outer_diameter).powi(2);

@@ -1,4 +1,4 @@
-//! Borehole contact and friction (physics.md section 6, equations (10) to (14) and (36)).
+//! Borehole contact and friction, equations (10) to (14) and (36) (docs/model/contact.md).
 //!
 //! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
 //! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's

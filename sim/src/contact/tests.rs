@@ -4,7 +4,7 @@ use super::*;
 use crate::linalg::{Four, Lane};
 use crate::scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
-/// The law of the 200 m base case (physics.md section 9).
+/// The law of the paper's 200 m base case (Table 5).
 const BASE: ContactLaw = ContactLaw {
     law: WallLaw::PerNode,
     stiffness: 1e7,
@@ -95,7 +95,7 @@ fn a_node_has_its_own_shares_of_stiffness_and_damping() {
     assert_close(force.normal, elastic + damped, 1e-11);
 }
 
-/// Physics.md section 6: friction uses |F_n|, so a pulling wall still brakes.
+/// Friction uses |F_n|, as (12) has it, so a pulling wall still brakes.
 #[test]
 fn friction_of_a_pulling_wall_still_brakes() {
     let leaving = LateralMotion { u: 0.0401, v: 0.0, u_rate: -1.0, v_rate: 0.0, theta_z_rate: 0.0 };
@@ -174,7 +174,7 @@ fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
     }
 }
 
-/// 0.054 m/s is the peak's place in the base case (hydraulics.md section 7, item 14).
+/// The curve (14) peaks at 2 v_ref mu_d / (xi (1 - xi)), 0.054 m/s in the base case.
 #[test]
 fn friction_of_the_base_case_peaks_where_published() {
     let law = parameters(&BASE);

@@ -129,7 +129,7 @@ impl Model {
     }
 
     /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of
-    /// its body (physics.md section 3): 0 concentric, 1 touching.
+    /// its body: 0 concentric, 1 touching (docs/model/mud.md, Eccentricity).
     pub fn eccentricity(&self, element: usize, displacement: &[[f64; 6]]) -> f64 {
         let radius = |node: usize| displacement[node][0].hypot(displacement[node][1]);
         let clearance = 0.5 * (self.scenario.well.hole_diameter - self.mesh.elements[element].outer_diameter);

@@ -1,4 +1,4 @@
-//! The mud: what its flow does to the string (physics.md sections 3 and 4).
+//! The mud: what its flow does to the string (docs/model/mud.md).
 //!
 //! The chain of one element runs from the flow rate to the fluid's coefficients: laminar wall stress
 //! (`slot` and `pipe`), regime limits, friction factor, eccentricity and rotation factors, apparent

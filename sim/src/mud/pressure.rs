@@ -23,7 +23,7 @@ pub struct Pressures {
     pub bore: Vec<f64>,
 }
 
-/// Hydrostatic and frictional pressures (physics.md section 4), exact for gradients constant in an element.
+/// Hydrostatic and frictional pressures, exact for gradients constant in an element (docs/model/mud.md, Pressures).
 ///
 /// `steps` are the elements from the top down, `true_vertical_depths` \[m\] their nodes, one more;
 /// `gravity` in m/s2. The annulus starts from the back pressure at the top and gains friction downwards, since

@@ -103,7 +103,7 @@ macro_rules! effects {
 }
 
 effects! {
-    /// Added mass of the mud inside and outside (physics.md section 5).
+    /// Added mass of the mud inside and outside (docs/model/mud.md).
     fluid_added_mass / FluidAddedMass,
     /// Lateral damping by the mud, C_f term and k.
     fluid_damping / FluidDamping,

@@ -78,7 +78,7 @@ impl Scenario {
     }
 }
 
-/// The well: a survey interpolated by minimum curvature (physics.md section 1) and one open hole.
+/// The well: a survey interpolated by minimum curvature (docs/model/well.md) and one open hole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -186,7 +186,7 @@ pub struct ToolJoint {
 }
 
 /// A place where the radial clearance is given instead of following from the diameters
-/// (a contact matter only: the mud flows past it as past the body, physics.md section 3).
+/// (a contact matter only: the mud flows past it as past the body, docs/model/mud.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -197,7 +197,7 @@ pub struct Gauge {
     pub clearance: f64,
 }
 
-/// A mass off the axis, turning with the string (physics.md section 7).
+/// A mass off the axis, turning with the string (docs/model/motion.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -213,7 +213,7 @@ pub struct UnbalanceMass {
     pub phase_deg: f64,
 }
 
-/// The mud: a yield-power-law fluid pumped down the bore and up the annulus (physics.md section 3).
+/// The mud: a yield-power-law fluid pumped down the bore and up the annulus (docs/model/mud.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]

@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn base_case_matches_the_papers_totals() {
-        // Table 1 gives 200 m; Table 6's masses add up to 1.769 kg m (physics.md section 7: 1.78 by eq. 38).
+        // Table 1 gives 200 m; Table 6's masses add up to 1.769 kg m, where equation (38) with its rpm gives 1.78.
         let scenario = preset("paper-200m").unwrap();
         let length: f64 = scenario.string.sections.iter().map(|s| f64::from(s.count) * s.length).sum();
         assert_eq!(length, 200.0);

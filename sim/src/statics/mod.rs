@@ -1,7 +1,7 @@
 //! The quasi-static equilibrium of the string on its wall, and the mud around it.
 //!
 //! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
-//! with the hydraulics until both stand still (physics.md section 8).
+//! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
 mod newton;
 mod overload;
@@ -19,7 +19,7 @@ use crate::scenario::{ContactLaw, Mud};
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;
 
-/// Change of an eccentricity at which string and mud stand still.
+/// Change of an eccentricity at which string and mud have converged.
 const ECCENTRICITY_STANDSTILL: f64 = 1e-10;
 
 /// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not arrive.

@@ -133,7 +133,7 @@ pub struct StringMesh {
 }
 
 impl StringMesh {
-    /// Cuts the string of a scenario into elements (physics.md section 9 and the scenario's mesh). Every change
+    /// Cuts the string of a scenario into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
     /// of section, tool joint, gauge and unbalance mass is a node; each stretch between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
@@ -365,7 +365,7 @@ mod tests {
         let gauges: Vec<f64> = mesh.nodes.iter().filter(|n| n.is_gauge).map(|n| n.measured_depth).collect();
         assert_eq!(gauges, [123.5, 165.5, 200.0]);
         for depth in gauges {
-            // physics.md section 6: the blades touch at 0.10785 m.
+            // The blades touch, not the body: R_e = 0.2159 / 2 - 1e-4 = 0.10785 m.
             assert_eq!(node(depth).clearance, 1e-4);
             assert!((node(depth).contact_radius - 0.10785).abs() < 1e-15);
         }

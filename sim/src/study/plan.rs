@@ -1,5 +1,5 @@
-//! What a scenario will take, without running it (design.md section 3): the effects in play and why, the size of the
-//! problem, steps and processor time at each accuracy.
+//! What a scenario will take, without running it: the effects in play and why, the size of the problem, steps and
+//! processor time at each accuracy.
 
 use serde::{Deserialize, Serialize};
 
@@ -91,7 +91,7 @@ pub struct MachineSpeed {
     pub statics_per_node: f64,
     /// What a run does before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
     pub start_per_node: [f64; 4],
-    /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they stand still, and RK4: for each
+    /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they have converged, and RK4: for each
     /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
     /// By what a node's step is dearer on a mesh of five times as many nodes, which no longer fits the inner caches.
@@ -113,7 +113,7 @@ enum MethodKind {
     GeneralizedAlpha,
     /// Two contact sweeps a stage.
     Esdirk4,
-    /// Contact sweeps until they stand still.
+    /// Contact sweeps until they have converged.
     Esdirk4Converged,
     Rk4,
 }

@@ -1,4 +1,4 @@
-//! The energy ledger of a run, kept with the integrator's own forces (performance.md section 2.3).
+//! The energy ledger of a run, kept with the integrator's own forces (docs/model/motion.md, Energy ledger).
 //!
 //! Work is force times the scheme's own displacement: for generalized-alpha the forces of the level at which a
 //! step balances along the step, for the Runge-Kutta methods the stage powers with the method's weights. Contact power

@@ -7,7 +7,8 @@ use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
 /// Spectral radius at infinite frequency where none is asked for. One (the trapezium rule) must not be used with a fixed number of
-/// contact sweeps: it fails silently (performance.md section 3).
+/// contact sweeps: it damps nothing of what they leave over, and the contacts' work becomes wrong by orders of magnitude while every
+/// value stays finite (docs/model/motion.md, Generalized-alpha).
 pub(super) const SPECTRAL_RADIUS: f64 = 0.8;
 
 /// Angle \[rad\] of an oscillation in a step up to which its period is right to a thousandth at the usual spectral radius (it errs by

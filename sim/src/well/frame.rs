@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::WellPath;
 
-/// Below this sine of the inclination a section has no low side (physics.md section 1).
+/// Below this sine of the inclination a section has no low side (docs/model/well.md, Frames of the nodes).
 const VERTICAL: f64 = 1e-6;
 
 /// The frame of one node in global coordinates: `e1` and `e2` span the section, `e1 x e2 = e3`.

@@ -1,5 +1,5 @@
 //! The well path: a survey interpolated by minimum curvature, and the frames that its nodes carry
-//! (physics.md section 1).
+//! (docs/model/well.md).
 //!
 //! The global frame is X north, Y east, Z down, with its origin at the survey's first station. Between two
 //! stations the path is a circular arc, so that position, tangent and curvature are closed formulas, and so

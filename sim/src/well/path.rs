@@ -165,7 +165,7 @@ mod tests {
         WellPath::new(&well(stations)).unwrap()
     }
 
-    /// The reconstruction of the paper's well (physics.md section 9).
+    /// The reconstruction of the paper's well (docs/model/index.md, Base case).
     const PAPER: [(f64, f64, f64); 5] =
         [(0.0, 60.0, 0.0), (50.0, 71.0, 7.0), (100.0, 82.0, 14.0), (150.0, 90.0, 24.0), (200.0, 93.0, 36.0)];
 
@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn doglegs_of_the_papers_reconstructed_well() {
-        // physics.md section 9: 7.4 to 7.8 deg per 30 m.
+        // 7.4 to 7.8 deg per 30 m, as it was made.
         let well = path(&PAPER);
         let mut severities: Vec<f64> =
             [25.0, 75.0, 125.0, 175.0].map(|s| well.curvature(s).norm().to_degrees() * 30.0).to_vec();

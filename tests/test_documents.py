@@ -19,6 +19,33 @@ def test_links_lead_to_files(document: Path) -> None:
         assert target.exists(), f"{document.name} links to {link}"
 
 
+def anchors(document: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)$", document.read_text(), re.MULTILINE)
+    return {re.sub(r"[^a-z0-9 _-]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(REPOSITORY)))
+def test_anchors_are_headings(document: Path) -> None:
+    for link in LINK.findall(document.read_text()):
+        path, _, anchor = link.partition("#")
+        if "://" not in link and anchor:
+            assert anchor in anchors(document.parent / path if path else document), f"{document.name} links to {link}"
+
+
+def test_tests_that_the_model_names_exist() -> None:
+    named = 0
+    for chapter in (REPOSITORY / "docs" / "model").glob("*.md"):
+        for block in re.findall(r"> Tests?:.*?(?=\n\n|\Z)", chapter.read_text(), re.DOTALL):
+            text = block.replace("\n> ", " ").replace("\n>", " ")
+            for files, tests in re.findall(r"((?:`[^`]+\.rs`(?: and )?)+)\s*\(([^)]*)\)", text):
+                for file in re.findall(r"`([^`]+\.rs)`", files):
+                    source = (REPOSITORY / file).read_text()
+                    for test in re.findall(r"`([a-z_0-9]+)`", tests):
+                        assert re.search(rf"fn {test}\b", source), f"{chapter.name} names {test} of {file}"
+                        named += 1
+    assert named > 100
+
+
 def test_every_chapter_is_in_the_book() -> None:
     summary = REPOSITORY / "docs" / "SUMMARY.md"
     listed = {summary.parent / link for link in LINK.findall(summary.read_text())}

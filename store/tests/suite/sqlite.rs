@@ -4,8 +4,6 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
 use drillsweep_store::{Role, StoreConfig};
-use sqlx::migrate::Migrator;
-use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use tempfile::TempDir;
 
 use crate::bench::{Engine, Object};
@@ -84,38 +82,6 @@ fn collect_objects(directory: &Path, prefix: &str, found: &mut Vec<Object>) {
             found.push(Object { name, bytes: metadata.len(), version });
         }
     }
-}
-
-/// A database as the migrations before this one made it.
-async fn database_before(migration: i64, directory: &Path) -> SqlitePool {
-    let all = sqlx::migrate!("../migrations/sqlite");
-    let earlier = all.iter().filter(|one| one.version < migration).cloned().collect();
-    std::fs::create_dir_all(directory).unwrap();
-    let options =
-        SqliteConnectOptions::new().filename(directory.join("drillsweep.sqlite")).create_if_missing(true);
-    let pool = SqlitePool::connect_with(options).await.unwrap();
-    Migrator { migrations: earlier, ..Migrator::DEFAULT }.run(&pool).await.unwrap();
-    pool
-}
-
-#[tokio::test]
-async fn requests_that_were_in_the_row_of_their_sweep_are_kept() {
-    let engine = Sqlite::new();
-    let old = database_before(27, &engine.directory()).await;
-    for (id, appended) in [("s", r#"[{"added":1},{"added":2}]"#), ("t", "[]")] {
-        sqlx::query(
-            "INSERT INTO sweep (id, owner, request, priority, points, created, appended) VALUES (?1, '', '{}', 0, 0, 0, ?2)",
-        )
-        .bind(id)
-        .bind(appended)
-        .execute(&old)
-        .await
-        .unwrap();
-    }
-    old.close().await;
-    let store = engine.open().await;
-    assert_eq!(store.appended_requests("s", 9).await.unwrap(), [r#"{"added":1}"#, r#"{"added":2}"#]);
-    assert_eq!(store.appended_requests("t", 9).await.unwrap(), [""; 0]);
 }
 
 conformance!(Sqlite);

@@ -103,7 +103,14 @@ CREATE TABLE work (
     physics_version  INTEGER NOT NULL,
     -- In whose turn it is handed out.
     owner            TEXT    NOT NULL,
+    -- Which states there are, and which ways from one to another, is told by `TRANSITIONS` in store/src/state.rs.
     state            TEXT    NOT NULL CHECK (state IN ('waiting', 'queued', 'leased', 'done', 'failed', 'dead', 'cancelled')),
+    -- How the sweeps that have it count it.
+    stage            TEXT    NOT NULL GENERATED ALWAYS AS (
+        CASE state WHEN 'waiting' THEN 'queued' WHEN 'leased' THEN 'running' WHEN 'dead' THEN 'failed' ELSE state END
+    ) VIRTUAL,
+    -- Still to be computed, or under way. All else is final, and changes only if somebody asks for it.
+    is_open          INTEGER NOT NULL GENERATED ALWAYS AS (stage IN ('queued', 'running')) VIRTUAL,
     -- Wanted by paused sweeps only: not handed out until one of them goes on.
     held             INTEGER NOT NULL DEFAULT 0,
     -- Within its owner the most urgent goes first, then the least place in the order asked for.
@@ -143,12 +150,24 @@ CREATE TABLE work (
 CREATE INDEX work_ready ON work (physics_version, owner, priority DESC, vtime, key) WHERE state = 'queued' AND held = 0;
 CREATE INDEX work_leased ON work (lease_until) WHERE state = 'leased';
 CREATE INDEX work_waiting ON work (ready_at) WHERE state = 'waiting';
-CREATE INDEX work_open ON work (vtime) WHERE state IN ('waiting', 'queued', 'leased');
-CREATE INDEX work_open_by_owner ON work (owner, vtime) WHERE state IN ('waiting', 'queued', 'leased');
+CREATE INDEX work_open ON work (vtime) WHERE is_open;
+CREATE INDEX work_open_by_owner ON work (owner, vtime) WHERE is_open;
 -- What was given up, the latest first.
-CREATE INDEX work_given_up ON work (changed) WHERE state IN ('failed', 'dead');
+CREATE INDEX work_given_up ON work (changed) WHERE stage = 'failed';
 -- Whether a base is in use: the garbage collector asks it of every base, and so does the reference when one is deleted.
 CREATE INDEX work_by_base ON work (base);
+
+-- Work goes its ways and no others, whichever statement moves it.
+CREATE TRIGGER work_keeps_to_its_transitions AFTER UPDATE OF state ON work
+WHEN NEW.state <> OLD.state AND NOT CASE OLD.state
+         WHEN 'queued'  THEN NEW.state IN ('leased', 'done', 'cancelled')
+         WHEN 'leased'  THEN NEW.state IN ('waiting', 'queued', 'done', 'failed', 'dead', 'cancelled')
+         WHEN 'waiting' THEN NEW.state IN ('queued', 'done', 'cancelled')
+         ELSE NEW.state = 'queued'
+     END
+BEGIN
+    SELECT RAISE(ABORT, 'a work item cannot go from its state to that one');
+END;
 
 -- Owners take turns (start-time fair queueing): the one whose virtual time is least is served, and pays for it. Within an
 -- owner the most urgent goes first, then the order asked for: work.vtime is a place in that order.
@@ -201,11 +220,11 @@ BEGIN
         END
     FROM (SELECT sweep_id, sum(verifies = 0) AS points, sum(verifies) AS verifications
           FROM point WHERE work_key = NEW.key GROUP BY sweep_id) AS share,
-         (SELECT (NEW.state IN ('waiting', 'queued')) - (OLD.state IN ('waiting', 'queued')) AS queued,
-                 (NEW.state = 'leased') - (OLD.state = 'leased')                             AS running,
-                 (NEW.state = 'done') - (OLD.state = 'done')                                 AS done,
-                 (NEW.state IN ('failed', 'dead')) - (OLD.state IN ('failed', 'dead'))       AS failed,
-                 (NEW.state = 'cancelled') - (OLD.state = 'cancelled')                       AS cancelled) AS step
+         (SELECT (NEW.stage = 'queued') - (OLD.stage = 'queued')       AS queued,
+                 (NEW.stage = 'running') - (OLD.stage = 'running')     AS running,
+                 (NEW.stage = 'done') - (OLD.stage = 'done')           AS done,
+                 (NEW.stage = 'failed') - (OLD.stage = 'failed')       AS failed,
+                 (NEW.stage = 'cancelled') - (OLD.stage = 'cancelled') AS cancelled) AS step
     WHERE sweep.id = share.sweep_id;
 
     INSERT INTO event (sweep_id, seq, kind, work_key, at)

@@ -79,7 +79,7 @@ impl Store {
                     p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
                     w.error, NULL AS summary, NULL AS provenance
              FROM work w CROSS JOIN point p ON p.work_key = w.key CROSS JOIN sweep s ON s.id = p.sweep_id
-             WHERE w.state IN ('failed', 'dead') AND p.verifies = 0 AND w.changed <= ?1 AND (w.changed, s.id, p.ordinal) < (?1, ?2, ?3)
+             WHERE w.stage = 'failed' AND p.verifies = 0 AND w.changed <= ?1 AND (w.changed, s.id, p.ordinal) < (?1, ?2, ?3)
                AND (?4 IS NULL OR s.owner = ?4)
                AND (?5 IS NULL OR ?5 = CASE WHEN json_valid(w.error) THEN json_extract(w.error, '$.class') END)
              ORDER BY w.changed DESC, s.id DESC, p.ordinal DESC LIMIT ?6",

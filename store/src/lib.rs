@@ -34,7 +34,7 @@ pub use failure::{FailureFilter, FailurePlace, FailureRecord};
 pub use point::{Artifact, PointRecord, ScenarioText, TableRecord};
 pub use queue::{Claim, FailureClass, Lease, NewArtifact, NewResult, QueueDepths, Renewal};
 pub use retention::{Garbage, RetentionPolicy};
-pub use state::{StateCounts, WorkKey, WorkState};
+pub use state::{Stage, StateCounts, TRANSITIONS, Transition, WorkKey, WorkState};
 pub use submit::{Addition, AppendOutcome, CachePolicy, NewPoint, NewSweep, NewVerification, SubmitOutcome};
 pub use sweep::{SweepChanges, SweepFilter, SweepRecord};
 pub use table::{Column, ColumnData, Table, TableError, column_names, decode_parquet, encode_parquet};

@@ -535,7 +535,7 @@ impl Store {
         let (waiting, queued, held, leased) = sqlx::query_as(
             "SELECT coalesce(sum(state = 'waiting'), 0), coalesce(sum(state = 'queued' AND held = 0), 0),
                     coalesce(sum(state = 'queued' AND held <> 0), 0), coalesce(sum(state = 'leased'), 0)
-             FROM work WHERE state IN ('waiting', 'queued', 'leased')",
+             FROM work WHERE is_open",
         )
         .fetch_one(&self.pool)
         .await?;
@@ -547,12 +547,10 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn open_work(&self, owner: &str) -> Result<u64> {
-        let number: i64 = sqlx::query_scalar(
-            "SELECT count(*) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')",
-        )
-        .bind(owner)
-        .fetch_one(&self.pool)
-        .await?;
+        let number: i64 = sqlx::query_scalar("SELECT count(*) FROM work WHERE owner = ?1 AND is_open")
+            .bind(owner)
+            .fetch_one(&self.pool)
+            .await?;
         Ok(number.unsigned_abs())
     }
 

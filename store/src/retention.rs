@@ -157,7 +157,7 @@ async fn delete_unwanted_work(tx: &mut Transaction<'static, Sqlite>) -> Result<u
     .await?
     .rows_affected();
     sqlx::query(
-        "DELETE FROM work WHERE state IN ('done', 'failed', 'dead', 'cancelled')
+        "DELETE FROM work WHERE NOT is_open
            AND NOT EXISTS (SELECT 1 FROM point WHERE point.work_key = work.key)
            AND NOT EXISTS (SELECT 1 FROM result WHERE result.work_key = work.key)",
     )
@@ -224,7 +224,7 @@ async fn delete_old_rows(
     // Who comes back begins as one who was idle, and idle time is not saved up.
     sqlx::query(
         "DELETE FROM owner_turn WHERE NOT EXISTS (
-             SELECT 1 FROM work WHERE work.owner = owner_turn.owner AND state IN ('waiting', 'queued', 'leased'))",
+             SELECT 1 FROM work WHERE work.owner = owner_turn.owner AND is_open)",
     )
     .execute(&mut **tx)
     .await?;

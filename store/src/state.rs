@@ -1,4 +1,4 @@
-//! Where a work item stands, and how many points of a sweep stand where.
+//! The state machine of work: where a work item stands, what takes it on, and how many points of a sweep stand where.
 
 use crate::error::{Result, StoreError};
 
@@ -24,20 +24,74 @@ pub enum WorkState {
     Cancelled,
 }
 
-/// Points of a sweep by the state of their work.
+/// A work item's state as far as the sweeps that have it count it: the database's column `stage`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Waiting for a retry or for a worker.
+    Queued,
+    /// Under way.
+    Running,
+    /// With a result.
+    Done,
+    /// Failed, or given up because workers died.
+    Failed,
+    /// Cancelled.
+    Cancelled,
+}
+
+/// A way from one state to another. The database refuses all others, by the trigger `work_keeps_to_its_transitions`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transition {
+    /// The state before.
+    pub from: WorkState,
+    /// The state after.
+    pub to: WorkState,
+    /// What brings it about.
+    pub cause: &'static str,
+}
+
+/// All ways from one state to another. Work that was to be computed anew and ends without a new result goes back to done,
+/// since the result from before stays.
+pub const TRANSITIONS: &[Transition] = {
+    use WorkState::{Cancelled, Dead, Done, Failed, Leased, Queued, Waiting};
+    &[
+        Transition { from: Queued, to: Leased, cause: "a worker claims it" },
+        Transition { from: Queued, to: Cancelled, cause: "no sweep wants it any more" },
+        Transition { from: Queued, to: Done, cause: "no sweep wants it any more, its earlier result stays" },
+        Transition { from: Leased, to: Done, cause: "its result is stored, or its earlier one stays" },
+        Transition {
+            from: Leased,
+            to: Failed,
+            cause: "the simulation failed or took too long, or the infrastructure failed a fifth time",
+        },
+        Transition { from: Leased, to: Dead, cause: "a third worker died" },
+        Transition { from: Leased, to: Cancelled, cause: "it stops, and no sweep wants it any more" },
+        Transition { from: Leased, to: Waiting, cause: "the infrastructure failed" },
+        Transition { from: Leased, to: Queued, cause: "the worker gives it back or dies" },
+        Transition { from: Waiting, to: Queued, cause: "the retry is due" },
+        Transition { from: Waiting, to: Cancelled, cause: "no sweep wants it any more" },
+        Transition { from: Waiting, to: Done, cause: "no sweep wants it any more, its earlier result stays" },
+        Transition { from: Done, to: Queued, cause: "a sweep wants it computed anew" },
+        Transition { from: Failed, to: Queued, cause: "retried, or a sweep wants it computed anew" },
+        Transition { from: Dead, to: Queued, cause: "retried, or a sweep wants it computed anew" },
+        Transition { from: Cancelled, to: Queued, cause: "retried, or a sweep wants it" },
+    ]
+};
+
+/// Points of a sweep by the stage of their work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StateCounts {
     /// All points.
     pub total: i64,
-    /// Waiting for a retry or for a worker.
+    /// At [`Stage::Queued`].
     pub queued: i64,
-    /// Under way.
+    /// At [`Stage::Running`].
     pub running: i64,
-    /// With a result.
+    /// At [`Stage::Done`].
     pub done: i64,
-    /// Failed, or given up because workers died.
+    /// At [`Stage::Failed`].
     pub failed: i64,
-    /// Cancelled.
+    /// At [`Stage::Cancelled`].
     pub cancelled: i64,
 }
 
@@ -48,7 +102,53 @@ impl StateCounts {
     }
 }
 
+impl Stage {
+    /// Whether work at this stage is open: still to be computed, or under way. The state of other work is final, and changes
+    /// only if somebody asks for it. The database's column `is_open`.
+    pub fn is_open(self) -> bool {
+        matches!(self, Stage::Queued | Stage::Running)
+    }
+
+    /// The name in the database.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Stage::Queued => "queued",
+            Stage::Running => "running",
+            Stage::Done => "done",
+            Stage::Failed => "failed",
+            Stage::Cancelled => "cancelled",
+        }
+    }
+}
+
 impl WorkState {
+    /// All of them.
+    pub const ALL: [WorkState; 7] = [
+        WorkState::Waiting,
+        WorkState::Queued,
+        WorkState::Leased,
+        WorkState::Done,
+        WorkState::Failed,
+        WorkState::Dead,
+        WorkState::Cancelled,
+    ];
+
+    /// How the sweeps that have the work count it.
+    pub fn stage(self) -> Stage {
+        match self {
+            WorkState::Waiting | WorkState::Queued => Stage::Queued,
+            WorkState::Leased => Stage::Running,
+            WorkState::Done => Stage::Done,
+            WorkState::Failed | WorkState::Dead => Stage::Failed,
+            WorkState::Cancelled => Stage::Cancelled,
+        }
+    }
+
+    /// Whether there is a [transition](TRANSITIONS) to another state.
+    pub fn may_become(self, other: WorkState) -> bool {
+        TRANSITIONS.iter().any(|transition| transition.from == self && transition.to == other)
+    }
+
     /// The name in the database.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -63,16 +163,10 @@ impl WorkState {
     }
 
     pub(crate) fn parse(text: &str) -> Result<Self> {
-        Ok(match text {
-            "waiting" => WorkState::Waiting,
-            "queued" => WorkState::Queued,
-            "leased" => WorkState::Leased,
-            "done" => WorkState::Done,
-            "failed" => WorkState::Failed,
-            "dead" => WorkState::Dead,
-            "cancelled" => WorkState::Cancelled,
-            other => return Err(StoreError::Corrupt(format!("work state {other:?}"))),
-        })
+        WorkState::ALL
+            .into_iter()
+            .find(|state| state.as_str() == text)
+            .ok_or_else(|| StoreError::Corrupt(format!("work state {text:?}")))
     }
 }
 

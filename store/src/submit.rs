@@ -419,7 +419,7 @@ async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]
     let mut missing = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
         let mut query = QueryBuilder::new(
-            "SELECT key FROM work WHERE (state IN ('failed', 'dead')
+            "SELECT key FROM work WHERE (stage = 'failed'
                OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key)) AND key IN (",
         );
         let mut list = query.separated(", ");
@@ -487,8 +487,8 @@ pub(crate) async fn end_of_order(tx: &mut Transaction<'static, Sqlite>, owner: &
         .await?;
     // One statement for each end: asked for both at once, SQLite reads all of them.
     let (first, last) = sqlx::query_as(
-        "SELECT coalesce((SELECT min(vtime) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')), 0),
-                coalesce((SELECT max(vtime) FROM work WHERE owner = ?1 AND state IN ('waiting', 'queued', 'leased')), 0)",
+        "SELECT coalesce((SELECT min(vtime) FROM work WHERE owner = ?1 AND is_open), 0),
+                coalesce((SELECT max(vtime) FROM work WHERE owner = ?1 AND is_open), 0)",
     )
     .bind(owner)
     .fetch_one(&mut **tx)
@@ -567,8 +567,8 @@ async fn insert_work(
 /// sweep that has them too. All else stays as it is.
 fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
     let again = match wanted.cache {
-        CachePolicy::Reuse | CachePolicy::Only => "state IN ('cancelled')",
-        CachePolicy::Refresh => "state IN ('cancelled', 'done', 'failed', 'dead')",
+        CachePolicy::Reuse | CachePolicy::Only => "state = 'cancelled'",
+        CachePolicy::Refresh => "NOT is_open",
     };
     let checkpoint = match wanted.cache {
         CachePolicy::Reuse | CachePolicy::Only => "checkpoint",
@@ -576,9 +576,9 @@ fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
     };
     let first = wanted.order.first;
     let nearer = format!(
-        "(state IN ('waiting', 'queued') AND owner <> excluded.owner AND held >= excluded.held
+        "(stage = 'queued' AND owner <> excluded.owner AND held >= excluded.held
           AND vtime - (SELECT min(o.vtime) FROM work o
-                       WHERE o.owner = work.owner AND o.state IN ('waiting', 'queued', 'leased'))
+                       WHERE o.owner = work.owner AND o.is_open)
               > excluded.vtime - {first})"
     );
     query.push(format!(
@@ -596,7 +596,7 @@ fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
              cancel_requested = 0,
              held = CASE WHEN {again} THEN excluded.held ELSE held AND excluded.held END
          WHERE {again}
-            OR (state IN ('waiting', 'queued', 'leased')
+            OR (is_open
                 AND (cancel_requested <> 0 OR held > excluded.held OR priority < excluded.priority OR {nearer}))"
     ));
 }
@@ -628,19 +628,19 @@ async fn count(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now:
         "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
                            verifications, verifications_queued, verifications_running, verifications_done,
                            verifications_failed, verifications_cancelled, finished) = (
-             SELECT points_queued + total(p.verifies = 0 AND w.state IN ('waiting', 'queued')),
-                    points_running + total(p.verifies = 0 AND w.state = 'leased'),
-                    points_done + total(p.verifies = 0 AND w.state = 'done'),
-                    points_failed + total(p.verifies = 0 AND w.state IN ('failed', 'dead')),
-                    points_cancelled + total(p.verifies = 0 AND w.state = 'cancelled'),
+             SELECT points_queued + total(p.verifies = 0 AND w.stage = 'queued'),
+                    points_running + total(p.verifies = 0 AND w.stage = 'running'),
+                    points_done + total(p.verifies = 0 AND w.stage = 'done'),
+                    points_failed + total(p.verifies = 0 AND w.stage = 'failed'),
+                    points_cancelled + total(p.verifies = 0 AND w.stage = 'cancelled'),
                     verifications + total(p.verifies),
-                    verifications_queued + total(p.verifies AND w.state IN ('waiting', 'queued')),
-                    verifications_running + total(p.verifies AND w.state = 'leased'),
-                    verifications_done + total(p.verifies AND w.state = 'done'),
-                    verifications_failed + total(p.verifies AND w.state IN ('failed', 'dead')),
-                    verifications_cancelled + total(p.verifies AND w.state = 'cancelled'),
+                    verifications_queued + total(p.verifies AND w.stage = 'queued'),
+                    verifications_running + total(p.verifies AND w.stage = 'running'),
+                    verifications_done + total(p.verifies AND w.stage = 'done'),
+                    verifications_failed + total(p.verifies AND w.stage = 'failed'),
+                    verifications_cancelled + total(p.verifies AND w.stage = 'cancelled'),
                     CASE WHEN points_queued + points_running + verifications_queued + verifications_running
-                              + total(w.state IN ('waiting', 'queued', 'leased')) = 0 THEN ?3 END
+                              + total(w.is_open) = 0 THEN ?3 END
              FROM point p JOIN work w ON w.key = p.work_key
              WHERE p.sweep_id = ?1 AND p.verifies IN (0, 1) AND p.ordinal > ?2)
          WHERE id = ?1",

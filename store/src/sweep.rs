@@ -198,7 +198,7 @@ impl Store {
             ended!("cancelled"),
             " END
              WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?2)
-               AND state IN ('waiting', 'queued', 'leased') AND NOT ",
+               AND is_open AND NOT ",
             wanted!("s.cancelled = 0")
         ))
         .bind(self.clock_offset_ms)
@@ -258,7 +258,7 @@ impl Store {
             sqlx::query(
                 "UPDATE work SET priority = coalesce((SELECT max(s.priority) FROM point p JOIN sweep s ON s.id = p.sweep_id
                                                       WHERE p.work_key = work.key AND s.cancelled = 0), priority)
-                 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND state IN ('waiting', 'queued', 'leased')",
+                 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND is_open",
             )
             .bind(id)
             .execute(&mut *tx)
@@ -299,7 +299,7 @@ impl Store {
                  crash_count = 0, failure_count = 0, cancel_requested = 0
              FROM (SELECT p.work_key AS key, row_number() OVER (ORDER BY min(p.verifies), min(p.ordinal)) AS number
                    FROM point p JOIN work w ON w.key = p.work_key
-                   WHERE p.sweep_id = ?2 AND w.state IN ('failed', 'dead', 'cancelled')
+                   WHERE p.sweep_id = ?2 AND w.stage IN ('failed', 'cancelled')
                    GROUP BY p.work_key) AS turn
              WHERE work.key = turn.key"
         ))
@@ -338,7 +338,7 @@ async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()
     sqlx::query(concat!(
         "UPDATE work SET held = NOT ",
         wanted!("s.cancelled = 0 AND s.paused = 0"),
-        " WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND state IN ('waiting', 'queued', 'leased')"
+        " WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND is_open"
     ))
     .bind(id)
     .execute(&mut **tx)

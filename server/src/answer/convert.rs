@@ -8,8 +8,8 @@ use drillsweep_api::{
     key_text,
 };
 use drillsweep_store::{
-    CachePolicy, FailureRecord, NewPoint, NewSweep, NewVerification, PointRecord, ScenarioText, StateCounts,
-    Store, SweepRecord, TableRecord, VerificationRecord, WorkState,
+    CachePolicy, FailureRecord, NewPoint, NewSweep, NewVerification, PointRecord, ScenarioText, Stage,
+    StateCounts, Store, SweepRecord, TableRecord, VerificationRecord, WorkState,
 };
 use indexmap::IndexMap;
 use jiff::Timestamp;
@@ -201,24 +201,18 @@ pub(crate) fn parameters(json: &str) -> Result<IndexMap<String, f64>> {
 
 /// The state of a point from that of the work behind it.
 pub(crate) fn point_state(state: WorkState) -> PointState {
-    match state {
-        WorkState::Waiting | WorkState::Queued => PointState::Queued,
-        WorkState::Leased => PointState::Running,
-        WorkState::Done => PointState::Succeeded,
-        WorkState::Failed | WorkState::Dead => PointState::Failed,
-        WorkState::Cancelled => PointState::Cancelled,
+    match state.stage() {
+        Stage::Queued => PointState::Queued,
+        Stage::Running => PointState::Running,
+        Stage::Done => PointState::Succeeded,
+        Stage::Failed => PointState::Failed,
+        Stage::Cancelled => PointState::Cancelled,
     }
 }
 
 /// The states of work that make up a state of points.
-pub(crate) fn work_states(state: PointState) -> &'static [WorkState] {
-    match state {
-        PointState::Queued => &[WorkState::Waiting, WorkState::Queued],
-        PointState::Running => &[WorkState::Leased],
-        PointState::Succeeded => &[WorkState::Done],
-        PointState::Failed => &[WorkState::Failed, WorkState::Dead],
-        PointState::Cancelled => &[WorkState::Cancelled],
-    }
+pub(crate) fn work_states(state: PointState) -> Vec<WorkState> {
+    WorkState::ALL.into_iter().filter(|work| point_state(*work) == state).collect()
 }
 
 /// Why a point failed. A text of another form than the workers' comes through as the reason.

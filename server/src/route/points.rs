@@ -68,9 +68,9 @@ pub(crate) async fn list(
     if app.store.sweep_version(&id).await?.is_none() {
         return Err(convert::no_such_sweep(&id));
     }
-    let states = query.state.map_or(&[][..], convert::work_states);
+    let states = query.state.map_or_else(Vec::new, convert::work_states);
     // One more than asked for tells whether there is a next page.
-    let mut records = app.store.points(&id, states, after, i64::from(limit) + 1).await?;
+    let mut records = app.store.points(&id, &states, after, i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.ordinal.to_string());

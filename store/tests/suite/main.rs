@@ -146,6 +146,7 @@ mod lease;
 mod probe;
 mod retention;
 mod sqlite;
+mod state;
 mod submit;
 mod table;
 mod token;

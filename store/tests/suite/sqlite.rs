@@ -3,7 +3,8 @@
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
-use drillsweep_store::{Role, StoreConfig};
+use drillsweep_store::{Role, StoreConfig, WorkState};
+use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use tempfile::TempDir;
 
 use crate::bench::{Engine, Object};
@@ -80,6 +81,52 @@ fn collect_objects(directory: &Path, prefix: &str, found: &mut Vec<Object>) {
             // A file that is written anew is another one, or was changed later.
             let version = format!("{} {:?}", metadata.ino(), metadata.modified().unwrap());
             found.push(Object { name, bytes: metadata.len(), version });
+        }
+    }
+}
+
+/// The database past the store.
+async fn database(engine: &Sqlite) -> SqlitePool {
+    let file = engine.directory().join("drillsweep.sqlite");
+    SqlitePool::connect_with(SqliteConnectOptions::new().filename(file)).await.unwrap()
+}
+
+async fn insert_work(database: &SqlitePool, key: &str, state: &str) -> sqlx::Result<()> {
+    let statement =
+        "INSERT INTO work (key, physics_version, owner, state, priority, vtime, ready_at, created, changed)
+                     VALUES (CAST(?1 AS BLOB), 1, 'anne', ?2, 0, 0, 0, 0, 0)";
+    sqlx::query(statement).bind(key).bind(state).execute(database).await.map(drop)
+}
+
+#[tokio::test]
+async fn the_schema_has_the_states_stages_and_transitions_of_work() {
+    let engine = Sqlite::new();
+    engine.open().await.close().await;
+    let database = database(&engine).await;
+    for other in ["", "running", "Queued"] {
+        assert!(insert_work(&database, other, other).await.is_err(), "{other:?}");
+    }
+    for from in WorkState::ALL {
+        insert_work(&database, from.as_str(), from.as_str()).await.unwrap();
+        let (stage, is_open): (String, bool) =
+            sqlx::query_as("SELECT stage, is_open FROM work WHERE state = ?1")
+                .bind(from.as_str())
+                .fetch_one(&database)
+                .await
+                .unwrap();
+        assert_eq!(stage, from.stage().as_str(), "{from:?}");
+        assert_eq!(is_open, from.stage().is_open(), "{from:?}");
+    }
+    for from in WorkState::ALL {
+        for to in WorkState::ALL {
+            let key = format!("{} to {}", from.as_str(), to.as_str());
+            insert_work(&database, &key, from.as_str()).await.unwrap();
+            let changed = sqlx::query("UPDATE work SET state = ?2 WHERE key = CAST(?1 AS BLOB)")
+                .bind(&key)
+                .bind(to.as_str())
+                .execute(&database)
+                .await;
+            assert_eq!(changed.is_ok(), from == to || from.may_become(to), "{key}");
         }
     }
 }

@@ -301,3 +301,6 @@ CREATE TABLE token (
     -- To within an hour.
     last_used INTEGER
 ) STRICT;
+
+-- The clock: milliseconds since the epoch. Statements read the time from here and from nowhere else.
+CREATE VIEW clock AS SELECT CAST((julianday('now') - 2440587.5) * 86400000.0 AS INTEGER) AS now;

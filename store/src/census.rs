@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 use crate::state::WorkState;
 
 /// How much there is of what.
@@ -38,27 +39,13 @@ impl Store {
     pub async fn census(&self, silence: Duration) -> Result<Census> {
         let depths = self.queue_depths().await?;
         type Sums = (i64, i64, i64, i64, i64, i64);
-        let (sweeps, queued, running, done, failed, cancelled): Sums = sqlx::query_as(
-            "SELECT count(*), coalesce(sum(points_queued), 0), coalesce(sum(points_running), 0),
-                    coalesce(sum(points_done), 0), coalesce(sum(points_failed), 0),
-                    coalesce(sum(points_cancelled), 0)
-             FROM sweep",
-        )
-        .fetch_one(&self.pool)
-        .await?;
-        let oldest_queued_ms: i64 = sqlx::query_scalar(concat!(
-            "SELECT coalesce(max(0, ",
-            now!(),
-            " - min(changed)), 0) FROM work WHERE state = 'queued' AND held = 0"
-        ))
-        .bind(self.clock_offset_ms)
-        .fetch_one(&self.pool)
-        .await?;
+        let (sweeps, queued, running, done, failed, cancelled): Sums =
+            sqlx::query_as(sql::census::SWEEPS).fetch_one(&self.pool).await?;
+        let oldest_queued_ms: i64 =
+            sqlx::query_scalar(sql::census::OLDEST_QUEUED).fetch_one(&self.pool).await?;
         let artifact_bytes: i64 =
-            sqlx::query_scalar("SELECT coalesce(sum(bytes), 0) FROM artifact").fetch_one(&self.pool).await?;
-        let disagreements: i64 = sqlx::query_scalar("SELECT count(*) FROM result WHERE disagrees <> 0")
-            .fetch_one(&self.pool)
-            .await?;
+            sqlx::query_scalar(sql::census::ARTIFACT_BYTES).fetch_one(&self.pool).await?;
+        let disagreements: i64 = sqlx::query_scalar(sql::census::DISAGREEMENTS).fetch_one(&self.pool).await?;
         let workers = self.workers(silence.as_millis() as i64).await?.len() as i64;
         let size = |suffix: &str| {
             let mut path = self.database_path.clone().into_os_string();

@@ -3,6 +3,7 @@
 use crate::blob::BlobId;
 use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::sql;
 
 /// What a check looked at, and what is wrong.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -25,32 +26,23 @@ impl Store {
     /// When the database cannot be read. What can be read but is wrong is reported, not an error.
     pub async fn check(&self) -> Result<CheckReport> {
         let mut report = CheckReport::default();
-        let pages: Vec<String> = sqlx::query_scalar("PRAGMA integrity_check").fetch_all(&self.pool).await?;
+        let pages: Vec<String> = sqlx::query_scalar(sql::check::PAGES).fetch_all(&self.pool).await?;
         report
             .problems
             .extend(pages.into_iter().filter(|line| line != "ok").map(|line| format!("database: {line}")));
         let dangling: Vec<(String, String)> =
-            sqlx::query_as(r#"SELECT "table", parent FROM pragma_foreign_key_check"#)
-                .fetch_all(&self.pool)
-                .await?;
+            sqlx::query_as(sql::check::REFERENCES).fetch_all(&self.pool).await?;
         report.problems.extend(
             dangling.into_iter().map(|(child, parent)| format!("a row of {child} names no {parent}")),
         );
-        let without_result: i64 = sqlx::query_scalar(
-            "SELECT count(*) FROM work LEFT JOIN result ON work_key = key WHERE state = 'done' AND work_key IS NULL",
-        )
-        .fetch_one(&self.pool)
-        .await?;
+        let without_result: i64 =
+            sqlx::query_scalar(sql::check::WITHOUT_RESULT).fetch_one(&self.pool).await?;
         if without_result > 0 {
             report.problems.push(format!("{without_result} finished work items have no result"));
         }
-        let results: i64 = sqlx::query_scalar("SELECT count(*) FROM result").fetch_one(&self.pool).await?;
+        let results: i64 = sqlx::query_scalar(sql::check::RESULTS).fetch_one(&self.pool).await?;
         report.results = results.unsigned_abs();
-        let blobs: Vec<(String, i64)> = sqlx::query_as(
-            "SELECT blob, max(bytes) FROM artifact WHERE expired IS NULL GROUP BY blob ORDER BY blob",
-        )
-        .fetch_all(&self.pool)
-        .await?;
+        let blobs: Vec<(String, i64)> = sqlx::query_as(sql::check::BLOBS).fetch_all(&self.pool).await?;
         for (id, bytes) in blobs {
             report.blobs += 1;
             report.bytes += bytes.unsigned_abs();

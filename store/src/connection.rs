@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{Connection as _, Sqlite, Transaction};
+use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Sqlite, Transaction};
 
 use crate::blob::BlobStore;
 use crate::error::{Result, StoreError};
+use crate::sql;
 
 /// How long a writer waits for another one.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
@@ -63,18 +64,9 @@ pub enum Role {
 #[derive(Debug, Clone)]
 pub struct Store {
     pub(crate) pool: SqlitePool,
-    pub(crate) clock_offset_ms: i64,
     pub(crate) database_path: PathBuf,
     blobs: BlobStore,
 }
-
-/// Milliseconds since the epoch by the database's clock; its one parameter is the offset.
-macro_rules! now {
-    () => {
-        "(CAST((julianday('now') - 2440587.5) * 86400000.0 AS INTEGER) + ?1)"
-    };
-}
-pub(crate) use now;
 
 /// Pages that a connection keeps, in KiB (hence the sign). A large submission touches the indexes of keys, which are hashes, all
 /// over: with SQLite's 2 MB it would read and write the same pages again and again.
@@ -118,8 +110,21 @@ impl Store {
         let opening = lock_opening(&config.database_path).await?;
         // SQLite ends a transaction by itself when the disk is full. sqlx does not notice, its own rollback fails, and it
         // would refuse every further transaction on that connection: such a one is closed instead of handed out.
+        let clock_offset_ms = config.clock_offset_ms;
         let pool = SqlitePoolOptions::new()
             .max_connections(connections)
+            .after_connect(move |connection, _| {
+                Box::pin(async move {
+                    if clock_offset_ms != 0 {
+                        // On this connection the name stands for this view, before the schema's.
+                        let clock = format!(
+                            "CREATE TEMP VIEW clock AS SELECT now + {clock_offset_ms} AS now FROM main.clock"
+                        );
+                        connection.execute(AssertSqlSafe(clock)).await?;
+                    }
+                    Ok(())
+                })
+            })
             .before_acquire(|connection, _| Box::pin(async move { Ok(!connection.is_in_transaction()) }))
             .connect_with(options)
             .await?;
@@ -127,7 +132,7 @@ impl Store {
         drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;
         let database_path = config.database_path.clone();
-        Ok(Self { pool, clock_offset_ms: config.clock_offset_ms, database_path, blobs })
+        Ok(Self { pool, database_path, blobs })
     }
 
     /// The object store.
@@ -151,8 +156,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn now_ms(&self) -> Result<i64> {
-        let query = concat!("SELECT ", now!());
-        Ok(sqlx::query_scalar(query).bind(self.clock_offset_ms).fetch_one(&self.pool).await?)
+        Ok(sqlx::query_scalar(sql::clock::NOW).fetch_one(&self.pool).await?)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// A change of a work item that a sweep has among its points.
@@ -28,19 +29,12 @@ impl Store {
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
         type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
-        let rows: Vec<Row> = sqlx::query_as(
-            "SELECT seq, kind, work_key, at,
-                    (SELECT group_concat(p.ordinal) FROM point p
-                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id AND p.verifies = 0),
-                    (SELECT group_concat(p.ordinal) FROM point p
-                     WHERE p.work_key = event.work_key AND p.sweep_id = event.sweep_id AND p.verifies = 1)
-             FROM event WHERE sweep_id = ?1 AND seq > ?2 ORDER BY seq LIMIT ?3",
-        )
-        .bind(sweep_id)
-        .bind(after)
-        .bind(limit)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<Row> = sqlx::query_as(sql::event::LIST)
+            .bind(sweep_id)
+            .bind(after)
+            .bind(limit)
+            .fetch_all(&self.pool)
+            .await?;
         rows.into_iter()
             .map(|(seq, kind, key, at, ordinals, verifies)| {
                 let state = WorkState::parse(&kind)?;

@@ -5,6 +5,7 @@ use sqlx::FromRow;
 use crate::connection::Store;
 use crate::error::Result;
 use crate::point::{PointRecord, PointRow};
+use crate::sql;
 
 /// A point that was given up.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,26 +73,15 @@ impl Store {
     ) -> Result<Vec<FailureRecord>> {
         let start = FailurePlace { at: i64::MAX, sweep_id: String::new(), ordinal: 0 };
         let after = after.unwrap_or(&start);
-        // An explicit order of the tables: the failures are few, and the index has them in this order. An error that is not
-        // JSON has no class.
-        let rows: Vec<Row> = sqlx::query_as(
-            "SELECT s.id AS sweep_id, s.name AS sweep_name, s.owner, w.changed,
-                    p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
-                    w.error, NULL AS summary, NULL AS provenance
-             FROM work w CROSS JOIN point p ON p.work_key = w.key CROSS JOIN sweep s ON s.id = p.sweep_id
-             WHERE w.stage = 'failed' AND p.verifies = 0 AND w.changed <= ?1 AND (w.changed, s.id, p.ordinal) < (?1, ?2, ?3)
-               AND (?4 IS NULL OR s.owner = ?4)
-               AND (?5 IS NULL OR ?5 = CASE WHEN json_valid(w.error) THEN json_extract(w.error, '$.class') END)
-             ORDER BY w.changed DESC, s.id DESC, p.ordinal DESC LIMIT ?6",
-        )
-        .bind(after.at)
-        .bind(&after.sweep_id)
-        .bind(after.ordinal)
-        .bind(filter.owner)
-        .bind(filter.class)
-        .bind(limit)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<Row> = sqlx::query_as(sql::failure::LIST)
+            .bind(after.at)
+            .bind(&after.sweep_id)
+            .bind(after.ordinal)
+            .bind(filter.owner)
+            .bind(filter.class)
+            .bind(limit)
+            .fetch_all(&self.pool)
+            .await?;
         rows.into_iter()
             .map(|row| {
                 Ok(FailureRecord {

@@ -16,6 +16,7 @@ mod point;
 mod probe;
 mod queue;
 mod retention;
+mod sql;
 mod state;
 mod submit;
 mod sweep;

@@ -1,9 +1,11 @@
 //! Points of a sweep and what came of them.
 
+use serde_json::Value;
 use sqlx::FromRow;
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// A stored point.
@@ -99,22 +101,15 @@ impl Store {
         after: i64,
         limit: i64,
     ) -> Result<Vec<PointRecord>> {
-        let names: Vec<&str> = states.iter().map(|state| state.as_str()).collect();
-        // A list of fixed names, checked against the state with a comma on both sides.
-        let wanted = if names.is_empty() { None } else { Some(format!(",{},", names.join(","))) };
-        let rows: Vec<PointRow> = sqlx::query_as(
-            "SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
-                    w.error, NULL AS summary, NULL AS provenance
-             FROM point p JOIN work w ON w.key = p.work_key
-             WHERE p.sweep_id = ?1 AND p.verifies = 0 AND p.ordinal > ?2 AND (?3 IS NULL OR instr(?3, ',' || w.state || ',') > 0)
-             ORDER BY p.ordinal LIMIT ?4",
-        )
-        .bind(sweep_id)
-        .bind(after)
-        .bind(wanted)
-        .bind(limit)
-        .fetch_all(&self.pool)
-        .await?;
+        let names = states.iter().map(|state| state.as_str());
+        let wanted = (!states.is_empty()).then(|| names.collect::<Value>().to_string());
+        let rows: Vec<PointRow> = sqlx::query_as(sql::point::LIST)
+            .bind(sweep_id)
+            .bind(after)
+            .bind(wanted)
+            .bind(limit)
+            .fetch_all(&self.pool)
+            .await?;
         rows.into_iter().map(PointRow::record).collect()
     }
 
@@ -123,16 +118,8 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
-        let row: Option<PointRow> = sqlx::query_as(
-            "SELECT p.ordinal, p.parameters, w.key, s.text AS base, w.changes, w.state, w.progress, w.starts, w.error,
-                    r.summary, r.provenance
-             FROM point p JOIN work w ON w.key = p.work_key JOIN scenario s ON s.hash = w.base LEFT JOIN result r ON r.work_key = w.key
-             WHERE p.sweep_id = ?1 AND p.verifies = 0 AND p.ordinal = ?2",
-        )
-        .bind(sweep_id)
-        .bind(ordinal)
-        .fetch_optional(&self.pool)
-        .await?;
+        let row: Option<PointRow> =
+            sqlx::query_as(sql::point::ONE).bind(sweep_id).bind(ordinal).fetch_optional(&self.pool).await?;
         row.map(PointRow::record).transpose()
     }
 
@@ -142,14 +129,7 @@ impl Store {
     /// When the database fails.
     pub async fn table_rows(&self, sweep_id: &str) -> Result<Vec<TableRecord>> {
         type Row = (i64, String, String, Option<String>, Option<String>);
-        let rows: Vec<Row> = sqlx::query_as(
-            "SELECT p.ordinal, p.parameters, w.state, r.summary, w.error
-             FROM point p JOIN work w ON w.key = p.work_key LEFT JOIN result r ON r.work_key = w.key
-             WHERE p.sweep_id = ?1 AND p.verifies = 0 ORDER BY p.ordinal",
-        )
-        .bind(sweep_id)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<Row> = sqlx::query_as(sql::point::TABLE).bind(sweep_id).fetch_all(&self.pool).await?;
         rows.into_iter()
             .map(|(ordinal, parameters_json, state, summary_json, error_json)| {
                 Ok(TableRecord {
@@ -179,20 +159,12 @@ impl Store {
             #[sqlx(flatten)]
             artifact: Artifact,
         }
-        let rows: Vec<Row> = sqlx::query_as(
-            "SELECT p.ordinal, a.name, a.media_type, a.blob, a.bytes, a.row_count, a.expired
-             FROM (SELECT ordinal, work_key FROM point
-                   WHERE sweep_id = ?1 AND verifies = 0 AND ordinal > ?2
-                     AND EXISTS (SELECT 1 FROM artifact WHERE artifact.work_key = point.work_key)
-                   ORDER BY ordinal LIMIT ?3) AS p
-             JOIN artifact a ON a.work_key = p.work_key AND a.expired IS NULL
-             ORDER BY p.ordinal, a.name",
-        )
-        .bind(sweep_id)
-        .bind(after)
-        .bind(limit)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<Row> = sqlx::query_as(sql::point::WITH_ARTIFACTS)
+            .bind(sweep_id)
+            .bind(after)
+            .bind(limit)
+            .fetch_all(&self.pool)
+            .await?;
         let of_point =
             |rows: &[Row]| (rows[0].ordinal, rows.iter().map(|row| row.artifact.clone()).collect());
         Ok(rows.chunk_by(|a, b| a.ordinal == b.ordinal).map(of_point).collect())
@@ -203,12 +175,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
-        Ok(sqlx::query_as(
-            "SELECT name, media_type, blob, bytes, row_count, expired FROM artifact WHERE work_key = ?1 ORDER BY name",
-        )
-        .bind(key.as_slice())
-        .fetch_all(&self.pool)
-        .await?)
+        Ok(sqlx::query_as(sql::point::ARTIFACTS).bind(key.as_slice()).fetch_all(&self.pool).await?)
     }
 }
 

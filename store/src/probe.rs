@@ -4,6 +4,7 @@ use bytes::Bytes;
 
 use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::sql;
 
 /// A version of the numbers that no worker has, so that no worker meets the scratch row.
 const NO_PHYSICS: i64 = -1;
@@ -18,19 +19,13 @@ impl Store {
         let scratch = format!("probe {}", self.now_ms().await?);
         let key = blake3::hash(scratch.as_bytes());
         let mut tx = self.write().await?;
-        sqlx::query("INSERT INTO scenario (hash, text) VALUES (?1, '')")
+        sqlx::query(sql::probe::INSERT_SCENARIO).bind(key.as_bytes().as_slice()).execute(&mut *tx).await?;
+        sqlx::query(sql::probe::INSERT_TURN).execute(&mut *tx).await?;
+        sqlx::query(sql::probe::INSERT_WORK)
             .bind(key.as_bytes().as_slice())
+            .bind(NO_PHYSICS)
             .execute(&mut *tx)
             .await?;
-        sqlx::query("INSERT INTO owner_turn (owner, vtime) VALUES ('', 0)").execute(&mut *tx).await?;
-        sqlx::query(
-            "INSERT INTO work (key, physics_version, base, owner, state, priority, vtime, ready_at, created, changed)
-             VALUES (?1, ?2, ?1, '', 'queued', 0, 0, 0, 0, 0)",
-        )
-        .bind(key.as_bytes().as_slice())
-        .bind(NO_PHYSICS)
-        .execute(&mut *tx)
-        .await?;
         let claimed = self.claim_with(&mut *tx, "probe", NO_PHYSICS, 1_000).await?;
         tx.rollback().await?;
         if claimed.is_none_or(|claim| claim.lease.key != *key.as_bytes()) {

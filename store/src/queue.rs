@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use sqlx::{Sqlite, SqliteExecutor, Transaction};
 
 use crate::blob::BlobId;
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::{Result, StoreError};
 use crate::point::ScenarioText;
+use crate::sql;
 use crate::state::{WorkKey, work_key};
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
@@ -22,26 +23,6 @@ const FIRST_RETRY_MS: i64 = 5_000;
 
 /// Longest wait before the last of these retries \[ms\].
 const LONGEST_RETRY_MS: i64 = (FIRST_RETRY_MS << (INFRASTRUCTURE_TRIES - 2)) * 3 / 2;
-
-/// The condition of every write of a worker: its attempt is still the current one. Parameters 2 to 4 are those of
-/// [`Lease`]; the first is the clock's offset, as everywhere.
-macro_rules! holds_lease {
-    () => {
-        " WHERE key = ?2 AND attempt = ?3 AND lease_owner = ?4 AND state = 'leased'"
-    };
-}
-
-/// The state of work that ends without a new result: where it was to be computed anew, the result from before stays.
-macro_rules! ended {
-    ($state:literal) => {
-        concat!(
-            "CASE WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done' ELSE '",
-            $state,
-            "' END"
-        )
-    };
-}
-pub(crate) use ended;
 
 /// Work handed to a worker.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,16 +120,10 @@ struct Earlier {
 impl Earlier {
     async fn read(tx: &mut Transaction<'static, Sqlite>, key: &[u8]) -> Result<Option<Self>> {
         let row: Option<(String, String, bool)> =
-            sqlx::query_as("SELECT summary, provenance, disagrees FROM result WHERE work_key = ?1")
-                .bind(key)
-                .fetch_optional(&mut **tx)
-                .await?;
+            sqlx::query_as(sql::queue::EARLIER_RESULT).bind(key).fetch_optional(&mut **tx).await?;
         let Some((summary, provenance, disagrees)) = row else { return Ok(None) };
         let blobs: Vec<(String, String)> =
-            sqlx::query_as("SELECT name, blob FROM artifact WHERE work_key = ?1")
-                .bind(key)
-                .fetch_all(&mut **tx)
-                .await?;
+            sqlx::query_as(sql::queue::EARLIER_BLOBS).bind(key).fetch_all(&mut **tx).await?;
         Ok(Some(Self { summary, provenance, disagrees, blobs: blobs.into_iter().collect() }))
     }
 
@@ -191,29 +166,12 @@ impl Store {
     ) -> Result<Option<Claim>> {
         type Row = (Vec<u8>, i64, String, String, Option<String>);
         // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
-        let rows: Vec<Row> = sqlx::query_as(concat!(
-            "UPDATE work SET state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
-                    lease_owner = ?2, lease_until = ",
-            now!(),
-            " + ?3, lease_ms = ?3, changed = ",
-            now!(),
-            " WHERE key = (
-                  SELECT key FROM work
-                  WHERE state = 'queued' AND held = 0 AND physics_version = ?4
-                    AND owner = (SELECT owner FROM owner_turn
-                                 WHERE EXISTS (SELECT 1 FROM work
-                                               WHERE state = 'queued' AND held = 0 AND physics_version = ?4
-                                                 AND work.owner = owner_turn.owner)
-                                 ORDER BY vtime, owner LIMIT 1)
-                  ORDER BY priority DESC, vtime, key LIMIT 1)
-              RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes, checkpoint"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(worker)
-        .bind(lease_ms)
-        .bind(physics_version)
-        .fetch_all(executor)
-        .await?;
+        let rows: Vec<Row> = sqlx::query_as(sql::queue::CLAIM)
+            .bind(worker)
+            .bind(lease_ms)
+            .bind(physics_version)
+            .fetch_all(executor)
+            .await?;
         let Some((key, attempt, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
             return Ok(None);
         };
@@ -227,21 +185,14 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
-        let cancel_requested: Vec<i64> = sqlx::query_scalar(concat!(
-            "UPDATE work SET progress = ?5, lease_until = ",
-            now!(),
-            " + ?6, lease_ms = ?6",
-            holds_lease!(),
-            " RETURNING cancel_requested"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(lease.key.as_slice())
-        .bind(lease.attempt)
-        .bind(&lease.worker)
-        .bind(progress)
-        .bind(lease_ms)
-        .fetch_all(&self.pool)
-        .await?;
+        let cancel_requested: Vec<i64> = sqlx::query_scalar(sql::queue::RENEW)
+            .bind(lease.key.as_slice())
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .bind(progress)
+            .bind(lease_ms)
+            .fetch_all(&self.pool)
+            .await?;
         Ok(match cancel_requested.first() {
             None => Renewal::Lost,
             Some(0) => Renewal::Held,
@@ -259,22 +210,16 @@ impl Store {
     pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
         let mut tx = self.write().await?;
         let key = lease.key.as_slice();
-        let finished: Vec<i64> = sqlx::query_scalar(concat!(
-            "UPDATE work SET state = 'done', progress = 1, error = NULL, checkpoint = NULL, lease_until = NULL, changed = ",
-            now!(),
-            holds_lease!(),
-            " RETURNING changed"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(key)
-        .bind(lease.attempt)
-        .bind(&lease.worker)
-        .fetch_all(&mut *tx)
-        .await?;
+        let finished: Vec<i64> = sqlx::query_scalar(sql::queue::FINISH)
+            .bind(key)
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .fetch_all(&mut *tx)
+            .await?;
         let Some(now) = finished.first() else { return Ok(false) };
         let earlier = Earlier::read(&mut tx, key).await?;
-        sqlx::query("DELETE FROM result WHERE work_key = ?1").bind(key).execute(&mut *tx).await?;
-        sqlx::query("INSERT INTO result (work_key, summary, provenance, created) VALUES (?1, ?2, ?3, ?4)")
+        sqlx::query(sql::queue::DELETE_RESULT).bind(key).execute(&mut *tx).await?;
+        sqlx::query(sql::queue::INSERT_RESULT)
             .bind(key)
             .bind(result.summary_json)
             .bind(result.provenance_json)
@@ -286,17 +231,15 @@ impl Store {
             if !self.blobs().contains(artifact.blob).await? {
                 return Err(StoreError::BlobMissing(artifact.blob.to_string()));
             }
-            sqlx::query(
-                "INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
-            )
-            .bind(key)
-            .bind(&artifact.name)
-            .bind(&artifact.media_type)
-            .bind(artifact.blob.to_string())
-            .bind(artifact.bytes)
-            .bind(artifact.row_count)
-            .execute(&mut *tx)
-            .await?;
+            sqlx::query(sql::queue::INSERT_ARTIFACT)
+                .bind(key)
+                .bind(&artifact.name)
+                .bind(&artifact.media_type)
+                .bind(artifact.blob.to_string())
+                .bind(artifact.bytes)
+                .bind(artifact.row_count)
+                .execute(&mut *tx)
+                .await?;
         }
         if let Some(earlier) = earlier.filter(|_| result.is_repeatable) {
             let differences = earlier.differences(result).join(", ");
@@ -321,28 +264,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn finish_failed(&self, lease: &Lease, class: FailureClass, error_json: &str) -> Result<bool> {
-        let query = match class {
-            FailureClass::Physical | FailureClass::Timeout => concat!(
-                "UPDATE work SET state = ",
-                ended!("failed"),
-                ", error = ?5, lease_until = NULL, changed = ",
-                now!(),
-                holds_lease!()
-            ),
-            // Another sweep may have asked for the same work between the worker's last renewal and now.
-            FailureClass::Cancelled => concat!(
-                "UPDATE work SET
-                     state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE ",
-                ended!("cancelled"),
-                " END,
-                     error = CASE WHEN cancel_requested = 0 OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key)
-                                  THEN NULL ELSE ?5 END,
-                     progress = 0, lease_until = NULL, changed = ",
-                now!(),
-                holds_lease!()
-            ),
+        let statement = match class {
+            FailureClass::Physical | FailureClass::Timeout => sql::queue::FAIL,
+            FailureClass::Cancelled => sql::queue::CANCEL,
         };
-        self.leave(query, lease, Some(error_json)).await
+        self.leave(statement, lease, error_json).await
     }
 
     /// Keeps the blob from which the work can go on, written before; the next claim brings it. False if the lease was
@@ -351,8 +277,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn keep_checkpoint(&self, lease: &Lease, blob: BlobId) -> Result<bool> {
-        let query = concat!("UPDATE work SET checkpoint = ?5", holds_lease!());
-        self.leave(query, lease, Some(&blob.to_string())).await
+        self.leave(sql::queue::KEEP_CHECKPOINT, lease, &blob.to_string()).await
     }
 
     /// Gives work back after it brought its worker down in a way that the worker survived, such as a panic: that counts
@@ -361,29 +286,15 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn crashed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
-        let changed = sqlx::query(concat!(
-            "UPDATE work SET
-                 crash_count = crash_count + 1, progress = 0, lease_until = NULL, error = ?5, changed = ",
-            now!(),
-            ",
-                 state = CASE WHEN cancel_requested <> 0 THEN ",
-            ended!("cancelled"),
-            "
-                              WHEN crash_count + 1 >= ?6 THEN ",
-            ended!("dead"),
-            "
-                              ELSE 'queued' END",
-            holds_lease!()
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(lease.key.as_slice())
-        .bind(lease.attempt)
-        .bind(&lease.worker)
-        .bind(error_json)
-        .bind(CRASH_LIMIT)
-        .execute(&self.pool)
-        .await?
-        .rows_affected();
+        let changed = sqlx::query(sql::queue::CRASH)
+            .bind(lease.key.as_slice())
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .bind(error_json)
+            .bind(CRASH_LIMIT)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
         Ok(changed == 1)
     }
 
@@ -393,16 +304,14 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
-        let query = concat!(
-            "UPDATE work SET
-                 state = CASE cancel_requested WHEN 0 THEN 'queued' ELSE ",
-            ended!("cancelled"),
-            " END,
-                 error = ?5, starts = starts - 1, progress = 0, lease_until = NULL, changed = ",
-            now!(),
-            holds_lease!()
-        );
-        self.leave(query, lease, None).await
+        let changed = sqlx::query(sql::queue::RELEASE)
+            .bind(lease.key.as_slice())
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
+        Ok(changed == 1)
     }
 
     /// Gives work back after the infrastructure failed: tried again later and later, given up at the fifth time.
@@ -411,34 +320,16 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
-        let changed = sqlx::query(concat!(
-            "UPDATE work SET
-                 state = CASE WHEN cancel_requested <> 0 THEN ",
-            ended!("cancelled"),
-            "
-                              WHEN failure_count + 1 >= ?6 THEN ",
-            ended!("failed"),
-            "
-                              ELSE 'waiting' END,
-                 ready_at = ",
-            now!(),
-            // The bits without the sign's: the absolute value of the least integer is none.
-            " + (?7 << failure_count) + (random() & 0x7fffffffffffffff) % ((?7 << failure_count) / 2 + 1),
-                 failure_count = failure_count + 1,
-                 error = ?5, progress = 0, lease_until = NULL, changed = ",
-            now!(),
-            holds_lease!()
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(lease.key.as_slice())
-        .bind(lease.attempt)
-        .bind(&lease.worker)
-        .bind(error_json)
-        .bind(INFRASTRUCTURE_TRIES)
-        .bind(FIRST_RETRY_MS)
-        .execute(&self.pool)
-        .await?
-        .rows_affected();
+        let changed = sqlx::query(sql::queue::RETRY_LATER)
+            .bind(lease.key.as_slice())
+            .bind(lease.attempt)
+            .bind(&lease.worker)
+            .bind(error_json)
+            .bind(INFRASTRUCTURE_TRIES)
+            .bind(FIRST_RETRY_MS)
+            .execute(&self.pool)
+            .await?
+            .rows_affected();
         Ok(changed == 1)
     }
 
@@ -452,78 +343,23 @@ impl Store {
     /// When the database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
         // Most of the time there is nothing: look before taking the write lock.
-        let is_due: i64 = sqlx::query_scalar(concat!(
-            "SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < ",
-            now!(),
-            ") OR EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until > ",
-            now!(),
-            " + lease_ms) OR EXISTS (SELECT 1 FROM work WHERE state = 'waiting' AND (ready_at <= ",
-            now!(),
-            " OR ready_at > ",
-            now!(),
-            " + ?2))"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(LONGEST_RETRY_MS)
-        .fetch_one(&self.pool)
-        .await?;
+        let is_due: i64 = sqlx::query_scalar(sql::queue::IS_ANYTHING_DUE)
+            .bind(LONGEST_RETRY_MS)
+            .fetch_one(&self.pool)
+            .await?;
         if is_due == 0 {
             return Ok(0);
         }
-        let too_long = sqlx::query(concat!(
-            "UPDATE work SET lease_until = ",
-            now!(),
-            " + lease_ms WHERE state = 'leased' AND lease_until > ",
-            now!(),
-            " + lease_ms"
-        ))
-        .bind(self.clock_offset_ms)
-        .execute(&self.pool)
-        .await?
-        .rows_affected();
+        let too_long = sqlx::query(sql::queue::SHORTEN_LEASES).execute(&self.pool).await?.rows_affected();
         if too_long > 0 {
             tracing::warn!(leases = too_long, "the clock was set back; leases are counted from now");
         }
-        let expired: Vec<(String, i64, Option<String>)> = sqlx::query_as(concat!(
-            "UPDATE work SET
-                 crash_count = crash_count + 1, progress = 0, lease_until = NULL, changed = ",
-            now!(),
-            ",
-                 state = CASE WHEN cancel_requested <> 0 THEN ",
-            ended!("cancelled"),
-            "
-                              WHEN crash_count + 1 >= ?2 THEN ",
-            ended!("dead"),
-            "
-                              ELSE 'queued' END,
-                 error = CASE WHEN cancel_requested = 0 AND crash_count + 1 >= ?2
-                              THEN json_object('class', 'crash', 'reason',
-                                   printf('%d workers went silent while they simulated it', crash_count + 1))
-                              ELSE error END
-             WHERE state = 'leased' AND lease_until < ",
-            now!(),
-            " RETURNING state, crash_count, lease_owner"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(CRASH_LIMIT)
-        .fetch_all(&self.pool)
-        .await?;
+        let expired: Vec<(String, i64, Option<String>)> =
+            sqlx::query_as(sql::queue::END_LEASES).bind(CRASH_LIMIT).fetch_all(&self.pool).await?;
         for (state, crashes, owner) in &expired {
             tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, "lease ran out");
         }
-        sqlx::query(concat!(
-            "UPDATE work SET state = 'queued', changed = ",
-            now!(),
-            " WHERE state = 'waiting' AND (ready_at <= ",
-            now!(),
-            " OR ready_at > ",
-            now!(),
-            " + ?2)"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(LONGEST_RETRY_MS)
-        .execute(&self.pool)
-        .await?;
+        sqlx::query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.pool).await?;
         Ok(expired.len() as u64)
     }
 
@@ -532,13 +368,8 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn queue_depths(&self) -> Result<QueueDepths> {
-        let (waiting, queued, held, leased) = sqlx::query_as(
-            "SELECT coalesce(sum(state = 'waiting'), 0), coalesce(sum(state = 'queued' AND held = 0), 0),
-                    coalesce(sum(state = 'queued' AND held <> 0), 0), coalesce(sum(state = 'leased'), 0)
-             FROM work WHERE is_open",
-        )
-        .fetch_one(&self.pool)
-        .await?;
+        let (waiting, queued, held, leased) =
+            sqlx::query_as(sql::queue::DEPTHS).fetch_one(&self.pool).await?;
         Ok(QueueDepths { waiting, queued, held, leased })
     }
 
@@ -547,21 +378,17 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn open_work(&self, owner: &str) -> Result<u64> {
-        let number: i64 = sqlx::query_scalar("SELECT count(*) FROM work WHERE owner = ?1 AND is_open")
-            .bind(owner)
-            .fetch_one(&self.pool)
-            .await?;
+        let number: i64 = sqlx::query_scalar(sql::queue::OPEN_WORK).bind(owner).fetch_one(&self.pool).await?;
         Ok(number.unsigned_abs())
     }
 
-    /// Runs a statement that ends a lease. Its fifth parameter is the error.
-    async fn leave(&self, query: &'static str, lease: &Lease, error_json: Option<&str>) -> Result<bool> {
-        let changed = sqlx::query(query)
-            .bind(self.clock_offset_ms)
+    /// Runs a statement about a lease whose fourth parameter is a text. False if the lease was lost.
+    async fn leave(&self, statement: &'static str, lease: &Lease, text: &str) -> Result<bool> {
+        let changed = sqlx::query(statement)
             .bind(lease.key.as_slice())
             .bind(lease.attempt)
             .bind(&lease.worker)
-            .bind(error_json)
+            .bind(text)
             .execute(&self.pool)
             .await?
             .rows_affected();
@@ -576,16 +403,12 @@ async fn note_disagreement(
     differences: &str,
     earlier_provenance: &str,
 ) -> Result<()> {
-    sqlx::query(
-        "UPDATE result SET disagrees = 1, provenance = json_set(provenance, '$.disagreement',
-             json_object('differs', ?2, 'earlier', json_remove(?3, '$.disagreement')))
-         WHERE work_key = ?1",
-    )
-    .bind(key)
-    .bind(differences)
-    .bind(earlier_provenance)
-    .execute(&mut **tx)
-    .await?;
+    sqlx::query(sql::queue::NOTE_DISAGREEMENT)
+        .bind(key)
+        .bind(differences)
+        .bind(earlier_provenance)
+        .execute(&mut **tx)
+        .await?;
     Ok(())
 }
 
@@ -595,14 +418,6 @@ async fn keep_disagreement(
     key: &[u8],
     earlier_provenance: &str,
 ) -> Result<()> {
-    sqlx::query(
-        "UPDATE result SET disagrees = 1,
-             provenance = json_set(provenance, '$.disagreement', json_extract(?2, '$.disagreement'))
-         WHERE work_key = ?1",
-    )
-    .bind(key)
-    .bind(earlier_provenance)
-    .execute(&mut **tx)
-    .await?;
+    sqlx::query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut **tx).await?;
     Ok(())
 }

@@ -10,8 +10,9 @@ use std::time::Duration;
 use sqlx::{Sqlite, Transaction};
 
 use crate::blob::StoredObject;
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 
 /// Blobs that are deleted under one hold of the write lock.
 const BATCH: usize = 100;
@@ -59,14 +60,6 @@ pub struct Garbage {
     pub unfinished_bytes: u64,
 }
 
-/// Blobs that rows name: of artifacts that have not expired, and of checkpoints that runs go on from.
-macro_rules! blobs_in_use {
-    () => {
-        "SELECT blob FROM artifact WHERE expired IS NULL \
-         UNION SELECT checkpoint AS blob FROM work WHERE checkpoint IS NOT NULL"
-    };
-}
-
 impl Store {
     /// Deletes what need not be kept, and tells what it was; a dry run only tells.
     ///
@@ -75,20 +68,14 @@ impl Store {
     pub async fn collect_garbage(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
         let mut garbage = Garbage::default();
         let mut tx = self.write().await?;
-        let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
-            .bind(self.clock_offset_ms)
-            .fetch_one(&mut *tx)
-            .await?;
+        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
         garbage.sweeps = delete_expired_sweeps(&mut tx, now).await?;
         garbage.results = delete_unwanted_work(&mut tx).await?;
         garbage.scenarios = delete_unused_scenarios(&mut tx).await?;
         garbage.artifacts = expire_artifacts(&mut tx, policy, now).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
-        let named: HashSet<String> = sqlx::query_scalar(concat!("SELECT blob FROM (", blobs_in_use!(), ")"))
-            .fetch_all(&mut *tx)
-            .await?
-            .into_iter()
-            .collect();
+        let named: HashSet<String> =
+            sqlx::query_scalar(sql::retention::BLOBS_IN_USE).fetch_all(&mut *tx).await?.into_iter().collect();
         if is_dry_run {
             tx.rollback().await?;
         } else {
@@ -111,7 +98,7 @@ impl Store {
         garbage.unfinished_bytes = unfinished.iter().sum();
         if !is_dry_run {
             // Pages that were freed go back to the file system with the next checkpoint of the log.
-            sqlx::query("PRAGMA wal_checkpoint(TRUNCATE)").fetch_all(&self.pool).await?;
+            sqlx::query(sql::retention::TRUNCATE_LOG).fetch_all(&self.pool).await?;
         }
         Ok(garbage)
     }
@@ -121,14 +108,10 @@ impl Store {
         let mut tx = self.write().await?;
         let mut deleted = Vec::new();
         for object in objects {
-            let is_named: i64 = sqlx::query_scalar(concat!(
-                "SELECT EXISTS (SELECT 1 FROM (",
-                blobs_in_use!(),
-                ") WHERE blob = ?1)"
-            ))
-            .bind(object.blob())
-            .fetch_one(&mut *tx)
-            .await?;
+            let is_named: i64 = sqlx::query_scalar(sql::retention::IS_BLOB_IN_USE)
+                .bind(object.blob())
+                .fetch_one(&mut *tx)
+                .await?;
             if is_named == 0 {
                 self.blobs().delete(object).await?;
                 deleted.push(object.clone());
@@ -141,39 +124,19 @@ impl Store {
 
 /// Sweeps take their points, events and idempotency keys along.
 async fn delete_expired_sweeps(tx: &mut Transaction<'static, Sqlite>, now: i64) -> Result<u64> {
-    Ok(sqlx::query("DELETE FROM sweep WHERE pinned = 0 AND expires <= ?1 AND finished IS NOT NULL")
-        .bind(now)
-        .execute(&mut **tx)
-        .await?
-        .rows_affected())
+    Ok(sqlx::query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut **tx).await?.rows_affected())
 }
 
 /// Work that is final and that no point wants, with its result and artifacts.
 async fn delete_unwanted_work(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
-    let results = sqlx::query(
-        "DELETE FROM result WHERE NOT EXISTS (SELECT 1 FROM point WHERE point.work_key = result.work_key)",
-    )
-    .execute(&mut **tx)
-    .await?
-    .rows_affected();
-    sqlx::query(
-        "DELETE FROM work WHERE NOT is_open
-           AND NOT EXISTS (SELECT 1 FROM point WHERE point.work_key = work.key)
-           AND NOT EXISTS (SELECT 1 FROM result WHERE result.work_key = work.key)",
-    )
-    .execute(&mut **tx)
-    .await?;
+    let results = sqlx::query(sql::retention::DELETE_RESULTS).execute(&mut **tx).await?.rows_affected();
+    sqlx::query(sql::retention::DELETE_WORK).execute(&mut **tx).await?;
     Ok(results)
 }
 
 /// Bases that no work changes any more.
 async fn delete_unused_scenarios(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
-    Ok(sqlx::query(
-        "DELETE FROM scenario WHERE NOT EXISTS (SELECT 1 FROM work WHERE work.base = scenario.hash)",
-    )
-    .execute(&mut **tx)
-    .await?
-    .rows_affected())
+    Ok(sqlx::query(sql::retention::DELETE_SCENARIOS).execute(&mut **tx).await?.rows_affected())
 }
 
 /// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
@@ -182,24 +145,17 @@ async fn expire_artifacts(
     policy: &RetentionPolicy,
     now: i64,
 ) -> Result<u64> {
-    let names: Vec<String> = sqlx::query_scalar("SELECT DISTINCT name FROM artifact WHERE expired IS NULL")
-        .fetch_all(&mut **tx)
-        .await?;
+    let names: Vec<String> = sqlx::query_scalar(sql::retention::ARTIFACT_NAMES).fetch_all(&mut **tx).await?;
     let mut expired = 0;
     for name in names {
         let age = policy.artifact_ages.get(&name).unwrap_or(&policy.other_artifacts);
-        expired += sqlx::query(
-            "UPDATE artifact SET expired = ?2 WHERE name = ?1 AND expired IS NULL
-               AND work_key IN (SELECT work_key FROM result WHERE created <= ?3)
-               AND NOT EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
-                               WHERE p.work_key = artifact.work_key AND (s.pinned <> 0 OR s.created > ?3))",
-        )
-        .bind(&name)
-        .bind(now)
-        .bind(now.saturating_sub(milliseconds(*age)))
-        .execute(&mut **tx)
-        .await?
-        .rows_affected();
+        expired += sqlx::query(sql::retention::EXPIRE_ARTIFACTS)
+            .bind(&name)
+            .bind(now)
+            .bind(now.saturating_sub(milliseconds(*age)))
+            .execute(&mut **tx)
+            .await?
+            .rows_affected();
     }
     Ok(expired)
 }
@@ -210,24 +166,18 @@ async fn delete_old_rows(
     policy: &RetentionPolicy,
     now: i64,
 ) -> Result<u64> {
-    let events = sqlx::query("DELETE FROM event WHERE at <= ?1")
+    let events = sqlx::query(sql::retention::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))
         .execute(&mut **tx)
         .await?
         .rows_affected();
-    for (query, age) in [
-        ("DELETE FROM idempotency WHERE created <= ?1", IDEMPOTENCY_MS),
-        ("DELETE FROM worker WHERE last_seen <= ?1", WORKER_MS),
+    for (statement, age) in [
+        (sql::retention::DELETE_IDEMPOTENCY_KEYS, IDEMPOTENCY_MS),
+        (sql::retention::DELETE_WORKERS, WORKER_MS),
     ] {
-        sqlx::query(query).bind(now - age).execute(&mut **tx).await?;
+        sqlx::query(statement).bind(now - age).execute(&mut **tx).await?;
     }
-    // Who comes back begins as one who was idle, and idle time is not saved up.
-    sqlx::query(
-        "DELETE FROM owner_turn WHERE NOT EXISTS (
-             SELECT 1 FROM work WHERE work.owner = owner_turn.owner AND is_open)",
-    )
-    .execute(&mut **tx)
-    .await?;
+    sqlx::query(sql::retention::DELETE_TURNS).execute(&mut **tx).await?;
     Ok(events)
 }
 

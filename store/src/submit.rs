@@ -3,16 +3,18 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-use sqlx::{QueryBuilder, Sqlite, SqliteConnection, SqliteExecutor, Transaction};
+use serde_json::{Value, json};
+use sqlx::{Sqlite, SqliteConnection, SqliteExecutor, Transaction};
 
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::sql;
 use crate::state::{WorkKey, work_key};
 
 /// Distance of one point from the next in its owner's order.
 pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
 
-/// Rows of one statement: enough that the calls do not count, few enough for the parameters that SQLite takes.
+/// Rows of one statement: enough that the calls do not count.
 const ROWS_AT_ONCE: usize = 1_000;
 
 /// A sweep to store.
@@ -171,10 +173,7 @@ impl Store {
                 return Ok(SubmitOutcome::NotComputed { points, verifications });
             }
         }
-        let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
-            .bind(self.clock_offset_ms)
-            .fetch_one(&mut *tx)
-            .await?;
+        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
         insert_sweep(&mut tx, sweep, now).await?;
         let wanted = Wanted {
             sweep_id: &sweep.id,
@@ -216,24 +215,17 @@ impl Store {
         let Addition { base_json, physics_version, points, verification, request_json } = *addition;
         let mut tx = self.write().await?;
         let sweep: Option<(String, i64, i64, i64, i64)> =
-            sqlx::query_as("SELECT owner, priority, points, cancelled, paused FROM sweep WHERE id = ?1")
-                .bind(sweep_id)
-                .fetch_optional(&mut *tx)
-                .await?;
+            sqlx::query_as(sql::submit::EXTENDED_SWEEP).bind(sweep_id).fetch_optional(&mut *tx).await?;
         let Some((owner, priority, known, cancelled, paused)) = sweep else {
             return Ok(AppendOutcome::NoSuchSweep);
         };
         if cancelled != 0 {
             return Ok(AppendOutcome::Cancelled);
         }
-        // All points of a sweep are of one version: the first tells.
-        let version: Option<i64> = sqlx::query_scalar(
-            "SELECT w.physics_version FROM point p JOIN work w ON w.key = p.work_key
-             WHERE p.sweep_id = ?1 AND p.verifies = 0 ORDER BY p.ordinal LIMIT 1",
-        )
-        .bind(sweep_id)
-        .fetch_optional(&mut *tx)
-        .await?;
+        let version: Option<i64> = sqlx::query_scalar(sql::submit::VERSION_OF_POINTS)
+            .bind(sweep_id)
+            .fetch_optional(&mut *tx)
+            .await?;
         if let Some(other) = version.filter(|version| *version != physics_version) {
             return Ok(AppendOutcome::OtherNumbers(other));
         }
@@ -254,10 +246,7 @@ impl Store {
         if total > limit {
             return Ok(AppendOutcome::TooMany(total));
         }
-        let now: i64 = sqlx::query_scalar(concat!("SELECT ", now!()))
-            .bind(self.clock_offset_ms)
-            .fetch_one(&mut *tx)
-            .await?;
+        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
         let wanted = Wanted {
             sweep_id,
             order: end_of_order(&mut tx, &owner).await?,
@@ -268,19 +257,8 @@ impl Store {
             is_paused: paused != 0,
         };
         insert(&mut tx, &wanted, (base_json, &fresh), (&verification.base_json, &runs), now).await?;
-        sqlx::query(
-            "INSERT INTO appended (sweep_id, number, request)
-             SELECT ?1, coalesce(max(number), 0) + 1, ?2 FROM appended WHERE sweep_id = ?1",
-        )
-        .bind(sweep_id)
-        .bind(request_json)
-        .execute(&mut *tx)
-        .await?;
-        sqlx::query("UPDATE sweep SET points = ?2, version = version + 1 WHERE id = ?1")
-            .bind(sweep_id)
-            .bind(total as i64)
-            .execute(&mut *tx)
-            .await?;
+        sqlx::query(sql::submit::INSERT_APPENDED).bind(sweep_id).bind(request_json).execute(&mut *tx).await?;
+        sqlx::query(sql::submit::SET_POINTS).bind(sweep_id).bind(total as i64).execute(&mut *tx).await?;
         count(&mut tx, sweep_id, known, now).await?;
         tx.commit().await?;
         Ok(AppendOutcome::Added(fresh.len() as u64))
@@ -291,13 +269,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn appended_requests(&self, sweep_id: &str, limit: i64) -> Result<Vec<String>> {
-        let mut requests: Vec<String> = sqlx::query_scalar(
-            "SELECT request FROM appended WHERE sweep_id = ?1 ORDER BY number DESC LIMIT ?2",
-        )
-        .bind(sweep_id)
-        .bind(limit)
-        .fetch_all(&self.pool)
-        .await?;
+        let mut requests: Vec<String> = sqlx::query_scalar(sql::submit::APPENDED)
+            .bind(sweep_id)
+            .bind(limit)
+            .fetch_all(&self.pool)
+            .await?;
         requests.reverse();
         Ok(requests)
     }
@@ -317,13 +293,10 @@ impl Store {
                 .map(|(key, _)| key)
                 .collect();
             known += (keys.len() - own.len()) as u64;
-            let mut query = QueryBuilder::new("SELECT count(*) FROM result WHERE work_key IN (");
-            let mut list = query.separated(", ");
-            for key in own {
-                list.push_bind(key.as_slice());
-            }
-            query.push(")");
-            let found: i64 = query.build_query_scalar().fetch_one(&self.pool).await?;
+            let found: i64 = sqlx::query_scalar(sql::submit::KNOWN_RESULTS)
+                .bind(list_of(own))
+                .fetch_one(&self.pool)
+                .await?;
             known += found.unsigned_abs();
         }
         Ok(known)
@@ -333,12 +306,11 @@ impl Store {
 /// The sweep that was stored before under the same idempotency key.
 async fn known_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep) -> Result<Option<String>> {
     let Some((key, body_hash)) = &sweep.idempotency_key else { return Ok(None) };
-    let known: Option<(Vec<u8>, String)> =
-        sqlx::query_as("SELECT body_hash, sweep_id FROM idempotency WHERE owner = ?1 AND key = ?2")
-            .bind(&sweep.owner)
-            .bind(key)
-            .fetch_optional(&mut **tx)
-            .await?;
+    let known: Option<(Vec<u8>, String)> = sqlx::query_as(sql::submit::KNOWN_SWEEP)
+        .bind(&sweep.owner)
+        .bind(key)
+        .fetch_optional(&mut **tx)
+        .await?;
     match known {
         None => Ok(None),
         Some((known_hash, _)) if known_hash != body_hash => Err(StoreError::IdempotencyConflict),
@@ -347,34 +319,38 @@ async fn known_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep) ->
 }
 
 async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, now: i64) -> Result<()> {
-    sqlx::query(
-        "INSERT INTO sweep (id, name, owner, request, priority, points, created, tags, refreshes)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
-    )
-    .bind(&sweep.id)
-    .bind(&sweep.name)
-    .bind(&sweep.owner)
-    .bind(&sweep.request_json)
-    .bind(sweep.priority)
-    .bind(sweep.points.len() as i64)
-    .bind(now)
-    .bind(&sweep.tags_json)
-    .bind(sweep.cache == CachePolicy::Refresh)
-    .execute(&mut **tx)
-    .await?;
-    if let Some((key, body_hash)) = &sweep.idempotency_key {
-        sqlx::query(
-            "INSERT INTO idempotency (owner, key, body_hash, sweep_id, created) VALUES (?1, ?2, ?3, ?4, ?5)",
-        )
-        .bind(&sweep.owner)
-        .bind(key)
-        .bind(body_hash.as_slice())
+    sqlx::query(sql::submit::INSERT_SWEEP)
         .bind(&sweep.id)
+        .bind(&sweep.name)
+        .bind(&sweep.owner)
+        .bind(&sweep.request_json)
+        .bind(sweep.priority)
+        .bind(sweep.points.len() as i64)
         .bind(now)
+        .bind(&sweep.tags_json)
+        .bind(sweep.cache == CachePolicy::Refresh)
         .execute(&mut **tx)
         .await?;
+    if let Some((key, body_hash)) = &sweep.idempotency_key {
+        sqlx::query(sql::submit::INSERT_IDEMPOTENCY_KEY)
+            .bind(&sweep.owner)
+            .bind(key)
+            .bind(body_hash.as_slice())
+            .bind(&sweep.id)
+            .bind(now)
+            .execute(&mut **tx)
+            .await?;
     }
     Ok(())
+}
+
+/// Keys as statements take them: a JSON array of hexadecimal digits.
+fn list_of<'k>(keys: impl IntoIterator<Item = &'k WorkKey>) -> String {
+    keys.into_iter().map(hexadecimal).collect::<Value>().to_string()
+}
+
+fn hexadecimal(key: &WorkKey) -> String {
+    blake3::Hash::from_bytes(*key).to_string()
 }
 
 /// The points, those for which fuller work has a result as points of that work.
@@ -400,17 +376,8 @@ async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey])
     if keys.is_empty() {
         return Ok(HashSet::new());
     }
-    let mut query = QueryBuilder::new(
-        "SELECT key FROM work
-         WHERE state = 'done'
-           AND NOT EXISTS (SELECT 1 FROM artifact WHERE work_key = work.key AND expired IS NOT NULL) AND key IN (",
-    );
-    let mut list = query.separated(", ");
-    for key in keys {
-        list.push_bind(key.as_slice());
-    }
-    query.push(")");
-    let found: Vec<Vec<u8>> = query.build_query_scalar().fetch_all(executor).await?;
+    let found: Vec<Vec<u8>> =
+        sqlx::query_scalar(sql::submit::FULLER_RESULTS).bind(list_of(keys)).fetch_all(executor).await?;
     found.iter().map(|key| work_key(key)).collect()
 }
 
@@ -418,16 +385,9 @@ async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey])
 async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]) -> Result<Vec<i64>> {
     let mut missing = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
-        let mut query = QueryBuilder::new(
-            "SELECT key FROM work WHERE (stage = 'failed'
-               OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key)) AND key IN (",
-        );
-        let mut list = query.separated(", ");
-        for point in points {
-            list.push_bind(point.work_key.as_slice());
-        }
-        query.push(")");
-        let known: Vec<Vec<u8>> = query.build_query_scalar().fetch_all(&mut **tx).await?;
+        let keys = points.iter().map(|point| &point.work_key);
+        let known: Vec<Vec<u8>> =
+            sqlx::query_scalar(sql::submit::KNOWN_WORK).bind(list_of(keys)).fetch_all(&mut **tx).await?;
         let known: HashSet<&[u8]> = known.iter().map(Vec::as_slice).collect();
         let is_missing = |point: &&NewPoint| !known.contains(point.work_key.as_slice());
         missing.extend(points.iter().filter(is_missing).map(|point| point.ordinal));
@@ -458,14 +418,14 @@ async fn points_of(
 ) -> Result<Vec<Vec<u8>>> {
     let mut found = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
-        let mut query = QueryBuilder::new("SELECT work_key FROM point WHERE sweep_id = ");
-        query.push_bind(sweep_id).push(" AND verifies = 0 AND work_key IN (");
-        let mut list = query.separated(", ");
-        for point in points {
-            list.push_bind(point.work_key.as_slice());
-        }
-        query.push(")");
-        found.extend(query.build_query_scalar::<Vec<u8>>().fetch_all(&mut *connection).await?);
+        let keys = points.iter().map(|point| &point.work_key);
+        found.extend(
+            sqlx::query_scalar::<_, Vec<u8>>(sql::submit::POINTS_OF)
+                .bind(sweep_id)
+                .bind(list_of(keys))
+                .fetch_all(&mut *connection)
+                .await?,
+        );
     }
     Ok(found)
 }
@@ -481,29 +441,15 @@ pub(crate) struct Order {
 
 /// Where an owner's order ends; an owner that has had no turn gets the first.
 pub(crate) async fn end_of_order(tx: &mut Transaction<'static, Sqlite>, owner: &str) -> Result<Order> {
-    sqlx::query("INSERT INTO owner_turn (owner, vtime) VALUES (?1, 0) ON CONFLICT (owner) DO NOTHING")
-        .bind(owner)
-        .execute(&mut **tx)
-        .await?;
-    // One statement for each end: asked for both at once, SQLite reads all of them.
-    let (first, last) = sqlx::query_as(
-        "SELECT coalesce((SELECT min(vtime) FROM work WHERE owner = ?1 AND is_open), 0),
-                coalesce((SELECT max(vtime) FROM work WHERE owner = ?1 AND is_open), 0)",
-    )
-    .bind(owner)
-    .fetch_one(&mut **tx)
-    .await?;
+    sqlx::query(sql::submit::INSERT_TURN).bind(owner).execute(&mut **tx).await?;
+    let (first, last) = sqlx::query_as(sql::submit::ENDS_OF_ORDER).bind(owner).fetch_one(&mut **tx).await?;
     Ok(Order { first, last })
 }
 
 /// Stores a base scenario by the hash of its text, unless it is there.
 async fn insert_base(tx: &mut Transaction<'static, Sqlite>, text: &str) -> Result<[u8; 32]> {
     let hash = *blake3::hash(text.as_bytes()).as_bytes();
-    sqlx::query("INSERT INTO scenario (hash, text) VALUES (?1, ?2) ON CONFLICT (hash) DO NOTHING")
-        .bind(hash.as_slice())
-        .bind(text)
-        .execute(&mut **tx)
-        .await?;
+    sqlx::query(sql::submit::INSERT_SCENARIO).bind(hash.as_slice()).bind(text).execute(&mut **tx).await?;
     Ok(hash)
 }
 
@@ -539,66 +485,22 @@ async fn insert_work(
     place: i64,
     now: i64,
 ) -> Result<()> {
-    let mut query = QueryBuilder::new(
-        "INSERT INTO work (key, changes, vtime, base, physics_version, owner, state, held, priority, ready_at, created, changed) ",
-    );
-    query.push_values((1..).zip(points), |mut row, (number, point)| {
-        row.push_bind(point.work_key.as_slice())
-            .push_bind(&point.changes_json)
-            .push_bind(place + PLACE_OF_A_POINT * number)
-            .push_bind(base.to_vec())
-            .push_bind(wanted.physics_version)
-            .push_bind(wanted.owner)
-            .push("'queued'")
-            .push_bind(wanted.is_paused)
-            .push_bind(wanted.priority)
-            .push_bind(now)
-            .push_bind(now)
-            .push_bind(now);
-    });
-    push_upsert(&mut query, wanted);
-    query.build().execute(&mut **tx).await?;
+    let rows = points.iter().map(|point| json!([hexadecimal(&point.work_key), point.changes_json]));
+    sqlx::query(sql::submit::INSERT_WORK)
+        .bind(rows.collect::<Value>().to_string())
+        .bind(place)
+        .bind(PLACE_OF_A_POINT)
+        .bind(base.as_slice())
+        .bind(wanted.physics_version)
+        .bind(wanted.owner)
+        .bind(wanted.is_paused)
+        .bind(wanted.priority)
+        .bind(now)
+        .bind(wanted.cache == CachePolicy::Refresh)
+        .bind(wanted.order.first)
+        .execute(&mut **tx)
+        .await?;
     Ok(())
-}
-
-/// What becomes of work that is there. What was cancelled, or is to be computed anew, is taken up again as if it were new.
-/// What is open goes as early as the most urgent sweep that wants it, is neither cancelled nor held any more, and becomes a
-/// turn of the owner in whose order it stands nearer to the front: else a few points would wait for all of somebody else's
-/// sweep that has them too. All else stays as it is.
-fn push_upsert(query: &mut QueryBuilder<Sqlite>, wanted: &Wanted<'_>) {
-    let again = match wanted.cache {
-        CachePolicy::Reuse | CachePolicy::Only => "state = 'cancelled'",
-        CachePolicy::Refresh => "NOT is_open",
-    };
-    let checkpoint = match wanted.cache {
-        CachePolicy::Reuse | CachePolicy::Only => "checkpoint",
-        CachePolicy::Refresh => "NULL",
-    };
-    let first = wanted.order.first;
-    let nearer = format!(
-        "(stage = 'queued' AND owner <> excluded.owner AND held >= excluded.held
-          AND vtime - (SELECT min(o.vtime) FROM work o
-                       WHERE o.owner = work.owner AND o.is_open)
-              > excluded.vtime - {first})"
-    );
-    query.push(format!(
-        " ON CONFLICT (key) DO UPDATE SET
-             state = CASE WHEN {again} THEN 'queued' ELSE state END,
-             changed = CASE WHEN {again} THEN excluded.changed ELSE changed END,
-             owner = CASE WHEN {again} OR {nearer} THEN excluded.owner ELSE owner END,
-             vtime = CASE WHEN {again} OR {nearer} THEN excluded.vtime ELSE vtime END,
-             error = CASE WHEN {again} THEN NULL ELSE error END,
-             progress = CASE WHEN {again} THEN 0 ELSE progress END,
-             checkpoint = CASE WHEN {again} THEN {checkpoint} ELSE checkpoint END,
-             crash_count = CASE WHEN {again} THEN 0 ELSE crash_count END,
-             failure_count = CASE WHEN {again} THEN 0 ELSE failure_count END,
-             priority = CASE WHEN {again} THEN excluded.priority ELSE max(priority, excluded.priority) END,
-             cancel_requested = 0,
-             held = CASE WHEN {again} THEN excluded.held ELSE held AND excluded.held END
-         WHERE {again}
-            OR (is_open
-                AND (cancel_requested <> 0 OR held > excluded.held OR priority < excluded.priority OR {nearer}))"
-    ));
 }
 
 async fn insert_points(
@@ -607,48 +509,21 @@ async fn insert_points(
     role: Role,
     points: &[NewPoint],
 ) -> Result<()> {
-    let verifies = matches!(role, Role::Verification);
-    let mut query =
-        QueryBuilder::new("INSERT INTO point (sweep_id, verifies, ordinal, parameters, work_key) ");
-    query.push_values(points, |mut row, point| {
-        row.push_bind(sweep_id)
-            .push_bind(verifies)
-            .push_bind(point.ordinal)
-            .push_bind(&point.parameters_json)
-            .push_bind(point.work_key.as_slice());
-    });
-    query.build().execute(&mut **tx).await?;
+    let rows = points
+        .iter()
+        .map(|point| json!([point.ordinal, hexadecimal(&point.work_key), point.parameters_json]));
+    sqlx::query(sql::submit::INSERT_POINTS)
+        .bind(sweep_id)
+        .bind(matches!(role, Role::Verification))
+        .bind(rows.collect::<Value>().to_string())
+        .execute(&mut **tx)
+        .await?;
     Ok(())
 }
 
 /// Counts the points of a sweep that are new, those after the ordinal `after`, and their verifications; from then on the counts
-/// follow the work. Both values of `verifies` are named so that the new ones are found by the key, and not among all.
+/// follow the work.
 async fn count(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now: i64) -> Result<()> {
-    sqlx::query(
-        "UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
-                           verifications, verifications_queued, verifications_running, verifications_done,
-                           verifications_failed, verifications_cancelled, finished) = (
-             SELECT points_queued + total(p.verifies = 0 AND w.stage = 'queued'),
-                    points_running + total(p.verifies = 0 AND w.stage = 'running'),
-                    points_done + total(p.verifies = 0 AND w.stage = 'done'),
-                    points_failed + total(p.verifies = 0 AND w.stage = 'failed'),
-                    points_cancelled + total(p.verifies = 0 AND w.stage = 'cancelled'),
-                    verifications + total(p.verifies),
-                    verifications_queued + total(p.verifies AND w.stage = 'queued'),
-                    verifications_running + total(p.verifies AND w.stage = 'running'),
-                    verifications_done + total(p.verifies AND w.stage = 'done'),
-                    verifications_failed + total(p.verifies AND w.stage = 'failed'),
-                    verifications_cancelled + total(p.verifies AND w.stage = 'cancelled'),
-                    CASE WHEN points_queued + points_running + verifications_queued + verifications_running
-                              + total(w.is_open) = 0 THEN ?3 END
-             FROM point p JOIN work w ON w.key = p.work_key
-             WHERE p.sweep_id = ?1 AND p.verifies IN (0, 1) AND p.ordinal > ?2)
-         WHERE id = ?1",
-    )
-    .bind(id)
-    .bind(after)
-    .bind(now)
-    .execute(&mut **tx)
-    .await?;
+    sqlx::query(sql::submit::COUNT).bind(id).bind(after).bind(now).execute(&mut **tx).await?;
     Ok(())
 }

@@ -2,9 +2,9 @@
 
 use sqlx::{FromRow, Sqlite, Transaction};
 
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::Result;
-use crate::queue::ended;
+use crate::sql;
 use crate::state::StateCounts;
 use crate::submit::{PLACE_OF_A_POINT, end_of_order};
 
@@ -88,38 +88,6 @@ struct SweepRow {
     running_progress: f64,
 }
 
-/// Sweeps as a [`SweepRow`] each; the rest of the statement follows. Running points are looked up from the few
-/// leased work items: an explicit order, since the planner cannot know that they are few.
-macro_rules! select_sweeps {
-    ($rest:literal) => {
-        concat!(
-            "SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags,
-                    created, finished, points,
-                    points_queued, points_running, points_done, points_failed, points_cancelled,
-                    verifications, verifications_queued, verifications_running, verifications_done,
-                    verifications_failed, verifications_cancelled,
-                    CASE points_running + verifications_running WHEN 0 THEN 0.0 ELSE (
-                        SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
-                        WHERE w.state = 'leased' AND p.sweep_id = sweep.id) END AS running_progress
-             FROM sweep ",
-            $rest
-        )
-    };
-}
-
-/// Whether a sweep that meets a condition wants the work: whether it has a point of it, or verifies one by it, and of work that
-/// has a result, whether it wants that computed anew.
-macro_rules! wanted {
-    ($condition:literal) => {
-        concat!(
-            "EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
-                     WHERE p.work_key = work.key AND ",
-            $condition,
-            " AND (s.refreshes <> 0 OR NOT EXISTS (SELECT 1 FROM result r WHERE r.work_key = work.key)))"
-        )
-    };
-}
-
 impl Store {
     /// A sweep with its counts; none if there is no such sweep.
     ///
@@ -127,7 +95,7 @@ impl Store {
     /// When the database fails.
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
         let row: Option<SweepRow> =
-            sqlx::query_as(select_sweeps!("WHERE id = ?1")).bind(id).fetch_optional(&self.pool).await?;
+            sqlx::query_as(sql::sweep::ONE).bind(id).fetch_optional(&self.pool).await?;
         Ok(row.map(SweepRow::record))
     }
 
@@ -141,24 +109,15 @@ impl Store {
         before: Option<&str>,
         limit: i64,
     ) -> Result<Vec<SweepRecord>> {
-        let rows: Vec<SweepRow> = sqlx::query_as(select_sweeps!(
-            "WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
-               AND (?4 IS NULL OR ?4 = CASE WHEN cancelled <> 0 THEN 'cancelled'
-                                            WHEN finished IS NOT NULL THEN 'completed'
-                                            WHEN paused <> 0 THEN 'paused'
-                                            ELSE 'running' END)
-               AND (?5 IS NULL OR instr(lower(name), lower(?5)) > 0)
-               AND (?6 IS NULL OR EXISTS (SELECT 1 FROM json_each(tags) WHERE value = ?6))
-             ORDER BY id DESC LIMIT ?3"
-        ))
-        .bind(filter.owner)
-        .bind(before)
-        .bind(limit)
-        .bind(filter.state)
-        .bind(filter.name)
-        .bind(filter.tag)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<SweepRow> = sqlx::query_as(sql::sweep::LIST)
+            .bind(filter.owner)
+            .bind(before)
+            .bind(limit)
+            .bind(filter.state)
+            .bind(filter.name)
+            .bind(filter.tag)
+            .fetch_all(&self.pool)
+            .await?;
         Ok(rows.into_iter().map(SweepRow::record).collect())
     }
 
@@ -167,10 +126,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn sweep_version(&self, id: &str) -> Result<Option<i64>> {
-        Ok(sqlx::query_scalar("SELECT version FROM sweep WHERE id = ?1")
-            .bind(id)
-            .fetch_optional(&self.pool)
-            .await?)
+        Ok(sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&self.pool).await?)
     }
 
     /// Cancels a sweep: its points that no other live sweep wants are cancelled, and the runs that verify them; those under way as
@@ -180,31 +136,11 @@ impl Store {
     /// When the database fails.
     pub async fn cancel_sweep(&self, id: &str) -> Result<bool> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query("UPDATE sweep SET cancelled = 1, version = version + 1 WHERE id = ?1")
-            .bind(id)
-            .execute(&mut *tx)
-            .await?
-            .rows_affected();
+        let changed = sqlx::query(sql::sweep::CANCEL).bind(id).execute(&mut *tx).await?.rows_affected();
         if changed == 0 {
             return Ok(false);
         }
-        sqlx::query(concat!(
-            "UPDATE work SET
-                 cancel_requested = (state = 'leased'),
-                 changed = CASE state WHEN 'leased' THEN changed ELSE ",
-            now!(),
-            " END,
-                 state = CASE state WHEN 'leased' THEN state ELSE ",
-            ended!("cancelled"),
-            " END
-             WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?2)
-               AND is_open AND NOT ",
-            wanted!("s.cancelled = 0")
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(id)
-        .execute(&mut *tx)
-        .await?;
+        sqlx::query(sql::sweep::CANCEL_WORK).bind(id).execute(&mut *tx).await?;
         hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(true)
@@ -217,7 +153,7 @@ impl Store {
     /// When the database fails.
     pub async fn pause_sweep(&self, id: &str, paused: bool) -> Result<bool> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query("UPDATE sweep SET paused = ?2, version = version + 1 WHERE id = ?1")
+        let changed = sqlx::query(sql::sweep::PAUSE)
             .bind(id)
             .bind(i64::from(paused))
             .execute(&mut *tx)
@@ -237,32 +173,20 @@ impl Store {
     /// When the database fails.
     pub async fn change_sweep(&self, id: &str, changes: &SweepChanges) -> Result<bool> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query(
-            "UPDATE sweep SET name = CASE WHEN ?2 THEN ?3 ELSE name END, priority = coalesce(?4, priority),
-                    tags = coalesce(?5, tags), pinned = coalesce(?6, pinned),
-                    expires = CASE WHEN ?7 THEN ?8 ELSE expires END, version = version + 1
-             WHERE id = ?1",
-        )
-        .bind(id)
-        .bind(changes.name.is_some())
-        .bind(changes.name.as_ref().and_then(Option::as_deref))
-        .bind(changes.priority)
-        .bind(&changes.tags_json)
-        .bind(changes.is_pinned)
-        .bind(changes.expires.is_some())
-        .bind(changes.expires.flatten())
-        .execute(&mut *tx)
-        .await?
-        .rows_affected();
-        if changed == 1 && changes.priority.is_some() {
-            sqlx::query(
-                "UPDATE work SET priority = coalesce((SELECT max(s.priority) FROM point p JOIN sweep s ON s.id = p.sweep_id
-                                                      WHERE p.work_key = work.key AND s.cancelled = 0), priority)
-                 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND is_open",
-            )
+        let changed = sqlx::query(sql::sweep::CHANGE)
             .bind(id)
+            .bind(changes.name.is_some())
+            .bind(changes.name.as_ref().and_then(Option::as_deref))
+            .bind(changes.priority)
+            .bind(&changes.tags_json)
+            .bind(changes.is_pinned)
+            .bind(changes.expires.is_some())
+            .bind(changes.expires.flatten())
             .execute(&mut *tx)
-            .await?;
+            .await?
+            .rows_affected();
+        if changed == 1 && changes.priority.is_some() {
+            sqlx::query(sql::sweep::CHANGE_PRIORITY_OF_WORK).bind(id).execute(&mut *tx).await?;
         }
         tx.commit().await?;
         Ok(changed == 1)
@@ -275,42 +199,19 @@ impl Store {
     /// When the database fails.
     pub async fn retry_sweep(&self, id: &str) -> Result<Option<u64>> {
         let mut tx = self.write().await?;
-        let owner: Option<String> = sqlx::query_scalar(
-            "UPDATE sweep SET cancelled = 0, version = version + 1 WHERE id = ?1 RETURNING owner",
-        )
-        .bind(id)
-        .fetch_optional(&mut *tx)
-        .await?;
+        let owner: Option<String> =
+            sqlx::query_scalar(sql::sweep::REVIVE).bind(id).fetch_optional(&mut *tx).await?;
         let Some(owner) = owner else { return Ok(None) };
-        sqlx::query(
-            "UPDATE work SET cancel_requested = 0
-             WHERE state = 'leased' AND cancel_requested <> 0
-               AND key IN (SELECT work_key FROM point WHERE sweep_id = ?1)",
-        )
-        .bind(id)
-        .execute(&mut *tx)
-        .await?;
+        sqlx::query(sql::sweep::KEEP_RUNNING_WORK).bind(id).execute(&mut *tx).await?;
         let order = end_of_order(&mut tx, &owner).await?;
-        let queued = sqlx::query(concat!(
-            "UPDATE work SET
-                 state = 'queued', changed = ",
-            now!(),
-            ", owner = ?3, vtime = ?4 + ?5 * turn.number, error = NULL, progress = 0,
-                 crash_count = 0, failure_count = 0, cancel_requested = 0
-             FROM (SELECT p.work_key AS key, row_number() OVER (ORDER BY min(p.verifies), min(p.ordinal)) AS number
-                   FROM point p JOIN work w ON w.key = p.work_key
-                   WHERE p.sweep_id = ?2 AND w.stage IN ('failed', 'cancelled')
-                   GROUP BY p.work_key) AS turn
-             WHERE work.key = turn.key"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(id)
-        .bind(&owner)
-        .bind(order.last)
-        .bind(PLACE_OF_A_POINT)
-        .execute(&mut *tx)
-        .await?
-        .rows_affected();
+        let queued = sqlx::query(sql::sweep::RETRY_WORK)
+            .bind(id)
+            .bind(&owner)
+            .bind(order.last)
+            .bind(PLACE_OF_A_POINT)
+            .execute(&mut *tx)
+            .await?
+            .rows_affected();
         hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(Some(queued))
@@ -335,14 +236,7 @@ pub struct SweepChanges {
 
 /// Holds back or lets go what a sweep has in the queue: work is held while only paused sweeps want it.
 async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()> {
-    sqlx::query(concat!(
-        "UPDATE work SET held = NOT ",
-        wanted!("s.cancelled = 0 AND s.paused = 0"),
-        " WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1) AND is_open"
-    ))
-    .bind(id)
-    .execute(&mut **tx)
-    .await?;
+    sqlx::query(sql::sweep::HOLD_BACK).bind(id).execute(&mut **tx).await?;
     Ok(())
 }
 

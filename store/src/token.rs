@@ -2,8 +2,9 @@
 
 use sqlx::FromRow;
 
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::sql;
 
 /// How stale `last_used` may be \[ms\]: it is for people, and not worth a write a request.
 const LAST_USED_STEP_MS: i64 = 3_600_000;
@@ -151,22 +152,15 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn create_token(&self, token: &NewToken<'_>) -> Result<()> {
-        sqlx::query(concat!(
-            "INSERT INTO token (id, hash, owner, name, scope, created, expires) VALUES (?2, ?3, ?4, ?5, ?6, ",
-            now!(),
-            ", ",
-            now!(),
-            " + ?7) ON CONFLICT (hash) DO NOTHING"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(token.secret.id())
-        .bind(token.secret.hash().as_bytes().as_slice())
-        .bind(token.owner)
-        .bind(token.name)
-        .bind(token.scope.as_str())
-        .bind(token.lifetime_ms)
-        .execute(&self.pool)
-        .await?;
+        sqlx::query(sql::token::CREATE)
+            .bind(token.secret.id())
+            .bind(token.secret.hash().as_bytes().as_slice())
+            .bind(token.owner)
+            .bind(token.name)
+            .bind(token.scope.as_str())
+            .bind(token.lifetime_ms)
+            .execute(&self.pool)
+            .await?;
         Ok(())
     }
 
@@ -175,11 +169,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>> {
-        let rows: Vec<TokenRow> = sqlx::query_as(
-            "SELECT id, owner, name, scope, created, expires, revoked, last_used FROM token ORDER BY created, id",
-        )
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<TokenRow> = sqlx::query_as(sql::token::LIST).fetch_all(&self.pool).await?;
         rows.into_iter().map(TokenRow::record).collect()
     }
 
@@ -188,13 +178,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn revoke_token(&self, id: &str) -> Result<bool> {
-        let changed =
-            sqlx::query(concat!("UPDATE token SET revoked = coalesce(revoked, ", now!(), ") WHERE id = ?2"))
-                .bind(self.clock_offset_ms)
-                .bind(id)
-                .execute(&self.pool)
-                .await?
-                .rows_affected();
+        let changed = sqlx::query(sql::token::REVOKE).bind(id).execute(&self.pool).await?.rows_affected();
         Ok(changed == 1)
     }
 
@@ -203,16 +187,10 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn valid_token(&self, secret: &TokenSecret) -> Result<Option<TokenRecord>> {
-        let row: Option<TokenRow> = sqlx::query_as(concat!(
-            "SELECT id, owner, name, scope, created, expires, revoked, last_used FROM token
-             WHERE hash = ?2 AND revoked IS NULL AND (expires IS NULL OR expires > ",
-            now!(),
-            ")"
-        ))
-        .bind(self.clock_offset_ms)
-        .bind(secret.hash().as_bytes().as_slice())
-        .fetch_optional(&self.pool)
-        .await?;
+        let row: Option<TokenRow> = sqlx::query_as(sql::token::VALID)
+            .bind(secret.hash().as_bytes().as_slice())
+            .fetch_optional(&self.pool)
+            .await?;
         row.map(TokenRow::record).transpose()
     }
 
@@ -225,11 +203,7 @@ impl Store {
         if token.last_used.is_some_and(|last| now - last < LAST_USED_STEP_MS) {
             return Ok(());
         }
-        sqlx::query("UPDATE token SET last_used = ?2 WHERE id = ?1")
-            .bind(&token.id)
-            .bind(now)
-            .execute(&self.pool)
-            .await?;
+        sqlx::query(sql::token::TOUCH).bind(&token.id).bind(now).execute(&self.pool).await?;
         Ok(())
     }
 
@@ -238,14 +212,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn tokens_present(&self) -> Result<TokensPresent> {
-        let (number, valid): (i64, i64) = sqlx::query_as(concat!(
-            "SELECT count(*), coalesce(sum(revoked IS NULL AND (expires IS NULL OR expires > ",
-            now!(),
-            ")), 0) FROM token"
-        ))
-        .bind(self.clock_offset_ms)
-        .fetch_one(&self.pool)
-        .await?;
+        let (number, valid): (i64, i64) = sqlx::query_as(sql::token::PRESENT).fetch_one(&self.pool).await?;
         Ok(match (number, valid) {
             (0, _) => TokensPresent::None,
             (_, 0) => TokensPresent::OnlyVoid,

@@ -2,6 +2,7 @@
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
 /// A point that is verified, and the run that verifies it.
@@ -30,19 +31,8 @@ impl Store {
     /// When the database fails.
     pub async fn verifications(&self, sweep_id: &str) -> Result<Vec<VerificationRecord>> {
         type Row = (i64, String, Option<String>, Vec<u8>, String, Option<String>, Option<String>);
-        // An explicit order of the tables: the verified points are few among the points.
-        let rows: Vec<Row> = sqlx::query_as(
-            "SELECT v.ordinal, p.parameters, of_point.summary, w.key, w.state, w.error, reference.summary
-             FROM point v
-             CROSS JOIN point p ON p.sweep_id = v.sweep_id AND p.verifies = 0 AND p.ordinal = v.ordinal
-             CROSS JOIN work w ON w.key = v.work_key
-             LEFT JOIN result of_point ON of_point.work_key = p.work_key
-             LEFT JOIN result reference ON reference.work_key = v.work_key
-             WHERE v.sweep_id = ?1 AND v.verifies = 1 ORDER BY v.ordinal",
-        )
-        .bind(sweep_id)
-        .fetch_all(&self.pool)
-        .await?;
+        let rows: Vec<Row> =
+            sqlx::query_as(sql::verification::LIST).bind(sweep_id).fetch_all(&self.pool).await?;
         rows.into_iter()
             .map(|(ordinal, parameters_json, summary_json, key, state, error_json, reference_json)| {
                 Ok(VerificationRecord {

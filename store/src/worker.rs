@@ -2,8 +2,9 @@
 
 use sqlx::FromRow;
 
-use crate::connection::{Store, now};
+use crate::connection::Store;
 use crate::error::Result;
+use crate::sql;
 
 /// A worker process as it registered itself.
 #[derive(Debug, Clone, PartialEq, FromRow)]
@@ -30,15 +31,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn register_worker(&self, worker: &WorkerRecord) -> Result<()> {
-        let query = concat!(
-            "INSERT INTO worker (id, host, process, version, physics_version, started, last_seen) VALUES (?2, ?3, ?4, ?5, ?6, ",
-            now!(),
-            ", ",
-            now!(),
-            ") ON CONFLICT (id) DO UPDATE SET last_seen = excluded.last_seen"
-        );
-        sqlx::query(query)
-            .bind(self.clock_offset_ms)
+        sqlx::query(sql::worker::REGISTER)
             .bind(&worker.id)
             .bind(&worker.host)
             .bind(worker.process)
@@ -54,7 +47,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn remove_worker(&self, id: &str) -> Result<()> {
-        sqlx::query("DELETE FROM worker WHERE id = ?1").bind(id).execute(&self.pool).await?;
+        sqlx::query(sql::worker::REMOVE).bind(id).execute(&self.pool).await?;
         Ok(())
     }
 
@@ -64,23 +57,13 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn bury_worker(&self, host: &str, process: i64) -> Result<u64> {
-        let query = concat!(
-            "UPDATE work SET lease_until = ",
-            now!(),
-            " - 1 WHERE state = 'leased' AND lease_owner IN (SELECT id FROM worker WHERE host = ?2 AND process = ?3)"
-        );
-        let ended = sqlx::query(query)
-            .bind(self.clock_offset_ms)
+        let ended = sqlx::query(sql::worker::END_LEASES)
             .bind(host)
             .bind(process)
             .execute(&self.pool)
             .await?
             .rows_affected();
-        sqlx::query("DELETE FROM worker WHERE host = ?1 AND process = ?2")
-            .bind(host)
-            .bind(process)
-            .execute(&self.pool)
-            .await?;
+        sqlx::query(sql::worker::REMOVE_PROCESS).bind(host).bind(process).execute(&self.pool).await?;
         Ok(ended)
     }
 
@@ -90,13 +73,6 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
-        let query = concat!(
-            "SELECT id, host, process, version, physics_version, started, last_seen FROM worker WHERE last_seen > ",
-            now!(),
-            " - ?2 AND last_seen < ",
-            now!(),
-            " + ?2 ORDER BY started, id"
-        );
-        Ok(sqlx::query_as(query).bind(self.clock_offset_ms).bind(within_ms).fetch_all(&self.pool).await?)
+        Ok(sqlx::query_as(sql::worker::LIST).bind(within_ms).fetch_all(&self.pool).await?)
     }
 }

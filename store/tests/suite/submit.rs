@@ -216,7 +216,7 @@ pub(crate) async fn pages_hold_every_row_once_and_in_order<E: Engine>() {
     assert_eq!(of(&[WorkState::Done]).await, [1, 2, 3, 4]);
     assert_eq!(of(&[WorkState::Done, WorkState::Leased]).await, [1, 2, 3, 4, 5]);
     assert_eq!(of(&[WorkState::Waiting, WorkState::Queued]).await.len(), 20);
-    assert_eq!(of(&[WorkState::Dead]).await, []);
+    assert_eq!(of(&[WorkState::Dead]).await, [0; 0]);
 
     for (id, owner) in [("t1", "bert"), ("t2", "anne"), ("t3", "bert")] {
         submit(&store, &drillsweep_store::NewSweep { owner: owner.to_owned(), ..sweep(id, [1]) }).await;

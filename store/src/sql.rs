@@ -1,0 +1,287 @@
+//! The statements, each whole in a file of its own: `store/sql/sqlite/`, a folder for each module that uses them. A file
+//! begins with a comment that says what the statement does, what its parameters are and what it gives.
+//!
+//! The time is the database's: statements read it from the view `clock`. Lists and rows come as one parameter, a JSON array, so
+//! that a statement is the same however many they are.
+
+/// A statement without the comment that it begins with, so that logs begin with the statement.
+const fn without_comment(file: &'static str) -> &'static str {
+    let mut rest = file.as_bytes();
+    while let [b'-', b'-', ..] = rest {
+        while let [first, tail @ ..] = rest {
+            rest = tail;
+            if *first == b'\n' {
+                break;
+            }
+        }
+    }
+    match str::from_utf8(rest) {
+        Ok(statement) => statement,
+        Err(_) => panic!("a file that is UTF-8 is so after a line break"),
+    }
+}
+
+macro_rules! statements {
+    ($($module:ident { $($name:ident = $file:literal,)+ })+) => {
+        $(pub(crate) mod $module {
+            $(pub(crate) const $name: &str = super::without_comment(include_str!(concat!(
+                "../sql/sqlite/",
+                stringify!($module),
+                "/",
+                $file,
+                ".sql"
+            )));)+
+        })+
+
+        /// All of them, by folder and file.
+        #[cfg(test)]
+        const ALL: &[(&str, &str)] = &[$($((concat!(stringify!($module), "/", $file), $module::$name),)+)+];
+    };
+}
+
+statements! {
+    census {
+        ARTIFACT_BYTES = "artifact_bytes",
+        DISAGREEMENTS = "disagreements",
+        OLDEST_QUEUED = "oldest_queued",
+        SWEEPS = "sweeps",
+    }
+    check {
+        BLOBS = "blobs",
+        PAGES = "pages",
+        REFERENCES = "references",
+        RESULTS = "results",
+        WITHOUT_RESULT = "without_result",
+    }
+    clock {
+        NOW = "now",
+    }
+    event {
+        LIST = "list",
+    }
+    failure {
+        LIST = "list",
+    }
+    machine {
+        KEEP_SPEED = "keep_speed",
+        LATEST_SPEED = "latest_speed",
+    }
+    point {
+        ARTIFACTS = "artifacts",
+        LIST = "list",
+        ONE = "one",
+        TABLE = "table",
+        WITH_ARTIFACTS = "with_artifacts",
+    }
+    probe {
+        INSERT_SCENARIO = "insert_scenario",
+        INSERT_TURN = "insert_turn",
+        INSERT_WORK = "insert_work",
+    }
+    queue {
+        CANCEL = "cancel",
+        CLAIM = "claim",
+        CRASH = "crash",
+        DELETE_RESULT = "delete_result",
+        DEPTHS = "depths",
+        EARLIER_BLOBS = "earlier_blobs",
+        EARLIER_RESULT = "earlier_result",
+        END_LEASES = "end_leases",
+        FAIL = "fail",
+        FINISH = "finish",
+        INSERT_ARTIFACT = "insert_artifact",
+        INSERT_RESULT = "insert_result",
+        IS_ANYTHING_DUE = "is_anything_due",
+        KEEP_CHECKPOINT = "keep_checkpoint",
+        KEEP_DISAGREEMENT = "keep_disagreement",
+        NOTE_DISAGREEMENT = "note_disagreement",
+        OPEN_WORK = "open_work",
+        RELEASE = "release",
+        RENEW = "renew",
+        RETRY_LATER = "retry_later",
+        SHORTEN_LEASES = "shorten_leases",
+        WAKE = "wake",
+    }
+    retention {
+        ARTIFACT_NAMES = "artifact_names",
+        BLOBS_IN_USE = "blobs_in_use",
+        DELETE_EVENTS = "delete_events",
+        DELETE_IDEMPOTENCY_KEYS = "delete_idempotency_keys",
+        DELETE_RESULTS = "delete_results",
+        DELETE_SCENARIOS = "delete_scenarios",
+        DELETE_SWEEPS = "delete_sweeps",
+        DELETE_TURNS = "delete_turns",
+        DELETE_WORK = "delete_work",
+        DELETE_WORKERS = "delete_workers",
+        EXPIRE_ARTIFACTS = "expire_artifacts",
+        IS_BLOB_IN_USE = "is_blob_in_use",
+        TRUNCATE_LOG = "truncate_log",
+    }
+    submit {
+        APPENDED = "appended",
+        COUNT = "count",
+        ENDS_OF_ORDER = "ends_of_order",
+        EXTENDED_SWEEP = "extended_sweep",
+        FULLER_RESULTS = "fuller_results",
+        INSERT_APPENDED = "insert_appended",
+        INSERT_IDEMPOTENCY_KEY = "insert_idempotency_key",
+        INSERT_POINTS = "insert_points",
+        INSERT_SCENARIO = "insert_scenario",
+        INSERT_SWEEP = "insert_sweep",
+        INSERT_TURN = "insert_turn",
+        INSERT_WORK = "insert_work",
+        KNOWN_RESULTS = "known_results",
+        KNOWN_SWEEP = "known_sweep",
+        KNOWN_WORK = "known_work",
+        POINTS_OF = "points_of",
+        SET_POINTS = "set_points",
+        VERSION_OF_POINTS = "version_of_points",
+    }
+    sweep {
+        CANCEL = "cancel",
+        CANCEL_WORK = "cancel_work",
+        CHANGE = "change",
+        CHANGE_PRIORITY_OF_WORK = "change_priority_of_work",
+        HOLD_BACK = "hold_back",
+        KEEP_RUNNING_WORK = "keep_running_work",
+        LIST = "list",
+        ONE = "one",
+        PAUSE = "pause",
+        RETRY_WORK = "retry_work",
+        REVIVE = "revive",
+        VERSION = "version",
+    }
+    token {
+        CREATE = "create",
+        LIST = "list",
+        PRESENT = "present",
+        REVOKE = "revoke",
+        TOUCH = "touch",
+        VALID = "valid",
+    }
+    verification {
+        LIST = "list",
+    }
+    worker {
+        END_LEASES = "end_leases",
+        LIST = "list",
+        REGISTER = "register",
+        REMOVE = "remove",
+        REMOVE_PROCESS = "remove_process",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use sqlx::{AssertSqlSafe, Row as _};
+
+    use super::*;
+    use crate::connection::{Role, Store, StoreConfig};
+
+    /// What a plan may go through from end to end, because it is small: tables of a row, a parameter, an owner, a token, a worker
+    /// or a machine each, and indexes of the few rows that a statement looks for. So may it go through what it has selected
+    /// itself.
+    const SMALL: &[&str] = &[
+        "CONSTANT",
+        "clock",
+        "json_each",
+        "machine_speed",
+        "owner_turn",
+        "token",
+        "worker",
+        "work_leased",
+        "work_open",
+        "work_waiting",
+        "result_disagrees",
+    ];
+
+    /// The statements that go through anything else from end to end, and what: they count or delete over all, or list the
+    /// newest of all.
+    const WHOLE: &[(&str, &str)] = &[
+        ("census/artifact_bytes", "artifact"),
+        ("census/sweeps", "sweep"),
+        ("check/blobs", "artifact"),
+        ("check/references", "pragma_foreign_key_check"),
+        ("check/results", "result"),
+        ("check/without_result", "work"),
+        ("retention/artifact_names", "artifact"),
+        ("retention/blobs_in_use", "artifact"),
+        ("retention/blobs_in_use", "work"),
+        ("retention/delete_events", "event"),
+        ("retention/delete_idempotency_keys", "idempotency"),
+        ("retention/delete_results", "result"),
+        ("retention/delete_scenarios", "scenario"),
+        ("retention/delete_sweeps", "sweep"),
+        ("retention/delete_work", "work"),
+        ("retention/expire_artifacts", "result"),
+        ("retention/is_blob_in_use", "work"),
+        ("sweep/list", "sweep"),
+    ];
+
+    fn folder() -> &'static Path {
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/sql/sqlite"))
+    }
+
+    #[test]
+    fn every_file_is_a_statement_and_says_what_its_parameters_are() {
+        let mut files = BTreeSet::new();
+        for module in std::fs::read_dir(folder()).unwrap() {
+            for file in std::fs::read_dir(module.unwrap().path()).unwrap() {
+                let path = file.unwrap().path().with_extension("");
+                files.insert(path.strip_prefix(folder()).unwrap().to_str().unwrap().to_owned());
+            }
+        }
+        assert_eq!(files, ALL.iter().map(|(name, _)| (*name).to_owned()).collect());
+        for (name, statement) in ALL {
+            let file = std::fs::read_to_string(folder().join(name).with_extension("sql")).unwrap();
+            let comment = file.strip_suffix(statement).unwrap();
+            assert!(comment.starts_with("-- "), "{name} says nothing of itself");
+            assert!(!statement.contains("--"), "{name} has a comment inside");
+            for number in 1..20 {
+                let parameter = format!("?{number}");
+                let has = |text: &str| {
+                    text.match_indices(&parameter).any(|(at, found)| {
+                        !text[at + found.len()..].starts_with(|next: char| next.is_ascii_digit())
+                    })
+                };
+                assert_eq!(has(comment), has(statement), "{parameter} of {name}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_the_clock_tells_the_time() {
+        for (name, statement) in ALL {
+            for word in ["julianday", "unixepoch", "current_timestamp", "strftime", "datetime"] {
+                assert!(!statement.to_lowercase().contains(word), "{name} has another clock");
+            }
+        }
+    }
+
+    #[tokio::test]
+    async fn no_statement_reads_a_whole_table_but_those_that_must() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Server)).await.unwrap();
+        let mut whole = BTreeSet::new();
+        for (name, statement) in ALL {
+            let plan = format!("EXPLAIN QUERY PLAN {statement}");
+            for step in sqlx::query(AssertSqlSafe(plan)).fetch_all(&store.pool).await.unwrap() {
+                let step: String = step.get("detail");
+                let words: Vec<&str> = step.split(' ').collect();
+                if let ["SCAN", table, rest @ ..] = words.as_slice()
+                    && !SMALL.contains(table)
+                    && !table.starts_with('(')
+                    && !statement.contains(&format!(") AS {table}\n"))
+                    && !rest.last().is_some_and(|index| SMALL.contains(index))
+                {
+                    whole.insert((*name, (*table).to_owned()));
+                }
+            }
+        }
+        let whole: Vec<(&str, &str)> = whole.iter().map(|(name, table)| (*name, table.as_str())).collect();
+        assert_eq!(whole, WHOLE);
+    }
+}

@@ -4,30 +4,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import httpx
 import pytest
 
 from drillsweep import Client, NotFound, Range, Sweep
-from drillsweep.client import _event_fields
 
 
-def test_event_streams_are_read_as_the_standard_says() -> None:
-    # The first and third examples of WHATWG HTML section 9.2.6.
-    stocks = ["data: YHOO", "data: +2", "data: 10", ""]
-    assert list(_event_fields(iter(stocks))) == [{"data": "YHOO\n+2\n10"}]
-    stream = [
-        ": test stream",
-        "",
-        "data: first event",
-        "id: 1",
-        "",
-        "data:second event",
-        "id",
-        "",
-        "data:  third event",
-    ]
-    events = [*stream, ""]
-    assert [event["data"] for event in _event_fields(iter(events))] == ["first event", "second event", " third event"]
-    assert list(_event_fields(iter(["data: incomplete"]))) == [], "an event ends with an empty line"
+def test_a_stream_goes_on_after_its_last_event_and_comments_are_no_events() -> None:
+    asked = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        asked.append(request.headers.get("last-event-id"))
+        if len(asked) == 3:
+            return httpx.Response(204)
+        stream = f': alive\n\nid: {len(asked)}\nevent: point\ndata: {{"number": {len(asked)}}}\n\n: alive\n\n'
+        return httpx.Response(200, headers={"content-type": "text/event-stream"}, text=stream)
+
+    with Client("http://service") as client:
+        client._http = httpx.Client(base_url="http://service", transport=httpx.MockTransport(answer))
+        assert list(client.events("/v1/events")) == [("point", {"number": 1}), ("point", {"number": 2})]
+    assert asked == [None, "1", "2"]
 
 
 def test_an_interval_is_a_range_without_a_count() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import time
 import uuid
@@ -13,6 +12,7 @@ from typing import Any, Literal, SupportsFloat
 from urllib.parse import quote
 
 import httpx
+from httpx_sse import EventSource
 
 from drillsweep.design import axes_to_json, design_to_json
 from drillsweep.point import Point
@@ -261,10 +261,12 @@ class Client:
                     if not response.is_success:
                         response.read()
                         raise problem(response.status_code, _problem_document(response))
-                    for fields in _event_fields(response.iter_lines()):
-                        last = fields.get("id", last)
+                    for event in EventSource(response).iter_sse():
+                        last = event.id or last
                         deadline = time.monotonic() + self.patience
-                        yield fields.get("event", "message"), json.loads(fields["data"])
+                        # A comment that keeps the connection alive comes as an event without data.
+                        if event.data:
+                            yield event.event, event.json()
             except httpx.TransportError as error:
                 if time.monotonic() > deadline:
                     raise NoAnswer(f"the events of {self.server} broke off: {error}") from error
@@ -321,20 +323,6 @@ class Client:
                     raise problem(response.status_code, _problem_document(response), retry_after)
             time.sleep(wait)
             pause = min(2.0 * pause, _LONGEST_PAUSE)
-
-
-def _event_fields(lines: Iterator[str]) -> Iterator[dict[str, str]]:
-    """The fields of each event that has data (WHATWG HTML section 9.2.6); comments are left out."""
-    fields: dict[str, str] = {}
-    for line in lines:
-        name, _, value = line.partition(":")
-        if name:
-            value = value.removeprefix(" ")
-            fields[name] = f"{fields['data']}\n{value}" if name == "data" and "data" in fields else value
-        elif not line:
-            if "data" in fields:
-                yield fields
-            fields = {}
 
 
 def _request(

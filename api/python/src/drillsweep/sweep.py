@@ -327,7 +327,7 @@ class Sweep:
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
         **fields: Any,
     ) -> Sweep:
-        """Adds points over its own parameters, by any design; those that it has already are passed over.
+        """Adds points over its own parameters, by any design; those that it has already are skipped.
 
         Arguments are those of `Client.submit`. Numbers of points go on from the last.
         """

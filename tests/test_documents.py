@@ -1,6 +1,7 @@
 """The documents: every link between them leads somewhere, and the book has every chapter."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,12 @@ def test_every_chapter_is_in_the_book() -> None:
     summary = REPOSITORY / "docs" / "SUMMARY.md"
     listed = {summary.parent / link for link in LINK.findall(summary.read_text())}
     assert listed == set(summary.parent.glob("**/*.md")) - {summary}
+
+
+def test_the_scenario_reference_is_that_of_the_schema() -> None:
+    chapter = REPOSITORY / "docs" / "scenario.md"
+    script = runpy.run_path(str(chapter.parent / "scenario_reference.py"))
+    assert chapter.read_text() == script["reference"](), "python docs/scenario_reference.py writes it anew"
 
 
 def test_the_readme_stays_short() -> None:

@@ -70,7 +70,7 @@ pub struct SweepRequest {
     /// What these designs are drawn from; 0 unless said otherwise. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to pass over, so that a sweep goes on where another one of the same
+    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same
     /// seed ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
@@ -164,7 +164,7 @@ pub struct AppendRequest {
     /// What these designs are drawn from; 0 unless said otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to pass over.
+    /// Points at the start of the Sobol sequence to skip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
 }

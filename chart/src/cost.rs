@@ -52,7 +52,7 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
     }
 }
 
-/// What stands at the upright axis.
+/// What stands at the vertical axis.
 fn label(measure: Measure, report: &CostReport) -> String {
     let window = || format!("over [{}, {}) s", report.orbit_window.from, report.orbit_window.to);
     match (measure, report.histories_part_at) {

@@ -10,7 +10,7 @@ use indexmap::{IndexMap, IndexSet};
 use serde_json::Value;
 
 use crate::picture::axis::three_digits;
-use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, Shade, SweepMap, Upright};
+use crate::picture::{Drawing, Label, Line, LinePlot, MapPoint, OrbitPlot, Shade, SweepMap, VerticalAxis};
 
 /// Lines of a spectrum that are named in its picture.
 const NAMED_LINES: usize = 6;
@@ -73,7 +73,7 @@ pub fn profile(
         x_label: shown.label(),
         y_label: "measured depth [m]".to_owned(),
         lines: shown.columns.into_iter().map(line).collect(),
-        upright: Upright::Depth,
+        vertical: VerticalAxis::Depth,
         ..LinePlot::default()
     };
     Ok(plot.drawing())
@@ -181,7 +181,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
         x_label: "frequency [Hz]".to_owned(),
         y_label: "amplitude [mm]".to_owned(),
         lines: vec![Line { points: points.collect(), ..Line::default() }],
-        upright: Upright::FromZero,
+        vertical: VerticalAxis::FromZero,
         labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
         shade,
     };

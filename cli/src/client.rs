@@ -72,7 +72,7 @@ impl Client {
     }
 
     /// Reads JSON, and tries again for a while where the server does not answer or is not available.
-    pub(crate) fn get_patiently(&self, path: &str) -> anyhow::Result<Value> {
+    pub(crate) fn get_with_retries(&self, path: &str) -> anyhow::Result<Value> {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let answer = self.request(path);

@@ -61,7 +61,7 @@ enum Command {
     Resume(sweeps::SweepArguments),
     /// Change name, tags, priority, pin or expiry of a sweep.
     Change(sweeps::ChangeArguments),
-    /// Add points to a sweep, over its own parameters; those that it has are passed over.
+    /// Add points to a sweep, over its own parameters; those that it has are skipped.
     Append(submit::AppendArguments),
     /// List the points of all sweeps that were given up, the latest first.
     Failures(sweeps::FailuresArguments),

@@ -86,7 +86,7 @@ pub(crate) struct DesignArguments {
     /// What such a design is drawn from.
     #[arg(long)]
     seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to pass over: as many as a sweep of the same seed has already.
+    /// Points at the start of the Sobol sequence to skip: as many as a sweep of the same seed has already.
     #[arg(long)]
     skip: Option<u32>,
 }

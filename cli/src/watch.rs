@@ -59,7 +59,7 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Value> {
             bar.abandon();
             return Ok(sweep);
         }
-        sweep = client.get_patiently(&format!("{path}?wait=30s"))?;
+        sweep = client.get_with_retries(&format!("{path}?wait=30s"))?;
     }
 }
 

@@ -15,7 +15,7 @@ use crate::statics::Equilibrium;
 pub struct DynamicSystem<const D: usize = 6> {
     /// Which of a node's six degrees of freedom these are, in rising order. A system starts with all six;
     /// [`DynamicSystem::reduced_to`] leaves out those that are held at every node.
-    pub places: [usize; D],
+    pub dofs: [usize; D],
     /// Mass: structure and added mass of the mud.
     pub mass: BlockTridiagonal<D>,
     /// Everything that multiplies velocities: Rayleigh damping, gyroscopic, mud damping, Coriolis.
@@ -94,7 +94,7 @@ impl Model {
             clear_held(matrix, &held);
         }
         DynamicSystem {
-            places: std::array::from_fn(|dof| dof),
+            dofs: std::array::from_fn(|dof| dof),
             mass,
             damping,
             stiffness,
@@ -148,7 +148,7 @@ impl<const D: usize> DynamicSystem<D> {
 
     /// Whether the twist is among the degrees of freedom; it is the last one then.
     pub fn has_twist(&self) -> bool {
-        self.places.last() == Some(&5)
+        self.dofs.last() == Some(&5)
     }
 }
 
@@ -158,11 +158,11 @@ impl DynamicSystem {
         (0..6).filter(|&dof| self.held.iter().any(|held| !held[dof])).collect()
     }
 
-    /// The same system without the degrees of freedom that are held at every node: `places` are the others.
-    pub fn reduced_to<const D: usize>(&self, places: [usize; D]) -> DynamicSystem<D> {
+    /// The same system without the degrees of freedom that are held at every node: `dofs` are the others.
+    pub fn reduced_to<const D: usize>(&self, dofs: [usize; D]) -> DynamicSystem<D> {
         let reduced = |matrix: &BlockTridiagonal| {
             let of = |blocks: &[Block]| -> Vec<Block<D>> {
-                blocks.iter().map(|b| Block::from_fn(|i, j| b[(places[i], places[j])])).collect()
+                blocks.iter().map(|b| Block::from_fn(|i, j| b[(dofs[i], dofs[j])])).collect()
             };
             BlockTridiagonal {
                 lower: of(&matrix.lower),
@@ -171,15 +171,15 @@ impl DynamicSystem {
             }
         };
         DynamicSystem {
-            places,
+            dofs,
             mass: reduced(&self.mass),
             damping: reduced(&self.damping),
             stiffness: reduced(&self.stiffness),
             damping_of: self.damping_of.each_ref().map(reduced),
-            load: self.load.iter().map(|load| places.map(|dof| load[dof])).collect(),
+            load: self.load.iter().map(|load| dofs.map(|dof| load[dof])).collect(),
             unbalance: self.unbalance.clone(),
             rotation_speed: self.rotation_speed,
-            held: self.held.iter().map(|held| places.map(|dof| held[dof])).collect(),
+            held: self.held.iter().map(|held| dofs.map(|dof| held[dof])).collect(),
         }
     }
 }

@@ -81,7 +81,7 @@ pub struct VerifiedPoint {
     pub error: Option<PointError>,
 }
 
-/// Statistics whose bias is told, by their names in a summary: read from one, what else it has being passed over. Of ensembles they
+/// Statistics whose bias is told, by their names in a summary: read from one, what else it has being skipped. Of ensembles they
 /// are the means over the members, which the spread of histories troubles least.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics(IndexMap<String, f64>);

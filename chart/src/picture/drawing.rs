@@ -59,7 +59,7 @@ impl Shape {
     pub(super) const GROUND_OPACITY: f32 = 0.8;
 }
 
-/// A rectangle with upright sides.
+/// A rectangle with vertical sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rectangle {
     pub(super) left: f64,

@@ -22,10 +22,10 @@ const LABEL_WIDTH: f64 = 180.0;
 /// Columns of the page, each of which shows at most a first, a lowest, a highest and a last point of a line.
 const COLUMNS: usize = 900;
 
-/// Lines over one axis, each value upright over its place across; or, downwards, each value across at its depth.
+/// Lines over one axis, each value vertical over its place across; or, downwards, each value across at its depth.
 ///
 /// A point that is not finite breaks its line. Where a line has more points than the page has room for, the extremes
-/// of each column of the page stay. Without [`Upright::Depth`] the order of points is that of the axis across.
+/// of each column of the page stay. Without [`VerticalAxis::Depth`] the order of points is that of the axis across.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinePlot {
     /// The title; may be empty.
@@ -34,12 +34,12 @@ pub struct LinePlot {
     pub subtitle: String,
     /// What is across, with its unit.
     pub x_label: String,
-    /// What is upright, with its unit.
+    /// What is vertical, with its unit.
     pub y_label: String,
     /// The lines, in the order of the legend. A single line without a name has no legend.
     pub lines: Vec<Line>,
-    /// What the upright axis shows.
-    pub upright: Upright,
+    /// What the vertical axis shows.
+    pub vertical: VerticalAxis,
     /// Places that are named, the most important first; those that find no room are left out.
     pub labels: Vec<Label>,
     /// What is shaded behind the lines.
@@ -55,9 +55,9 @@ pub struct Shade {
     pub name: String,
 }
 
-/// What the upright axis of a [`LinePlot`] shows.
+/// What the vertical axis of a [`LinePlot`] shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Upright {
+pub enum VerticalAxis {
     /// Values, growing upwards.
     #[default]
     Values,
@@ -72,7 +72,7 @@ pub enum Upright {
 pub struct Line {
     /// Its name in the legend.
     pub name: String,
-    /// Its points, across and upright, joined in this order.
+    /// Its points, across and vertical, joined in this order.
     pub points: Vec<[f64; 2]>,
     /// Whether the points have markers.
     pub is_marked: bool,
@@ -81,7 +81,7 @@ pub struct Line {
 /// A place that is named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// Where, across and upright.
+    /// Where, across and vertical.
     pub at: [f64; 2],
     /// What is written there.
     pub text: String,
@@ -103,9 +103,9 @@ impl LinePlot {
 
     /// The plot laid out on a page.
     pub fn drawing(&self) -> Drawing {
-        let (page_width, plot_height) = match self.upright {
-            Upright::Depth => (PAGE_WIDTH_DOWNWARDS, PLOT_HEIGHT_DOWNWARDS),
-            Upright::Values | Upright::FromZero => (PAGE_WIDTH, PLOT_HEIGHT),
+        let (page_width, plot_height) = match self.vertical {
+            VerticalAxis::Depth => (PAGE_WIDTH_DOWNWARDS, PLOT_HEIGHT_DOWNWARDS),
+            VerticalAxis::Values | VerticalAxis::FromZero => (PAGE_WIDTH, PLOT_HEIGHT),
         };
         let axes = self.axes();
         let (x_ticks, y_ticks) = axes.map(|(x, y)| (x.ticks(), y.ticks())).unwrap_or_default();
@@ -146,13 +146,15 @@ impl LinePlot {
     /// The axes over all points that can be drawn; none without such a point.
     fn axes(&self) -> Option<(PlotAxis, PlotAxis)> {
         let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| is_finite(point));
-        let (across, upright) = (|| points().map(|point| point[0]), || points().map(|point| point[1]));
+        let (across, vertical) = (|| points().map(|point| point[0]), || points().map(|point| point[1]));
         let has_markers = self.lines.iter().any(|line| line.is_marked);
-        Some(match self.upright {
-            Upright::Depth => (PlotAxis::linear(across())?, PlotAxis::tight(upright())?.downwards()),
-            Upright::Values if has_markers => (PlotAxis::linear(across())?, PlotAxis::linear(upright())?),
-            Upright::Values => (PlotAxis::tight(across())?, PlotAxis::linear(upright())?),
-            Upright::FromZero => (PlotAxis::tight(across())?, PlotAxis::from_zero(upright())?),
+        Some(match self.vertical {
+            VerticalAxis::Depth => (PlotAxis::linear(across())?, PlotAxis::tight(vertical())?.downwards()),
+            VerticalAxis::Values if has_markers => {
+                (PlotAxis::linear(across())?, PlotAxis::linear(vertical())?)
+            }
+            VerticalAxis::Values => (PlotAxis::tight(across())?, PlotAxis::linear(vertical())?),
+            VerticalAxis::FromZero => (PlotAxis::tight(across())?, PlotAxis::from_zero(vertical())?),
         })
     }
 
@@ -166,7 +168,7 @@ impl LinePlot {
             let mut members = Vec::new();
             for piece in line.points.split(|point| !is_finite(point)).filter(|piece| !piece.is_empty()) {
                 let places: Vec<Position> = piece.iter().filter_map(position).collect();
-                let places = thinned(places, area, self.upright == Upright::Depth);
+                let places = thinned(places, area, self.vertical == VerticalAxis::Depth);
                 room.avoid(&places);
                 members.push(Shape::Polyline(places, Stroke::solid(colour, width)));
             }
@@ -286,7 +288,8 @@ mod tests {
     #[test]
     fn depth_grows_downwards() {
         let points = [[0.01, 0.0], [0.02, 100.0], [0.03, 200.0]];
-        let plot = LinePlot { lines: vec![line("", points)], upright: Upright::Depth, ..LinePlot::default() };
+        let plot =
+            LinePlot { lines: vec![line("", points)], vertical: VerticalAxis::Depth, ..LinePlot::default() };
         let places = polylines(&plot.svg()).remove(0);
         assert!(
             places.windows(2).all(|pair| pair[0][1] < pair[1][1] && pair[0][0] < pair[1][0]),
@@ -312,7 +315,7 @@ mod tests {
         let label = Label { at: [40.0, 9.0], text: "+2.16 Hz".to_owned() };
         let plot = LinePlot {
             lines: vec![line("", points)],
-            upright: Upright::FromZero,
+            vertical: VerticalAxis::FromZero,
             labels: vec![label],
             ..LinePlot::default()
         };

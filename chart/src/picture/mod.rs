@@ -24,7 +24,7 @@ mod work_precision;
 
 pub use axis::{PlotAxis, Tick};
 pub use drawing::Drawing;
-pub use line_plot::{Label, Line, LinePlot, Shade, Upright};
+pub use line_plot::{Label, Line, LinePlot, Shade, VerticalAxis};
 pub use orbit::OrbitPlot;
 pub use png::PictureError;
 pub use sweep_map::{MapPoint, SweepMap};

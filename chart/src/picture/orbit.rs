@@ -69,12 +69,12 @@ impl OrbitPlot {
         let top = bottom + 10.0;
         let area = Rectangle { left, top, right, bottom: top + PLOT_SIDE };
         shapes.push(plot_area::grid(&area, &ticks, &ticks));
-        let (across, upright) = match self.low_side {
+        let (across, vertical) = match self.low_side {
             Some(_) => ("to the right, looking down the hole", "above the axis of the hole"),
             None => ("against v, looking down the hole", "against u; no low side"),
         };
         let name = |text: &str| format!("{text} [{}]", self.unit);
-        shapes.push(plot_area::axes(&area, &ticks, &ticks, &name(across), &name(upright)));
+        shapes.push(plot_area::axes(&area, &ticks, &ticks, &name(across), &name(vertical)));
         match axis {
             Some(axis) if !path.is_empty() => self.data(&mut shapes, &area, &axis, &path),
             _ => shapes.push(heading::no_data(plot_area::position(&area, 0.5, 0.5))),
@@ -82,7 +82,7 @@ impl OrbitPlot {
         Drawing { title, width: PAGE_WIDTH, height: area.bottom + plot_area::BELOW, shapes }
     }
 
-    /// A displacement as it is seen: across to the right and upright. The axes u, v and the hole's direction are
+    /// A displacement as it is seen: across to the right and vertical. The axes u, v and the hole's direction are
     /// right-handed, so that to one who looks down the hole v is clockwise of u.
     fn seen(&self, u: f64, v: f64) -> Option<Position> {
         let (sin, cos) = self.low_side.unwrap_or(0.0).sin_cos();

@@ -47,7 +47,7 @@ pub struct SweepMap {
     pub subtitle: String,
     /// The parameter across, with its unit.
     pub x_label: String,
-    /// The parameter upright, with its unit.
+    /// The parameter vertical, with its unit.
     pub y_label: String,
     /// What the colours mean, with its unit.
     pub value_label: String,
@@ -60,7 +60,7 @@ pub struct SweepMap {
 pub struct MapPoint {
     /// The parameter across.
     pub x: f64,
-    /// The parameter upright.
+    /// The parameter vertical.
     pub y: f64,
     /// The value; not finite where there is none.
     pub value: f64,

@@ -30,7 +30,7 @@ pub struct WorkPrecisionChart {
     pub title: String,
     /// What is across, with its unit, such as "CPU seconds per simulated second".
     pub x_label: String,
-    /// What is upright, with its unit, such as "relative error".
+    /// What is vertical, with its unit, such as "relative error".
     pub y_label: String,
     /// The accuracy that is wanted, drawn as a dashed line from left to right.
     pub wanted: Option<WantedAccuracy>,
@@ -41,7 +41,7 @@ pub struct WorkPrecisionChart {
 /// The largest error that is acceptable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WantedAccuracy {
-    /// The error, in the unit of the upright axis.
+    /// The error, in the unit of the vertical axis.
     pub y: f64,
     /// What is written at the line, such as "wanted: 1 %".
     pub label: String,
@@ -61,7 +61,7 @@ pub struct Series {
 pub struct Point {
     /// The work, in the unit of the axis across.
     pub x: f64,
-    /// The error, in the unit of the upright axis.
+    /// The error, in the unit of the vertical axis.
     pub y: f64,
     /// What is written beside the point, such as the time step "1 ms"; nothing if empty.
     pub label: String,

@@ -12,8 +12,8 @@ use drillsweep_store::{
     Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
 };
 
-use crate::answer::convert;
 use crate::answer::error::{Error, Result};
+use crate::answer::records;
 
 /// One table of a point's result, as Parquet.
 pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Bytes> {
@@ -32,7 +32,7 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     if let Some(index) = artifacts.iter().position(|artifact| artifact.name == name) {
         let artifact = artifacts.swap_remove(index);
         let Some(expired) = artifact.expired else { return Ok(artifact) };
-        let expired = convert::timestamp(expired)?;
+        let expired = records::timestamp(expired)?;
         let detail = format!(
             "the table {name} reached its age and was given up at {expired}; the summary is kept, and a sweep submitted with \
              ?cache=refresh computes the point anew"
@@ -50,12 +50,12 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
 /// The key of a point that has a result, be it that it is computed anew just now.
 pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
     let Some(point) = store.point(sweep, n.into()).await? else {
-        return Err(convert::no_such_point(store, sweep, n).await?);
+        return Err(records::no_such_point(store, sweep, n).await?);
     };
     if point.summary_json.is_some() {
         return Ok(point.work_key);
     }
-    let state = convert::point_state(point.state);
+    let state = records::point_state(point.state);
     let detail = match state {
         PointState::Queued | PointState::Running => {
             format!("point {n} is {state}: its result is not there yet")

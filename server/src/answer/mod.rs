@@ -1,9 +1,9 @@
 //! What routes and guards read requests by and make their answers from.
 
 pub(crate) mod artifact;
-pub(crate) mod convert;
+pub(crate) mod blocking;
 pub(crate) mod document;
 pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
-pub(crate) mod work;
+pub(crate) mod records;

@@ -9,10 +9,10 @@ use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
 use crate::answer::artifact;
+use crate::answer::blocking::blocking;
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
-use crate::answer::work::blocking;
 use crate::app::App;
 use crate::route::results::PointPath;
 

@@ -14,10 +14,10 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use utoipa::IntoParams;
 
-use crate::answer::convert;
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
+use crate::answer::records;
 use crate::app::App;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load};
 
@@ -78,7 +78,7 @@ pub(crate) async fn follow(
             Some(number)
         }
     };
-    let Some(version) = app.store.sweep_version(&id).await? else { return Err(convert::no_such_sweep(&id)) };
+    let Some(version) = app.store.sweep_version(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let sequence = after.map_or(version, |after| i64::try_from(after).unwrap_or(i64::MAX));
     if after.is_some()
         && load(&app, &id).await?.finished.is_some()
@@ -166,8 +166,8 @@ impl Follower {
             let data = PointEvent {
                 ordinals: event.ordinals.clone(),
                 verifies: event.verifies.clone(),
-                state: convert::point_state(event.state),
-                at: convert::timestamp(event.at)?,
+                state: records::point_state(event.state),
+                at: records::timestamp(event.at)?,
             };
             self.push("point", &data)?;
         }

@@ -11,10 +11,10 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use crate::answer::artifact;
-use crate::answer::convert;
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
+use crate::answer::records;
 use crate::app::App;
 use crate::route::results::PointPath;
 
@@ -54,7 +54,7 @@ pub(crate) async fn list(
             bytes: artifact.bytes.unsigned_abs(),
             rows: artifact.row_count.unsigned_abs(),
             hash: artifact.blob,
-            expired: artifact.expired.map(convert::timestamp).transpose()?,
+            expired: artifact.expired.map(records::timestamp).transpose()?,
         })
     };
     let artifacts = app.store.artifacts(&key).await?.into_iter().map(entry).collect::<Result<_>>()?;

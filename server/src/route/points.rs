@@ -11,10 +11,10 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::IntoParams;
 
-use crate::answer::convert;
 use crate::answer::document::{PointPageResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
+use crate::answer::records;
 use crate::app::App;
 use crate::route::results::PointPath;
 
@@ -66,16 +66,16 @@ pub(crate) async fn list(
             .map_err(|_| Error::parameter("cursor", Some(cursor), "must be `next` of the page before"))?,
     };
     if app.store.sweep_version(&id).await?.is_none() {
-        return Err(convert::no_such_sweep(&id));
+        return Err(records::no_such_sweep(&id));
     }
-    let states = query.state.map_or_else(Vec::new, convert::work_states);
+    let states = query.state.map_or_else(Vec::new, records::work_states);
     // One more than asked for tells whether there is a next page.
     let mut records = app.store.points(&id, &states, after, i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.ordinal.to_string());
     let points: Vec<PointRow> =
-        records.iter().map(|record| convert::point_row(&id, record)).collect::<Result<_>>()?;
+        records.iter().map(|record| records::point_row(&id, record)).collect::<Result<_>>()?;
     match query.fields {
         None => Ok(Json(PointList { points, next }).into_response()),
         Some(fields) => {
@@ -140,7 +140,7 @@ pub(crate) async fn failures(
         let FailurePlace { at, sweep_id, ordinal } = record.place();
         format!("{at}.{ordinal}.{sweep_id}")
     });
-    let failures = records.iter().map(convert::failure).collect::<Result<_>>()?;
+    let failures = records.iter().map(records::failure).collect::<Result<_>>()?;
     Ok(Json(FailureList { failures, next }))
 }
 
@@ -170,7 +170,7 @@ pub(crate) async fn show(
     Path(PointPath { id, n }): Path<PointPath>,
 ) -> Result<Json<PointDetail>> {
     let Some(record) = app.store.point(&id, n.into()).await? else {
-        return Err(convert::no_such_point(&app.store, &id, n).await?);
+        return Err(records::no_such_point(&app.store, &id, n).await?);
     };
     let artifacts = app.store.artifacts(&record.work_key).await?;
     let tables = artifacts
@@ -178,5 +178,5 @@ pub(crate) async fn show(
         .filter(|artifact| artifact.expired.is_none())
         .map(|artifact| artifact.name)
         .collect();
-    Ok(Json(convert::point_detail(&id, &record, tables)?))
+    Ok(Json(records::point_detail(&id, &record, tables)?))
 }

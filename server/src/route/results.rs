@@ -11,12 +11,12 @@ use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
 use crate::answer::artifact::{self, Recording, SpectrumSource};
-use crate::answer::convert;
+use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, PictureResponse, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Format, PictureFormat, TableFormat};
-use crate::answer::work::blocking;
+use crate::answer::records;
 use crate::app::App;
 
 /// Which point's result.
@@ -400,7 +400,7 @@ pub(crate) async fn spectrum(
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     let point = app.store.point(&id, n.into()).await?;
     blocking(move || {
-        let resolved_hz = point.as_ref().map(convert::resolved_hz).transpose()?.flatten();
+        let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
         let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
         let (node, table) = match source {
             SpectrumSource::Recording(recording) => {
@@ -432,7 +432,7 @@ fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
 /// The title of a picture: what it shows of which point.
 async fn caption(store: &Store, id: &str, n: u32, what: &str) -> Result<String> {
     let parameters = match store.point(id, n.into()).await? {
-        Some(point) => convert::parameters(&point.parameters_json)?,
+        Some(point) => records::parameters(&point.parameters_json)?,
         None => IndexMap::new(),
     };
     Ok(chart::caption(what, &parameters))

@@ -7,9 +7,9 @@ use axum::extract::State;
 use drillsweep_api::{LIMITS, Limits, Queue, Worker, WorkerList};
 use drillsweep_store::WorkerRecord;
 
-use crate::answer::convert::timestamp;
 use crate::answer::document::Problems;
 use crate::answer::error::Result;
+use crate::answer::records::timestamp;
 use crate::app::App;
 
 /// Workers that have been silent for longer are not listed: five times the lease's renewal.

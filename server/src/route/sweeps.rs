@@ -21,12 +21,12 @@ use serde::Deserialize;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
-use crate::answer::convert;
+use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, PictureResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{self, Format};
-use crate::answer::work::blocking;
+use crate::answer::records;
 use crate::app::App;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
@@ -148,7 +148,7 @@ async fn submit(
     // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
     let (expansion, new_sweep) = blocking(move || {
         let expansion = expand(&request)?;
-        let new_sweep = convert::new_sweep(&request, &expansion, cache, idempotency_key)?;
+        let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key)?;
         Ok((expansion, new_sweep))
     })
     .await?;
@@ -275,7 +275,7 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.id.clone());
-    let sweeps = records.iter().map(convert::sweep).collect::<Result<_>>()?;
+    let sweeps = records.iter().map(records::sweep).collect::<Result<_>>()?;
     Ok(Json(SweepList { sweeps, next }))
 }
 
@@ -299,8 +299,8 @@ pub(crate) async fn load_whole(app: &App, id: &str) -> Result<Sweep> {
 }
 
 async fn load_with(app: &App, id: &str, appended: i64) -> Result<Sweep> {
-    let Some(record) = app.store.sweep(id).await? else { return Err(convert::no_such_sweep(id)) };
-    convert::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)
+    let Some(record) = app.store.sweep(id).await? else { return Err(records::no_such_sweep(id)) };
+    records::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)
 }
 
 async fn with_findings(app: &App, mut sweep: Sweep) -> Result<Sweep> {
@@ -477,7 +477,7 @@ pub(crate) async fn change(
     let changes = SweepChanges {
         name: patch.name,
         priority: patch.priority.map(i64::from),
-        tags_json: patch.tags.as_ref().map(convert::write).transpose()?,
+        tags_json: patch.tags.as_ref().map(records::write).transpose()?,
         is_pinned: patch.pinned,
         expires: patch.expires.map(|expires| expires.map(Timestamp::as_millisecond)),
     };
@@ -488,7 +488,7 @@ pub(crate) async fn change(
 /// Add points to a sweep
 ///
 /// Points of the sweep's scenario with other values of its parameters, by any design; their numbers go on from its last
-/// point. Points that the sweep has already are passed over, so that a finer grid may be asked for as a whole, and the same
+/// point. Points that the sweep has already are skipped, so that a finer grid may be asked for as a whole, and the same
 /// request again changes nothing. Of the added points as many are verified as make up the `verify` of the whole sweep.
 #[utoipa::path(
     post,
@@ -508,11 +508,11 @@ pub(crate) async fn append(
     let Some(original) = sweep.request else {
         return Err(Error::internal("a sweep was read without its request"));
     };
-    let request_json = convert::write(&request)?;
+    let request_json = records::write(&request)?;
     let verify = original.verify;
     let (expansion, points) = blocking(move || {
         let expansion = expand_added(request, &original)?;
-        let points = convert::new_points(&expansion)?;
+        let points = records::new_points(&expansion)?;
         Ok((expansion, points))
     })
     .await?;
@@ -527,14 +527,14 @@ pub(crate) async fn append(
                 // Ordinals of the expansion count from 1.
                 let sample: Vec<usize> =
                     sample.into_iter().map(|index| lacking[index] as usize - 1).collect();
-                let verification = convert::new_verification(&expansion.references(&sample)?)?;
+                let verification = records::new_verification(&expansion.references(&sample)?)?;
                 Ok((expansion, verification))
             })
             .await?
         }
     };
     quota::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
-    let base_json = convert::write(&expansion.base)?;
+    let base_json = records::write(&expansion.base)?;
     let addition = Addition {
         base_json: &base_json,
         physics_version: PHYSICS_VERSION.into(),
@@ -545,7 +545,7 @@ pub(crate) async fn append(
     let most = LIMITS.points_per_sweep as u64;
     match app.store.append_points(&id, &addition, most).await? {
         AppendOutcome::Added(_) => {}
-        AppendOutcome::NoSuchSweep => return Err(convert::no_such_sweep(&id)),
+        AppendOutcome::NoSuchSweep => return Err(records::no_such_sweep(&id)),
         AppendOutcome::Cancelled => {
             return Err(Error::new(
                 ProblemKind::Conflict,
@@ -588,7 +588,7 @@ pub(crate) async fn table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let Some(sweep) = app.store.sweep(&id).await? else { return Err(convert::no_such_sweep(&id)) };
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let records = app.store.table_rows(&id).await?;
     let verified = Verified::load(&app.store, &id).await?;
     blocking(move || {

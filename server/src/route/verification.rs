@@ -10,12 +10,12 @@ use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::{self, Findings, VerifiedPoint};
 use drillsweep_store::{Store, TableRecord};
 
-use crate::answer::convert;
+use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query};
 use crate::answer::format::{self, Format};
-use crate::answer::work::blocking;
+use crate::answer::records;
 use crate::app::App;
 use crate::route::results::TableQuery;
 
@@ -35,7 +35,7 @@ impl Verified {
         let scenario = store.point(id, first.ordinal).await?.and_then(|point| point.scenario);
         blocking(move || {
             let points: Vec<VerifiedPoint> =
-                records.iter().map(convert::verified_point).collect::<Result<_>>()?;
+                records.iter().map(records::verified_point).collect::<Result<_>>()?;
             let promise = scenario.and_then(|scenario| promise_of_scenario(&scenario.base_json));
             let findings = Findings::new(&points, promise);
             Ok(Self { points, findings })
@@ -48,7 +48,7 @@ impl Verified {
         let by_ordinal: HashMap<u32, &VerifiedPoint> =
             self.points.iter().map(|point| (point.ordinal, point)).collect();
         let row = |record| {
-            let row = convert::point_summary(record)?;
+            let row = records::point_summary(record)?;
             let biases = by_ordinal.get(&row.ordinal).map(|point| point.biases()).unwrap_or_default();
             Ok(PointSummary { biases, ..row })
         };
@@ -85,7 +85,7 @@ pub(crate) async fn show(
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
     if app.store.sweep_version(&id).await?.is_none() {
-        return Err(convert::no_such_sweep(&id));
+        return Err(records::no_such_sweep(&id));
     }
     let verified = Verified::load(&app.store, &id).await?;
     blocking(move || {

@@ -58,7 +58,7 @@ impl Scenario {
     }
 }
 
-/// Every number anywhere must be finite; the other rules pass over those that are not.
+/// Every number anywhere must be finite; the other rules skip those that are not.
 fn finite(report: &mut Report, tree: &toml::Value, path: String) {
     match tree {
         toml::Value::Float(number) => {

@@ -48,7 +48,7 @@ impl<const D: usize> SkewPart<D> {
             Four::new(std::array::from_fn(|lane| entry(same_node, LANES * group + lane, i, j)))
         };
         let is_present = |group: usize, chosen: &dyn Fn(bool, usize, usize) -> bool| {
-            places::<D>(true, false).any(|(same_node, i, j)| {
+            coupled_entries::<D>(true, false).any(|(same_node, i, j)| {
                 chosen(same_node, i, j) && side_by_side(group, same_node, i, j).to_array() != [0.0; LANES]
             })
         };
@@ -59,7 +59,7 @@ impl<const D: usize> SkewPart<D> {
         for group in present {
             let only_bending =
                 !is_present(group, &|same_node, i, j| !is_kept::<D>(same_node, i, j, last_couples, true));
-            let kept = places::<D>(last_couples, only_bending);
+            let kept = coupled_entries::<D>(last_couples, only_bending);
             part.entries.extend(kept.map(|(same_node, i, j)| side_by_side(group, same_node, i, j)));
             part.groups.push(Rows { group, only_bending });
         }
@@ -156,7 +156,7 @@ fn add_block<const D: usize, const LAST: bool, const BENDING: bool, const SAME: 
 }
 
 /// Places of the entries that are kept, whether of the same node or the next one, row and column: in the order in which they are kept.
-fn places<const D: usize>(
+fn coupled_entries<const D: usize>(
     last_couples: bool,
     only_bending: bool,
 ) -> impl Iterator<Item = (bool, usize, usize)> {

@@ -52,9 +52,9 @@ pub enum Whirl {
 pub struct PeakSearch {
     /// At most so many, the highest first.
     pub count: usize,
-    /// Lines closer than this to a higher one are passed over \[Hz\].
+    /// Lines closer than this to a higher one are skipped \[Hz\].
     pub min_separation_hz: f64,
-    /// Whether the mean position (0 Hz) is passed over.
+    /// Whether the mean position (0 Hz) is skipped.
     pub exclude_mean: bool,
 }
 

@@ -20,16 +20,16 @@ use crate::scenario::{ContactLaw, Mud};
 const HYDRAULIC_PASSES: usize = 30;
 
 /// Change of an eccentricity at which string and mud have converged.
-const ECCENTRICITY_STANDSTILL: f64 = 1e-10;
+const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
 
-/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not arrive.
-const PATIENCE: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
+/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge.
+const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
 
 /// Stiffness of softer walls on the way to the scenario's own.
 const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
 /// Iterations of such a search.
-const PATIENT_ITERATIONS: usize = 1000;
+const FALLBACK_ITERATIONS: usize = 1000;
 
 /// The string at rest: displacements, internal forces, contacts, flow.
 #[derive(Debug, Clone)]
@@ -66,7 +66,7 @@ pub struct StaticsEffort {
 /// Why there is no equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
-    /// Newton's method did not arrive.
+    /// Newton's method did not converge.
     #[error(
         "no equilibrium after {iterations} iterations: the force left is {residual:.3e} N, largest at node {node}; {}",
         overload::verdict(overload.as_ref())
@@ -121,7 +121,7 @@ impl Equilibrium {
     /// The equilibrium of a model, searched from the centre line.
     ///
     /// # Errors
-    /// When Newton's method or the iteration with the hydraulics does not arrive.
+    /// When Newton's method or the iteration with the hydraulics does not converge.
     pub fn find(model: &Model) -> Result<Self, StaticsError> {
         Self::find_from(model, vec![[0.0; 6]; model.node_count()], &NewtonSettings::default())
     }
@@ -143,7 +143,7 @@ impl Equilibrium {
         for pass in 1..=HYDRAULIC_PASSES {
             let flows = sections.flows(&eccentricity)?;
             let drag = drag(model, &flows);
-            let outcome = patiently(model, &model.constant_load(&drag), &mut displacement, &settings)?;
+            let outcome = with_fallbacks(model, &model.constant_load(&drag), &mut displacement, &settings)?;
             newton_iterations += outcome.iterations;
             // Later passes start next to the solution: plain Newton from there.
             settings.initial_shift = 0.0;
@@ -155,7 +155,7 @@ impl Equilibrium {
                 }
                 *old = new;
             }
-            if flows.is_empty() || change <= ECCENTRICITY_STANDSTILL {
+            if flows.is_empty() || change <= ECCENTRICITY_TOLERANCE {
                 let effort =
                     StaticsEffort { newton_iterations, hydraulic_passes: pass, residual: outcome.residual };
                 return Self::assemble(model, displacement, flows, drag, effort);
@@ -212,9 +212,9 @@ impl Equilibrium {
     }
 }
 
-/// Newton's method, and where it does not arrive, again from the same start: against a soft wall that is hardened by and by, then with
+/// Newton's method, and where it does not converge, again from the same start: against a soft wall that is hardened by and by, then with
 /// shorter steps held by a stiffer spring.
-fn patiently(
+fn with_fallbacks(
     model: &Model,
     load: &[[f64; 6]],
     displacement: &mut NodalVector,
@@ -223,19 +223,19 @@ fn patiently(
     let start = displacement.clone();
     let failure = match newton::solve(model, &model.wall, load, displacement, settings) {
         Err(failure) => failure,
-        arrived => return arrived,
+        converged => return converged,
     };
     displacement.clone_from(&start);
     if let Ok(outcome) = against_a_hardening_wall(model, load, displacement) {
         return Ok(outcome);
     }
-    for (stiffer, shorter) in PATIENCE {
+    for (stiffer, shorter) in FALLBACK_STEPS {
         displacement.clone_from(&start);
         let defaults = NewtonSettings::default();
         let slow = NewtonSettings {
             initial_shift: stiffer * defaults.initial_shift,
             largest_step: shorter * defaults.largest_step,
-            iteration_limit: PATIENT_ITERATIONS,
+            iteration_limit: FALLBACK_ITERATIONS,
             ..defaults
         };
         if let Ok(outcome) = newton::solve(model, &model.wall, load, displacement, &slow) {

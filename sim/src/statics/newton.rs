@@ -24,7 +24,7 @@ pub struct NewtonSettings {
     pub largest_step: f64,
     /// Iterations after which the search is given up.
     pub iteration_limit: usize,
-    /// Last Newton step at which the search has arrived \[m, rad\].
+    /// Last Newton step at which the search has converged \[m, rad\].
     pub tolerance: f64,
 }
 

@@ -127,7 +127,7 @@ impl<'m> Transient<'m> {
         Ok(Self(match *system.moving() {
             [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], start)?)),
             [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], start)?)),
-            _ => Solved::Six(Box::new(Run::new(model, &system, system.places, start)?)),
+            _ => Solved::Six(Box::new(Run::new(model, &system, system.dofs, start)?)),
         }))
     }
 

@@ -120,11 +120,11 @@ enum Stepper<const D: usize> {
 }
 
 impl<'m, const D: usize> Run<'m, D> {
-    /// A run of the degrees of freedom `places` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
+    /// A run of the degrees of freedom `dofs` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
     pub(super) fn new(
         model: &'m Model,
         system: &DynamicSystem,
-        places: [usize; D],
+        dofs: [usize; D],
         Start { rest, normal_force, resolving_step }: Start<'_>,
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
@@ -134,9 +134,9 @@ impl<'m, const D: usize> Run<'m, D> {
             Integrator::Rk4 => stability::rk4_limit(model, system)?,
             _ => f64::INFINITY,
         };
-        let system = system.reduced_to(places);
+        let system = system.reduced_to(dofs);
         let forces = Forces::new(model, &system);
-        let initial: NodalVector<D> = rest.iter().map(|rest| places.map(|place| rest[place])).collect();
+        let initial: NodalVector<D> = rest.iter().map(|rest| dofs.map(|dof| rest[dof])).collect();
         let start = NodalField::from_nodes(&initial);
         let initial = &initial;
         let ledger = Ledger::new(model, &system, initial);
@@ -342,7 +342,7 @@ impl<'m, const D: usize> Run<'m, D> {
             for history in histories {
                 push(
                     history,
-                    &self.system.places,
+                    &self.system.dofs,
                     &self.rest,
                     &state.displacement.node(history.node),
                     &state.velocity.node(history.node),
@@ -374,7 +374,7 @@ impl<'m, const D: usize> Run<'m, D> {
                     }
                     _ => (end[0], end[1]),
                 };
-                push(history, &self.system.places, &self.rest, &x, &v);
+                push(history, &self.system.dofs, &self.rest, &x, &v);
             }
         }
     }
@@ -526,17 +526,17 @@ fn ledger_rows(samples: u64, every: u64) -> usize {
     (samples / every) as usize + 2
 }
 
-/// Adds a sample to a history: the degrees of freedom `places` as they move, the others at rest.
+/// Adds a sample to a history: the degrees of freedom `dofs` as they move, the others at rest.
 fn push<const D: usize>(
     history: &mut NodeHistory,
-    places: &[usize; D],
+    dofs: &[usize; D],
     rest: &NodalVector,
     x: &[f64; D],
     v: &[f64; D],
 ) {
     let all = |values: &[f64; D], held: [f64; 6]| {
-        places.iter().zip(values).fold(held, |mut all, (&place, value)| {
-            all[place] = *value;
+        dofs.iter().zip(values).fold(held, |mut all, (&dof, value)| {
+            all[dof] = *value;
             all
         })
     };

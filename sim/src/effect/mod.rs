@@ -1,6 +1,6 @@
 //! The effects of the model, one file each.
 //!
-//! A [`Room`] holds all that is an effect's own: whether a scene calls for it and why, what it adds to an element at rest and in
+//! A `Room` holds all that is an effect's own: whether a scene calls for it and why, what it adds to an element at rest and in
 //! motion, which degree of freedom it lets move, and by how much it is estimated to change frequencies. The model, the decisions and the
 //! energy ledger go over the rooms and know no effect by name; an effect that is off is not asked. What is shared by several effects
 //! and evaluated in the time step, the law of wall and friction, is in [`crate::contact`].

@@ -71,7 +71,7 @@ impl<const D: usize> Block<D> {
     pub fn add(&mut self, other: &Self) {
         for (column, other) in self.columns.iter_mut().zip(&other.columns) {
             for (entry, other) in column.iter_mut().zip(other) {
-                *entry = *entry + *other;
+                *entry += *other;
             }
         }
     }

@@ -258,7 +258,7 @@ fn against_a_hardening_wall(
 ) -> Result<newton::NewtonOutcome, StaticsError> {
     let own = &model.scenario.contact;
     for share in SOFT_WALLS {
-        let law = ContactLaw { stiffness: share * own.stiffness, ..own.clone() };
+        let law = ContactLaw { stiffness: share * own.stiffness, ..*own };
         let soft = model.wall.with_law(&law, &model.effects);
         newton::solve(model, &soft, load, displacement, &NewtonSettings::default())?;
     }

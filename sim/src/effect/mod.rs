@@ -1,9 +1,10 @@
 //! The effects of the model, one file each.
 //!
-//! A `Room` holds all that is an effect's own: whether a scene calls for it and why, what it adds to an element at rest and in
-//! motion, which degree of freedom it lets move, and by how much it is estimated to change frequencies. The model, the decisions and the
-//! energy ledger go over the rooms and know no effect by name; an effect that is off is not asked. What is shared by several effects
-//! and evaluated in the time step, the law of wall and friction, is in [`crate::contact`].
+//! A `Room` holds what is an effect's own: whether a scene calls for it and why, what it adds to an element at rest and in motion,
+//! which degree of freedom it lets move, and by how much it is estimated to change frequencies. The element, the equations of motion and
+//! the decisions go over the rooms of the effects that are on; the energy ledger goes by the [`Account`]s under which they add their
+//! damping. What pushes single nodes stands where it is evaluated: the law of wall and friction in [`crate::contact`], which the time step
+//! asks for four nodes side by side, the unbalance in [`crate::motion`].
 
 mod axial_motion;
 mod axial_stiffening;

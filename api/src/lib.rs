@@ -21,6 +21,7 @@ pub mod service;
 pub mod sweep;
 pub mod table;
 pub mod units;
+pub mod time_span;
 pub mod verify;
 pub mod view;
 

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_api::time_span;
 use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::{WorkerConfig, host_name};
@@ -162,18 +163,10 @@ fn lease(seconds: f64) -> anyhow::Result<Duration> {
     Ok(Duration::from_secs_f64(seconds))
 }
 
-/// A time span: `3h`, `90m`, `600s`, or seconds as a number.
+/// A time span above 0: `3h`, `90m`, `600s`, or seconds as a number.
 fn parse_span(text: &str) -> anyhow::Result<Duration> {
-    let units = [("h", 3600.0), ("m", 60.0), ("s", 1.0)];
-    let (digits, scale) = units
-        .into_iter()
-        .find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)))
-        .unwrap_or((text, 1.0));
-    let seconds = digits.trim().parse::<f64>().ok().map(|number| number * scale);
-    seconds
-        .filter(|seconds| *seconds > 0.0)
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .with_context(|| format!("write a time span such as 3h, 90m or 600s, got {text:?}"))
+    let span = time_span::parse(text).ok().filter(|span| !span.is_zero());
+    span.with_context(|| format!("write a time span such as 3h, 90m or 600s, got {text:?}"))
 }
 
 fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 use std::str::FromStr;
+use std::time::Duration;
 
 use anyhow::Context;
 use clap::{Args, Subcommand, ValueEnum};
-use drillsweep_api::LIMITS;
+use drillsweep_api::{LIMITS, time_span};
 use drillsweep_store::{NewToken, Role, Store, TokenRecord, TokenScope, TokenSecret};
 use serde_json::json;
 
@@ -46,7 +47,7 @@ pub(crate) struct CreateArguments {
     /// A name for people, such as the machine that it is for.
     #[arg(long)]
     name: Option<String>,
-    /// How long it is valid: days as `90d`, hours as `12h`, or `never` for without end.
+    /// How long it is valid: a time span such as `90d` or `12h`, or `never` for without end.
     #[arg(long, default_value = "365d")]
     expires: Lifetime,
 }
@@ -61,6 +62,10 @@ enum Scope {
     Admin,
 }
 
+/// The shortest and the longest that something lasts.
+const SHORTEST: Duration = Duration::from_secs(1);
+const LONGEST: Duration = Duration::from_secs(36_500 * 86_400);
+
 /// How long something lasts \[ms\]; none means without end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Lifetime(pub(crate) Option<i64>);
@@ -69,18 +74,15 @@ impl FromStr for Lifetime {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        const HOUR_MS: i64 = 3_600_000;
         if text == "never" {
             return Ok(Lifetime(None));
         }
-        let (number, unit) = match text.strip_suffix('d') {
-            Some(days) => (days, 24 * HOUR_MS),
-            None => (text.strip_suffix('h').unwrap_or_default(), HOUR_MS),
-        };
-        match number.parse::<i64>() {
-            Ok(number @ 1..=36_500) => Ok(Lifetime(Some(number * unit))),
-            _ => Err("must be days such as 90d, hours such as 12h, or never".to_owned()),
-        }
+        // A number alone may be meant as days.
+        let has_unit = text.parse::<f64>().is_err();
+        let span = time_span::parse(text).ok().filter(|span| has_unit && (SHORTEST..=LONGEST).contains(span));
+        let milliseconds = span.and_then(|span| i64::try_from(span.as_millis()).ok());
+        let invalid = || "must be a time span such as 90d or 12h, up to a hundred years, or never".to_owned();
+        milliseconds.map(|milliseconds| Lifetime(Some(milliseconds))).ok_or_else(invalid)
     }
 }
 
@@ -203,7 +205,7 @@ mod tests {
         assert_eq!("90d".parse(), Ok(Lifetime(Some(90 * 86_400_000))));
         assert_eq!("12h".parse(), Ok(Lifetime(Some(12 * 3_600_000))));
         assert_eq!("never".parse(), Ok(Lifetime(None)));
-        for text in ["", "d", "0d", "-1d", "90", "1e9d", "40000d", "90 d"] {
+        for text in ["", "d", "0d", "-1d", "90", "1e9d", "40000d", "soon"] {
             assert!(text.parse::<Lifetime>().is_err(), "{text}");
         }
     }

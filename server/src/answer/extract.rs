@@ -137,8 +137,10 @@ fn describe(expected_type: &str) -> &str {
 
 /// Query values by what they are, with messages that say what would be valid.
 pub(crate) mod value {
-    use serde::{Deserialize, Deserializer, de::Error};
     use std::time::Duration;
+
+    use drillsweep_api::time_span;
+    use serde::{Deserialize, Deserializer, de::Error};
 
     /// A finite number.
     pub(crate) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
@@ -179,15 +181,7 @@ pub(crate) mod value {
     /// A time span: `30s`, `500ms` or, in seconds, `30`.
     pub(crate) fn span<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Duration>, D::Error> {
         let text = String::deserialize(deserializer)?;
-        let (digits, scale) = match text.strip_suffix("ms") {
-            Some(digits) => (digits, 1e-3),
-            None => (text.strip_suffix('s').unwrap_or(&text), 1.0),
-        };
-        let seconds = digits.parse().ok().map(|number: f64| number * scale);
-        seconds
-            .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-            .map(Some)
-            .ok_or_else(|| D::Error::custom("must be a time span such as 30s, 500ms or 30 (seconds)"))
+        time_span::parse(&text).map(Some).map_err(D::Error::custom)
     }
 }
 

@@ -10,11 +10,12 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 /// Who may use whom, among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
     ("drillsweep-sim", &[]),
-    ("drillsweep-api", &["drillsweep-sim"]),
-    ("drillsweep-chart", &["drillsweep-api", "drillsweep-sim"]),
+    ("drillsweep-table", &[]),
+    ("drillsweep-api", &["drillsweep-sim", "drillsweep-table"]),
+    ("drillsweep-chart", &["drillsweep-api", "drillsweep-sim", "drillsweep-table"]),
     ("drillsweep-store", &[]),
-    ("drillsweep-server", &["drillsweep-api", "drillsweep-chart", "drillsweep-store"]),
-    ("drillsweep-worker", &["drillsweep-api", "drillsweep-sim", "drillsweep-store"]),
+    ("drillsweep-server", &["drillsweep-api", "drillsweep-chart", "drillsweep-store", "drillsweep-table"]),
+    ("drillsweep-worker", &["drillsweep-api", "drillsweep-sim", "drillsweep-store", "drillsweep-table"]),
     (
         "drillsweep",
         &[
@@ -23,6 +24,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "drillsweep-server",
             "drillsweep-sim",
             "drillsweep-store",
+            "drillsweep-table",
             "drillsweep-worker",
         ],
     ),
@@ -32,7 +34,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 const CONFINED: &[(&str, &[&str])] = &[
     ("sqlx", &["drillsweep-store"]),
     ("object_store", &["drillsweep-store"]),
-    ("parquet", &["drillsweep-store"]),
+    ("parquet", &["drillsweep-table"]),
+    ("csv", &["drillsweep-table"]),
     ("axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),
     ("resvg", &["drillsweep-chart"]),

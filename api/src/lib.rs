@@ -1,7 +1,7 @@
 //! The contract of the service: what is asked for, what is answered, and how it is derived from results.
 //!
 //! A [`SweepRequest`] is [expanded](expand()) into the points to compute; what comes of them is shown as a
-//! [`Sweep`], as [points](point) and as [tables](table::Table); what goes wrong as [problems](problem). The
+//! [`Sweep`], as [points](point) and as [tables](drillsweep_table::Table); what goes wrong as [problems](problem). The
 //! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
@@ -12,15 +12,12 @@ mod design;
 pub mod dry_run;
 pub mod event;
 pub mod expand;
-pub mod npz;
 pub mod point;
 pub mod preset;
 pub mod problem;
 pub mod request;
 pub mod service;
 pub mod sweep;
-pub mod table;
-pub mod units;
 pub mod time_span;
 pub mod verify;
 pub mod view;
@@ -40,7 +37,6 @@ pub use service::{
     Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
 };
 pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState, SweepVerification};
-pub use table::{Column, Table};
 pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -182,6 +182,13 @@ pub struct PointError {
     pub details: Map<String, Value>,
 }
 
+impl PointError {
+    /// A failure with its reason alone.
+    pub fn new(class: FailureClass, reason: impl Into<String>) -> Self {
+        PointError { class, reason: reason.into(), time: None, node: None, details: Map::new() }
+    }
+}
+
 /// What kind of failure ended a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]

@@ -1,5 +1,6 @@
 //! Errors on the wire: RFC 9457 problem details, all of a request's problems at once.
 
+use drillsweep_table::Table;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -227,6 +228,13 @@ impl ProblemDetails {
         };
         let detail = format!("{name}: {detail}");
         ProblemDetails { errors: vec![error], ..ProblemDetails::new(ProblemKind::InvalidParameter, detail) }
+    }
+
+    /// The problem that a table has no column of this name, which `fields` asks for; it names those that there are.
+    pub fn no_such_column(table: &Table, name: &str) -> Self {
+        let names: Vec<&str> = table.columns.keys().map(String::as_str).collect();
+        let detail = format!("there is no such column; there are {}", names.join(", "));
+        Self::invalid_parameter("fields", Some(name), detail)
     }
 }
 

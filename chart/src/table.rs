@@ -3,9 +3,10 @@
 //! Each function takes the very table that is served as JSON or CSV and gives a [`Drawing`] of it.
 
 use drillsweep_api::problem::ProblemDetails;
-use drillsweep_api::table::{Column, Table};
-use drillsweep_api::units;
 use drillsweep_api::view::verification::{Findings, is_bias_column};
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::{self, Name, Unit, units};
+use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 use serde_json::Value;
 
@@ -30,8 +31,7 @@ pub struct Hole {
 /// The title of a picture: what it shows, and at which parameters.
 pub fn caption(what: &str, parameters: &IndexMap<String, f64>) -> String {
     let value = |(name, value): (&String, &f64)| {
-        let unit =
-            units::unit(name).filter(|unit| *unit != "1").map_or_else(String::new, |unit| format!(" {unit}"));
+        let unit = kept_in(name).map_or_else(String::new, |unit| format!(" {unit}"));
         format!(", {} {}{unit}", words(name), three_digits(*value))
     };
     let values: String = parameters.iter().map(value).collect();
@@ -47,16 +47,17 @@ pub fn profile(
     fields: Option<&[String]>,
     title: &str,
 ) -> Result<Drawing, Box<ProblemDetails>> {
-    let fallback = if table.columns.contains_key("friction_coefficient") {
-        "friction_coefficient"
+    let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
+        FRICTION_COEFFICIENT.name
     } else {
-        "eccentricity"
+        ECCENTRICITY.name
     };
     let names: Vec<&str> = match fields {
         Some(fields) => fields.iter().map(String::as_str).collect(),
         None => vec![fallback],
     };
-    let (top, bottom) = (numbers(table, "measured_depth_top")?, numbers(table, "measured_depth_bottom")?);
+    let (top, bottom) =
+        (numbers(table, MEASURED_DEPTH_TOP.name)?, numbers(table, MEASURED_DEPTH_BOTTOM.name)?);
     let shown = Shown::of(table, &names)?;
     let line = |(name, values): (&str, Vec<f64>)| Line {
         name: words(name),
@@ -71,7 +72,7 @@ pub fn profile(
     let plot = LinePlot {
         title: title.to_owned(),
         x_label: shown.label(),
-        y_label: "measured depth [m]".to_owned(),
+        y_label: with_unit(MEASURED_DEPTH.name),
         lines: shown.columns.into_iter().map(line).collect(),
         vertical: VerticalAxis::Depth,
         ..LinePlot::default()
@@ -88,15 +89,13 @@ pub fn history(
     fields: Option<&[String]>,
     title: &str,
 ) -> Result<Drawing, Box<ProblemDetails>> {
-    let is_lateral = |name: &&str| {
-        let number = name.strip_prefix("u_").or_else(|| name.strip_prefix("v_"));
-        number.is_some_and(|number| number.parse::<u32>().is_ok())
-    };
+    let is_lateral =
+        |name: &&str| Name::parse(name).is_some_and(|name| name.quantity == &U || name.quantity == &V);
     let names: Vec<&str> = match fields {
         Some(fields) => fields.iter().map(String::as_str).collect(),
         None => table.columns.keys().map(String::as_str).filter(is_lateral).collect(),
     };
-    let time = numbers(table, "time")?;
+    let time = numbers(table, TIME.name)?;
     let shown = Shown::of(table, &names)?;
     let y_label = shown.label();
     let line = |(name, values): (&str, Vec<f64>)| Line {
@@ -107,7 +106,7 @@ pub fn history(
     let plot = LinePlot {
         title: title.to_owned(),
         subtitle: node_of(table),
-        x_label: "time [s]".to_owned(),
+        x_label: with_unit(TIME.name),
         y_label,
         lines: shown.columns.into_iter().map(line).collect(),
         ..LinePlot::default()
@@ -120,7 +119,7 @@ pub fn history(
 /// # Errors
 /// When the table is not an orbit.
 pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
-    let (time, u, v) = (numbers(table, "time")?, numbers(table, "u")?, numbers(table, "v")?);
+    let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {
         (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
         _ => String::new(),
@@ -128,10 +127,10 @@ pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<Pro
     let plot = OrbitPlot {
         title: title.to_owned(),
         subtitle: format!("{}{window}; the mark is the end", node_of(table)),
-        path: u.iter().zip(v).map(|(u, v)| [1e3 * u, 1e3 * v]).collect(),
-        wall: hole.clearance.map(|clearance| 1e3 * clearance),
+        path: u.iter().zip(v).map(|(u, v)| [shown(*u), shown(v)]).collect(),
+        wall: hole.clearance.map(shown),
         low_side: hole.low_side,
-        unit: "mm".to_owned(),
+        unit: units::WIDTH.shown.symbol.to_owned(),
     };
     Ok(plot.drawing())
 }
@@ -142,12 +141,12 @@ pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<Pro
 /// # Errors
 /// When the table is not a spectrum.
 pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
-    let (frequency, amplitude) = (numbers(table, "frequency")?, numbers(table, "amplitude")?);
+    let (frequency, amplitude) = (numbers(table, FREQUENCY.name)?, numbers(table, AMPLITUDE.name)?);
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     let mean_width = MEAN_BINS * attribute("resolution").unwrap_or(0.0);
     let is_motion = |frequency: f64| frequency.abs() > mean_width;
     let points = frequency.iter().zip(&amplitude).map(|(frequency, amplitude)| {
-        [*frequency, if is_motion(*frequency) { 1e3 * amplitude } else { f64::NAN }]
+        [*frequency, if is_motion(*frequency) { shown(*amplitude) } else { f64::NAN }]
     });
     let peaks = table.attributes.get("peaks").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     // A line between two bins is higher than the curve; its name stands on the curve all the same.
@@ -155,7 +154,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
     let curve_at = |line: f64| {
         let near =
             frequency.iter().zip(&amplitude).filter(|(frequency, _)| (**frequency - line).abs() <= bin);
-        1e3 * near.fold(0.0, |most: f64, (_, amplitude)| most.max(*amplitude))
+        shown(near.fold(0.0, |most: f64, (_, amplitude)| most.max(*amplitude)))
     };
     let resolved = attribute("resolved_hz");
     let is_resolved = |frequency: f64| resolved.is_none_or(|resolved| frequency.abs() <= resolved);
@@ -165,7 +164,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
         name: format!("beyond what the step resolves (±{} Hz)", three_digits(beyond)),
     });
     let label = |peak: &Value| {
-        let (frequency, amplitude) = (peak["frequency"].as_f64()?, 1e3 * peak["amplitude"].as_f64()?);
+        let (frequency, amplitude) = (peak["frequency"].as_f64()?, shown(peak["amplitude"].as_f64()?));
         let text = format!("{frequency:+.2} Hz, {amplitude:.2} mm").replace('-', "−");
         (is_motion(frequency) && is_resolved(frequency))
             .then(|| Label { at: [frequency, curve_at(frequency)], text })
@@ -178,8 +177,8 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
             node_of(table),
             attribute("samples").unwrap_or(0.0)
         ),
-        x_label: "frequency [Hz]".to_owned(),
-        y_label: "amplitude [mm]".to_owned(),
+        x_label: with_unit(FREQUENCY.name),
+        y_label: format!("{} [{}]", words(AMPLITUDE.name), units::WIDTH.shown.symbol),
         lines: vec![Line { points: points.collect(), ..Line::default() }],
         vertical: VerticalAxis::FromZero,
         labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
@@ -212,7 +211,7 @@ pub fn sweep(
     let varied: Vec<&str> =
         parameters.iter().map(String::as_str).filter(|name| is_varied(table, name)).collect();
     let (x, y) = match varied.as_slice() {
-        [] => ("ordinal", None),
+        [] => (ORDINAL.name, None),
         [only] => (*only, None),
         [first, second, ..] => (*first, Some(*second)),
     };
@@ -278,31 +277,29 @@ fn verified_rows(table: &Table) -> Vec<bool> {
 /// Columns that are shown on one axis, in its unit.
 struct Shown<'t> {
     columns: Vec<(&'t str, Vec<f64>)>,
-    unit: Option<&'static str>,
+    unit: Option<Unit>,
 }
 
 impl<'t> Shown<'t> {
     /// The numeric columns of these names; they must have one unit.
     fn of(table: &'t Table, names: &[&str]) -> Result<Self, Box<ProblemDetails>> {
         let mut columns = Vec::new();
-        let mut unit = None;
         for name in names {
             let Some((name, _)) = table.columns.get_key_value(*name) else {
-                return Err(table.no_such_column(name));
+                return Err(ProblemDetails::no_such_column(table, name).into());
             };
-            let of_column = units::unit(name);
-            if columns.is_empty() {
-                unit = of_column;
-            } else if unit != of_column {
+            if names.first().is_some_and(|first| quantity::unit(first) != quantity::unit(name)) {
                 let detail =
                     format!("the columns of a picture must have one unit; {name} has another than the first");
                 return Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into());
             }
             columns.push((name.as_str(), numbers(table, name)?));
         }
-        let (factor, unit) = presented(unit, names.first().copied().unwrap_or_default());
-        for (_, values) in &mut columns {
-            values.iter_mut().for_each(|value| *value *= factor);
+        let unit = names.first().and_then(|name| shown_in(name));
+        if let Some(unit) = unit {
+            for value in columns.iter_mut().flat_map(|(_, values)| values) {
+                *value = unit.of(*value);
+            }
         }
         Ok(Shown { columns, unit })
     }
@@ -312,40 +309,38 @@ impl<'t> Shown<'t> {
         let name = match self.columns.as_slice() {
             [(only, _)] => words(only),
             [] => String::new(),
-            _ if self.unit == Some("mm") => "displacement".to_owned(),
+            _ if self.unit == Some(units::WIDTH.shown) => "displacement".to_owned(),
             _ => "value".to_owned(),
         };
         match self.unit {
-            Some(unit) => format!("{name} [{unit}]"),
+            Some(unit) => format!("{name} [{}]", unit.symbol),
             None => name,
         }
     }
 }
 
-/// The factor and the unit in which engineers read a quantity.
-fn presented(unit: Option<&'static str>, name: &str) -> (f64, Option<&'static str>) {
-    match unit {
-        Some("m") if name.contains("depth") => (1.0, unit),
-        Some("m") => (1e3, Some("mm")),
-        Some("N") => (1e-3, Some("kN")),
-        Some("N m") => (1e-3, Some("kN m")),
-        Some("Pa") => (1e-6, Some("MPa")),
-        Some("1") | None => (1.0, None),
-        Some(_) => (1.0, unit),
-    }
+/// The unit in which engineers read a column; none of ratios and numbers of things.
+fn shown_in(name: &str) -> Option<Unit> {
+    Name::parse(name)?.units().filter(|units| *units != &units::RATIO).map(|units| units.shown)
+}
+
+/// The unit in which a column is kept; none of ratios and numbers of things.
+fn kept_in(name: &str) -> Option<&'static str> {
+    Name::parse(name)?.unit().filter(|unit| *unit != units::RATIO.kept)
+}
+
+/// A length across the hole in the unit in which it is shown.
+fn shown(width: f64) -> f64 {
+    units::WIDTH.shown.of(width)
 }
 
 /// A column's name in words.
 fn words(name: &str) -> String {
-    match name {
-        "friction_coefficient" => "friction coefficient C_f".to_owned(),
-        "rotation_damping" => "damping k of rotation".to_owned(),
-        name => name.replace('_', " "),
-    }
+    Name::parse(name).map_or_else(|| name.replace('_', " "), |name| name.to_string())
 }
 
 fn with_unit(name: &str) -> String {
-    match units::unit(name).filter(|unit| *unit != "1") {
+    match kept_in(name) {
         Some(unit) => format!("{} [{unit}]", words(name)),
         None => words(name),
     }
@@ -354,7 +349,7 @@ fn with_unit(name: &str) -> String {
 /// The node that a table is of.
 fn node_of(table: &Table) -> String {
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
-    match (attribute("node"), attribute("measured_depth")) {
+    match (attribute(NODE.name), attribute(MEASURED_DEPTH.name)) {
         (Some(node), Some(depth)) => format!("node {node} at {depth:.2} m"),
         _ => String::new(),
     }
@@ -363,15 +358,11 @@ fn node_of(table: &Table) -> String {
 /// The values of a numeric column; missing ones are not finite.
 fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
     match table.columns.get(name) {
-        Some(Column::Number(values)) => Ok(values.clone()),
-        Some(Column::Integer(values)) => {
-            Ok(values.iter().map(|value| value.map_or(f64::NAN, |value| value as f64)).collect())
-        }
-        Some(Column::Text(_)) => {
+        Some(column) => column.numbers().ok_or_else(|| {
             let detail = "is a column of texts, which a picture cannot show";
-            Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into())
-        }
-        None => Err(table.no_such_column(name)),
+            ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
+        }),
+        None => Err(ProblemDetails::no_such_column(table, name).into()),
     }
 }
 

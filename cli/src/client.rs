@@ -4,7 +4,10 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::Args;
-use serde_json::Value;
+use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use ureq::http::{HeaderMap, Response};
 use ureq::{Body, RequestBuilder};
 
@@ -40,17 +43,17 @@ impl Client {
     }
 
     /// Posts JSON and reads JSON.
-    pub(crate) fn post(&self, path: &str, body: &Value) -> anyhow::Result<Value> {
+    pub(crate) fn post<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> anyhow::Result<T> {
         self.post_with(path, body, &[])
     }
 
     /// The same with headers of its own.
-    pub(crate) fn post_with(
+    pub(crate) fn post_with<T: DeserializeOwned>(
         &self,
         path: &str,
-        body: &Value,
+        body: &impl Serialize,
         headers: &[(&str, &str)],
-    ) -> anyhow::Result<Value> {
+    ) -> anyhow::Result<T> {
         let url = format!("{}{path}", self.server);
         let mut request = self.authorized(self.agent.post(&url));
         for (name, value) in headers {
@@ -61,18 +64,18 @@ impl Client {
     }
 
     /// Changes what JSON names, and reads JSON.
-    pub(crate) fn patch(&self, path: &str, body: &Value) -> anyhow::Result<Value> {
+    pub(crate) fn patch<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> anyhow::Result<T> {
         let url = format!("{}{path}", self.server);
         json(self.authorized(self.agent.patch(&url)).send_json(body).with_context(|| no_answer(&url))?)
     }
 
     /// Reads JSON.
-    pub(crate) fn get(&self, path: &str) -> anyhow::Result<Value> {
+    pub(crate) fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         json(self.request(path)?)
     }
 
     /// Reads JSON, and tries again for a while where the server does not answer or is not available.
-    pub(crate) fn get_with_retries(&self, path: &str) -> anyhow::Result<Value> {
+    pub(crate) fn get_with_retries<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let answer = self.request(path);
@@ -89,16 +92,16 @@ impl Client {
         }
     }
 
-    /// All entries of a list that is served in pages.
-    pub(crate) fn pages(&self, path: &str, entries: &str) -> anyhow::Result<Vec<Value>> {
+    /// All points of a sweep, which are served in pages.
+    pub(crate) fn points(&self, sweep: &str) -> anyhow::Result<Vec<PointRow>> {
+        let path = format!("/v1/sweeps/{}/points?limit={}", path_segment(sweep), LIMITS.page_size);
         let mut all = Vec::new();
         let mut cursor = String::new();
         loop {
-            let separator = if path.contains('?') { '&' } else { '?' };
-            let page = self.get(&format!("{path}{separator}limit=500{cursor}"))?;
-            all.extend(page[entries].as_array().into_iter().flatten().cloned());
-            match page["next"].as_str() {
-                Some(next) => cursor = format!("&cursor={next}"),
+            let page: PointList = self.get(&format!("{path}{cursor}"))?;
+            all.extend(page.points);
+            match page.next {
+                Some(next) => cursor = format!("&cursor={}", path_segment(&next)),
                 None => return Ok(all),
             }
         }
@@ -130,7 +133,7 @@ fn no_answer(url: &str) -> String {
     format!("no answer from {url}; is the server up?")
 }
 
-fn json(mut response: Response<Body>) -> anyhow::Result<Value> {
+fn json<T: DeserializeOwned>(mut response: Response<Body>) -> anyhow::Result<T> {
     if !response.status().is_success() {
         bail!("{}", problem(&mut response));
     }
@@ -146,18 +149,32 @@ fn retry_after(headers: &HeaderMap) -> Option<Duration> {
 /// A problem document in lines for people.
 fn problem(response: &mut Response<Body>) -> String {
     let status = response.status();
-    let Ok(problem) = response.body_mut().read_json::<Value>() else {
+    let Ok(problem) = response.body_mut().read_json::<ProblemDetails>() else {
         return format!("the server answered {status}");
     };
-    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let mut lines = vec![format!("{status}: {}", text(&problem["title"]))];
-    if !problem["detail"].is_null() {
-        lines.push(text(&problem["detail"]));
-    }
-    for error in problem["errors"].as_array().into_iter().flatten() {
-        let place = [&error["pointer"], &error["parameter"]].into_iter().find(|place| !place.is_null());
-        let place = place.map_or(String::new(), |place| format!("{}: ", text(place)));
-        lines.push(format!("  {place}{}", text(&error["detail"])));
+    let mut lines = vec![format!("{status}: {}", problem.title), problem.detail];
+    for error in problem.errors {
+        let place = error.pointer.or(error.parameter).map_or_else(String::new, |place| format!("{place}: "));
+        lines.push(format!("  {place}{}", error.detail));
     }
     lines.join("\n")
+}
+
+/// What does not stand for itself in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.
+const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+
+/// A text as a segment of a path, or as the value of a query.
+pub(crate) fn path_segment(text: &str) -> String {
+    utf8_percent_encode(text, RESERVED).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identifiers_cannot_leave_their_place_in_a_path() {
+        assert_eq!(path_segment("019a-b_c.~"), "019a-b_c.~");
+        assert_eq!(path_segment("../x?y#z é"), "..%2Fx%3Fy%23z%20%C3%A9");
+    }
 }

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use drillsweep_api::cost::{Measure, csv, summary, summary_csv, summary_text, text};
+use drillsweep_api::cost::{Measure, summary, summary_table, summary_text, table, text};
 use drillsweep_chart::{PNG_WIDTH, work_precision};
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::cost::CostReport;
+use drillsweep_table::csv;
 use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
@@ -96,7 +97,7 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
         }
         match arguments.format {
             Format::Text => print(text(&report).trim_end()),
-            Format::Csv => print(csv(&report).trim_end()),
+            Format::Csv => print(csv::write(&table(&report))?.trim_end()),
             Format::Json => print(&serde_json::to_string_pretty(&report)?),
         }
         return Ok(());
@@ -126,7 +127,7 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
     let rows = summary(&reports);
     match arguments.format {
         Format::Text => print(summary_text(&rows).trim_end()),
-        Format::Csv => print(summary_csv(&rows).trim_end()),
+        Format::Csv => print(csv::write(&summary_table(&rows))?.trim_end()),
         Format::Json => {
             print(&serde_json::to_string_pretty(&json!({ "reports": reports, "summary": rows }))?);
         }
@@ -208,7 +209,7 @@ fn folder_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 fn write_summary(reports: &[CostReport], directory: &Path) -> anyhow::Result<()> {
     let rows = summary(reports);
     let files = [
-        ("summary.csv", summary_csv(&rows).into_bytes()),
+        ("summary.csv", csv::write(&summary_table(&rows))?.into_bytes()),
         ("summary.json", serde_json::to_vec_pretty(&rows)?),
     ];
     for (name, bytes) in files {
@@ -219,8 +220,10 @@ fn write_summary(reports: &[CostReport], directory: &Path) -> anyhow::Result<()>
 
 fn write(report: &CostReport, directory: &Path, measure: Option<Measure>) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
-    let mut files =
-        vec![("cost.csv", csv(report).into_bytes()), ("cost.json", serde_json::to_vec_pretty(report)?)];
+    let mut files = vec![
+        ("cost.csv", csv::write(&table(report))?.into_bytes()),
+        ("cost.json", serde_json::to_vec_pretty(report)?),
+    ];
     if report.compared().next().is_some() {
         let drawing = work_precision(report, measure.unwrap_or_else(|| Measure::usual(report)));
         files.extend([("cost.svg", drawing.svg().into_bytes()), ("cost.png", drawing.png(PNG_WIDTH)?)]);

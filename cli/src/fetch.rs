@@ -4,15 +4,19 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, ValueEnum};
+use drillsweep_api::{PointDetail, Sweep};
+use drillsweep_table::quantity::columns::ORBIT_MEAN_RADIUS;
+use drillsweep_table::quantity::tables::{self, Layout};
+use drillsweep_table::quantity::{Name, Variant};
 use indicatif::ProgressBar;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
-use crate::client::{Client, ServerArguments};
+use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
-use crate::sweeps::percent_encoded;
 
 /// Tables of one point.
-const TABLES: [&str; 5] = ["profile", "statics", "history", "contacts", "energy"];
+static TABLES: [&Layout; 5] =
+    [&tables::PROFILE, &tables::STATICS, &tables::HISTORY, &tables::CONTACTS, &tables::ENERGY];
 
 #[derive(Args)]
 pub(crate) struct FetchArguments {
@@ -54,7 +58,7 @@ impl Format {
 /// Writes `table.csv` with a row a point, and a folder a point with its tables and full spectra.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let id = &percent_encoded(&arguments.sweep);
+    let id = &path_segment(&arguments.sweep);
     let format = arguments.format.name();
     std::fs::create_dir_all(&arguments.output)
         .with_context(|| format!("cannot make {}", arguments.output.display()))?;
@@ -73,18 +77,17 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
 }
 
 fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Files) -> anyhow::Result<()> {
-    let sweep = client.get(&format!("/v1/sweeps/{id}"))?;
-    let total = sweep["counts"]["total"].as_u64().unwrap_or(0);
+    let sweep: Sweep = client.get(&format!("/v1/sweeps/{id}"))?;
+    let total = sweep.counts.total;
     let bar = ProgressBar::new(total);
     for ordinal in 1..=total {
         let path = format!("/v1/sweeps/{id}/points/{ordinal}");
-        let point = client.get(&path)?;
+        let point: PointDetail = client.get(&path)?;
         let folder = output.join(format!("point-{ordinal:04}"));
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         files.write(folder.join("point.json"), serde_json::to_string_pretty(&point)?.as_bytes())?;
-        let has =
-            |name: &str| point["tables"].as_array().is_some_and(|tables| tables.iter().any(|t| t == name));
-        for table in TABLES.into_iter().filter(|table| has(table)) {
+        let has = |name: &str| point.tables.iter().any(|table| table == name);
+        for table in TABLES.iter().map(|table| table.name).filter(|table| has(table)) {
             let bytes = client.bytes(&format!("{path}/{table}?format={format}"))?;
             files.write(folder.join(format!("{table}.{format}")), &bytes)?;
         }
@@ -94,12 +97,10 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
                 files.write(folder.join(format!("cost.{extension}")), &bytes)?;
             }
         }
-        if has("history") {
-            for node in recorded_nodes(&point["summary"]) {
-                for window in
-                    point["scenario"]["recording"]["spectrum_windows"].as_array().into_iter().flatten()
-                {
-                    let (from, to) = (&window["from"], &window["to"]);
+        if has(tables::HISTORY.name) {
+            for node in point.summary.iter().flat_map(recorded_nodes) {
+                for window in &point.scenario.recording.spectrum_windows {
+                    let (from, to) = (json!(window.from), json!(window.to));
                     let query = format!("node={node}&from={from}&to={to}&window=hann&format={format}");
                     let bytes = client.bytes(&format!("{path}/spectrum?{query}"))?;
                     let name = format!("spectrum-node{node}-{from}-{to}s.{format}");
@@ -113,11 +114,10 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
     Ok(())
 }
 
-/// Numbers of the nodes that a summary speaks of.
-fn recorded_nodes(summary: &serde_json::Value) -> Vec<u32> {
-    let prefix = "orbit_mean_radius_";
-    let names = summary.as_object().into_iter().flat_map(|summary| summary.keys());
-    names.filter_map(|name| name.strip_prefix(prefix)?.parse().ok()).collect()
+/// Numbers of the nodes that a summary has orbits of.
+fn recorded_nodes(summary: &Map<String, Value>) -> impl Iterator<Item = usize> {
+    let of_orbit = |name: &Name<'_>| name.quantity == &ORBIT_MEAN_RADIUS && name.variant == Variant::Value;
+    summary.keys().filter_map(move |name| Name::parse(name).filter(of_orbit)?.node)
 }
 
 /// The files as they are written.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use anyhow::ensure;
 use clap::Args;
+use drillsweep_api::Health;
 use drillsweep_store::{Role, Store};
 
 use crate::client::{Client, ServerArguments};
@@ -27,7 +28,7 @@ pub(crate) struct HealthArguments {
 /// Fails unless the server can work, or a worker of this machine has given a sign of life.
 pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
     if !arguments.worker {
-        Client::new(&arguments.server).get("/readyz")?;
+        let _: Health = Client::new(&arguments.server).get("/readyz")?;
         print("the server can work");
         return Ok(());
     }

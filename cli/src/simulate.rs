@@ -52,7 +52,7 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
     }
     if arguments.json {
         let mut summary = computed.summary_row();
-        summary.insert("provenance".into(), Value::Object(computed.provenance.clone()));
+        summary.insert("provenance".into(), json!(computed.provenance));
         print(&serde_json::to_string_pretty(&summary)?);
     } else {
         print(summary_text(&scenario, &computed)?.trim_end());
@@ -156,7 +156,7 @@ fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
 fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<String> {
     let mut text = String::new();
     let statics = &computed.statics;
-    let cost = |name: &str| computed.provenance.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+    let provenance = &computed.provenance;
     writeln!(text, "{}", if scenario.name.is_empty() { "scenario" } else { &scenario.name })?;
     writeln!(text, "equilibrium")?;
     writeln!(
@@ -186,7 +186,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
     if let Some(stability) = &computed.stability {
         writeln!(text, "{stability}")?;
     }
-    if let Some(transient) = &computed.transient {
+    if let (Some(transient), Some(run)) = (&computed.transient, &provenance.run) {
         for orbit in &transient.orbits {
             writeln!(
                 text,
@@ -242,8 +242,8 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         writeln!(
             text,
             "steps of {} to {} ms resolve vibrations up to {:.0} Hz; {} captures of sticking nodes",
-            1e3 * cost("shortest_step"),
-            1e3 * cost("longest_step"),
+            1e3 * run.shortest_step,
+            1e3 * run.longest_step,
             transient.resolved_hz,
             transient.capture_count
         )?;
@@ -251,18 +251,18 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         writeln!(
             text,
             "{} steps, {:.2} s wall, {:.2} s CPU ({:.4} CPU s per simulated s)",
-            cost("steps"),
-            cost("transient_wall_time"),
-            cost("transient_cpu_time"),
-            cost("transient_cpu_time") / simulated
+            run.steps,
+            run.transient_wall_time,
+            run.transient_cpu_time,
+            run.transient_cpu_time / simulated
         )?;
     }
     writeln!(
         text,
         "equilibrium with hydraulics: {:.1} ms, {} Newton iterations in {} passes",
-        cost("statics_wall_time") * 1e3,
-        cost("newton_iterations"),
-        cost("hydraulic_passes")
+        provenance.statics_wall_time * 1e3,
+        provenance.newton_iterations,
+        provenance.hydraulic_passes
     )?;
     Ok(text)
 }

@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use clap::Args;
-use serde_json::{Map, Value, json};
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use drillsweep_api::{AppendRequest, Axis, AxisName, Design, Scale, Sweep, SweepRequest};
+use serde_json::{Value, json};
 
-use crate::client::{Client, ServerArguments};
+use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 use crate::simulate::{parse_set, parse_value};
-use crate::sweeps::{percent_encoded, print_sweep, verification_line, warn_of_bias};
+use crate::sweeps::{print_sweep, verification_line, warn_of_bias};
 use crate::watch::{check, follow};
 
 #[derive(Args)]
@@ -69,17 +71,21 @@ pub(crate) struct SubmitArguments {
 pub(crate) struct DesignArguments {
     /// Flow rates \[m3/s\]: `0.01,0.04,0.06` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
-    flow_rate: Option<Value>,
+    flow_rate: Option<Axis>,
     /// Mud densities \[kg/m3\]: `1200,1500` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
-    mud_density: Option<Value>,
+    mud_density: Option<Axis>,
     /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
     /// `contact.stiffness=1e5:1e7:5:log`; with the designs that draw, `from:to` or `from:to:log`.
     #[arg(long, value_name = "PATH=VALUES", value_parser = parse_named_axis)]
-    axis: Vec<(String, Value)>,
+    axis: Vec<(String, Axis)>,
     /// How points are made from the axes.
-    #[arg(long, default_value = "grid", value_parser = ["grid", "zip", "latin_hypercube", "sobol"])]
-    design: String,
+    #[arg(
+        long,
+        default_value = "grid",
+        value_parser = PossibleValuesParser::new(["grid", "zip", "latin_hypercube", "sobol"]).try_map(design)
+    )]
+    design: Design,
     /// Number of points of a design that draws.
     #[arg(long)]
     samples: Option<u32>,
@@ -106,89 +112,81 @@ pub(crate) struct AppendArguments {
 
 impl DesignArguments {
     /// What a request says of its points.
-    fn request(&self) -> Map<String, Value> {
-        let mut axes = Map::new();
-        for (name, axis) in [("flow_rate", &self.flow_rate), ("mud_density", &self.mud_density)] {
-            if let Some(axis) = axis {
-                axes.insert(name.into(), axis.clone());
-            }
+    fn request(&self) -> AppendRequest {
+        let named = [("flow_rate", &self.flow_rate), ("mud_density", &self.mud_density)];
+        let named = named.into_iter().filter_map(|(name, axis)| Some((name, axis.as_ref()?)));
+        let further = self.axis.iter().map(|(name, axis)| (name.as_str(), axis));
+        AppendRequest {
+            design: self.design,
+            axes: named.chain(further).map(|(name, axis)| (AxisName::from(name), axis.clone())).collect(),
+            points: Vec::new(),
+            samples: self.samples,
+            seed: self.seed,
+            skip: self.skip,
         }
-        axes.extend(self.axis.iter().cloned());
-        let mut request = Map::from_iter([
-            ("axes".to_owned(), Value::Object(axes)),
-            ("design".to_owned(), json!(self.design)),
-        ]);
-        for (name, number) in [
-            ("samples", self.samples.map(u64::from)),
-            ("seed", self.seed),
-            ("skip", self.skip.map(u64::from)),
-        ] {
-            if let Some(number) = number {
-                request.insert(name.to_owned(), json!(number));
-            }
-        }
-        request
     }
 }
 
 /// Adds points to a sweep; prints how it stands then.
 pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
-    let path = format!("/v1/sweeps/{}/points", percent_encoded(&arguments.sweep));
-    let request = Value::Object(arguments.design.request());
-    let sweep = Client::new(&arguments.server).post(&path, &request)?;
+    let path = format!("/v1/sweeps/{}/points", path_segment(&arguments.sweep));
+    let sweep = Client::new(&arguments.server).post(&path, &arguments.design.request())?;
     warn(&sweep);
     print_sweep(&sweep, arguments.json)
+}
+
+impl SubmitArguments {
+    fn request(&self) -> anyhow::Result<SweepRequest> {
+        let AppendRequest { design, axes, points, samples, seed, skip } = self.design.request();
+        let path = PathBuf::from(&self.scenario);
+        let is_file = path.extension().is_some_and(|extension| extension == "toml" || extension == "json");
+        let (preset, scenario) = if is_file {
+            (None, Some(Box::new(crate::simulate::read_scenario(&self.scenario)?)))
+        } else {
+            (Some(self.scenario.clone()), None)
+        };
+        let accuracy = self.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
+        let outputs = self.outputs.clone().map(serde_json::from_value).transpose();
+        Ok(SweepRequest {
+            name: self.name.clone(),
+            owner: self.owner.clone(),
+            tags: self.tags.iter().cloned().collect(),
+            preset,
+            scenario,
+            set: self.set.iter().cloned().chain(accuracy).collect(),
+            outputs: outputs.context("--outputs")?,
+            design,
+            axes,
+            points,
+            samples,
+            seed,
+            skip,
+            verify: self.verify,
+            priority: self.priority.unwrap_or_default(),
+        })
+    }
 }
 
 /// Submits a sweep; watches it unless told otherwise; prints its identifier.
 pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let mut request = arguments.design.request();
-    let path = PathBuf::from(&arguments.scenario);
-    if path.extension().is_some_and(|extension| extension == "toml" || extension == "json") {
-        let scenario = crate::simulate::read_scenario(&arguments.scenario)?;
-        request.insert("scenario".into(), serde_json::from_str(&scenario.to_json())?);
-    } else {
-        request.insert("preset".into(), json!(arguments.scenario));
-    }
-    let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
-    let set: Map<String, Value> = arguments.set.iter().cloned().chain(accuracy).collect();
-    if !set.is_empty() {
-        request.insert("set".into(), Value::Object(set));
-    }
-    if let Some(outputs) = &arguments.outputs {
-        request.insert("outputs".into(), outputs.clone());
-    }
-    if let Some(verify) = arguments.verify {
-        request.insert("verify".into(), json!(verify));
-    }
-    if let Some(priority) = arguments.priority {
-        request.insert("priority".into(), json!(priority));
-    }
-    if !arguments.tags.is_empty() {
-        request.insert("tags".into(), json!(arguments.tags));
-    }
-    for (name, text) in [("name", &arguments.name), ("owner", &arguments.owner)] {
-        if let Some(text) = text {
-            request.insert(name.into(), json!(text));
-        }
-    }
-    let request = Value::Object(request);
+    let request = arguments.request()?;
     if arguments.dry_run {
         let dry_run = format!("/v1/sweeps?dry_run=true&cache={}", arguments.cache);
-        print(&serde_json::to_string_pretty(&client.post(&dry_run, &request)?)?);
+        let answer: Value = client.post(&dry_run, &request)?;
+        print(&serde_json::to_string_pretty(&answer)?);
         return Ok(());
     }
     let key = arguments.idempotency_key.as_deref();
     let headers: Vec<(&str, &str)> = key.map(|key| ("idempotency-key", key)).into_iter().collect();
-    let sweep = client.post_with(&format!("/v1/sweeps?cache={}", arguments.cache), &request, &headers)?;
+    let sweep: Sweep =
+        client.post_with(&format!("/v1/sweeps?cache={}", arguments.cache), &request, &headers)?;
     warn(&sweep);
-    let id = sweep["id"].as_str().context("the server's answer has no id")?;
     if !arguments.json {
-        print(id);
+        print(&sweep.id);
     }
-    let sweep = if arguments.detach { sweep } else { follow(&client, id)? };
-    if let Some(verification) = sweep.get("verification") {
+    let sweep = if arguments.detach { sweep } else { follow(&client, &sweep.id)? };
+    if let Some(verification) = &sweep.verification {
         // To the log: what is printed is the identifier alone, for scripts.
         tracing::info!("{}", verification_line(verification));
     }
@@ -200,38 +198,41 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
 }
 
 /// What can be simulated but is probably not meant.
-fn warn(sweep: &Value) {
-    for warning in sweep["warnings"].as_array().into_iter().flatten() {
-        let text = |name: &str| warning[name].as_str().unwrap_or_default();
-        tracing::warn!("{}: {}", text("pointer"), text("detail"));
+fn warn(sweep: &Sweep) {
+    for warning in &sweep.warnings {
+        tracing::warn!("{}: {}", warning.pointer.as_deref().unwrap_or_default(), warning.detail);
     }
 }
 
+fn design(name: String) -> Result<Design, serde_json::Error> {
+    serde_json::from_value(Value::String(name))
+}
+
 /// `path=` and values as [`parse_axis`] reads them.
-fn parse_named_axis(text: &str) -> anyhow::Result<(String, Value)> {
+fn parse_named_axis(text: &str) -> anyhow::Result<(String, Axis)> {
     let (path, values) = text.split_once('=').with_context(|| format!("write PATH=VALUES, got {text:?}"))?;
     Ok((path.trim().to_owned(), parse_axis(values)?))
 }
 
 /// `a,b,c`, `from:to:count`, `from:to`, the latter two with `:log` for equal ratios.
-fn parse_axis(text: &str) -> anyhow::Result<Value> {
+fn parse_axis(text: &str) -> anyhow::Result<Axis> {
     let number = |text: &str| -> anyhow::Result<f64> {
         text.trim().parse().with_context(|| format!("{text:?} is not a number"))
     };
     let (text, scale) = match text.strip_suffix(":log") {
-        Some(range) => (range, "log"),
-        None => (text, "linear"),
+        Some(range) => (range, Scale::Log),
+        None => (text, Scale::Linear),
     };
     let parts: Vec<&str> = text.split(':').collect();
     match parts[..] {
-        [from, to] => Ok(json!({ "from": number(from)?, "to": number(to)?, "scale": scale })),
+        [from, to] => Ok(Axis::Interval { from: number(from)?, to: number(to)?, scale }),
         [list] => {
             let values: anyhow::Result<Vec<f64>> = list.split(',').map(number).collect();
-            Ok(json!({ "values": values? }))
+            Ok(Axis::Values { values: values? })
         }
         [from, to, count] => {
             let count: u32 = count.trim().parse().with_context(|| format!("{count:?} is not a count"))?;
-            Ok(json!({ "from": number(from)?, "to": number(to)?, "count": count, "scale": scale }))
+            Ok(Axis::Range { from: number(from)?, to: number(to)?, count, scale })
         }
         _ => bail!("write a list such as 0.01,0.04 or a range from:to:count, got {text:?}"),
     }

@@ -4,11 +4,15 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use drillsweep_api::units::unit;
+use drillsweep_api::{
+    FailureList, PointCounts, PointDetail, Queue, Sweep, SweepList, SweepPatch, SweepVerification, WorkerList,
+};
+use drillsweep_table::quantity::unit;
 use jiff::{SignedDuration, Timestamp};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Value, json};
 
-use crate::client::{Client, ServerArguments};
+use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 use crate::text::{Alignment, columns};
 use crate::token::Lifetime;
@@ -97,29 +101,27 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
         ("tag", &arguments.tag),
     ];
     let path = with_filters(format!("/v1/sweeps?limit={}", arguments.limit), &filters);
-    let page = Client::new(&arguments.server).get(&path)?;
+    let page: SweepList = Client::new(&arguments.server).get(&path)?;
     if arguments.json {
         return print_json(&page);
     }
-    let rows: Vec<Vec<String>> = entries(&page["sweeps"])
-        .map(|sweep| {
-            let counts = &sweep["counts"];
-            vec![
-                text(&sweep["id"]),
-                text(&sweep["state"]),
-                text(&counts["total"]),
-                text(&counts["succeeded"]),
-                text(&counts["failed"]),
-                seconds(&sweep["created"]),
-                text(&sweep["owner"]),
-                text(&sweep["name"]),
-                entries(&sweep["tags"]).map(text).collect::<Vec<_>>().join(" "),
-            ]
-        })
-        .collect();
+    let row = |sweep: &Sweep| {
+        vec![
+            sweep.id.clone(),
+            sweep.state.as_str().to_owned(),
+            sweep.counts.total.to_string(),
+            sweep.counts.succeeded.to_string(),
+            sweep.counts.failed.to_string(),
+            seconds(sweep.created),
+            sweep.owner.clone(),
+            sweep.name.clone().unwrap_or_default(),
+            sweep.tags.join(" "),
+        ]
+    };
+    let rows: Vec<Vec<String>> = page.sweeps.iter().map(row).collect();
     let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name", "tags"];
     print(&columns(&header, &rows, numbers_in(&[2, 3, 4])));
-    if !page["next"].is_null() {
+    if page.next.is_some() {
         print("older ones are left out; --limit shows more");
     }
     Ok(())
@@ -129,25 +131,28 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
 pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
     let filters = [("owner", &arguments.owner), ("class", &arguments.class)];
     let path = with_filters(format!("/v1/failures?limit={}", arguments.limit), &filters);
-    let page = Client::new(&arguments.server).get(&path)?;
+    let page: FailureList = Client::new(&arguments.server).get(&path)?;
     if arguments.json {
         return print_json(&page);
     }
-    let rows: Vec<Vec<String>> = entries(&page["failures"])
-        .map(|point| {
+    let rows: Vec<Vec<String>> = page
+        .failures
+        .iter()
+        .map(|failure| {
+            let error = failure.point.error.as_ref();
             vec![
-                seconds(&point["at"]),
-                text(&point["sweep"]),
-                text(&point["ordinal"]),
-                text(&point["attempts"]),
-                text(&point["error"]["class"]),
-                text(&point["error"]["reason"]),
+                seconds(failure.at),
+                failure.sweep.clone(),
+                failure.point.ordinal.to_string(),
+                failure.point.attempts.to_string(),
+                error.map_or_else(String::new, |error| error.class.as_str().to_owned()),
+                error.map_or_else(String::new, |error| error.reason.clone()),
             ]
         })
         .collect();
     let header = ["given up (UTC)", "sweep", "point", "attempts", "class", "error"];
     print(&columns(&header, &rows, numbers_in(&[2, 3])));
-    if !page["next"].is_null() {
+    if page.next.is_some() {
         print("older ones are left out; --limit shows more");
     }
     Ok(())
@@ -156,36 +161,35 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
 /// Prints a sweep with a line a point, or one point with its results.
 pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let path = format!("/v1/sweeps/{}", percent_encoded(&arguments.sweep));
+    let path = format!("/v1/sweeps/{}", path_segment(&arguments.sweep));
     if let Some(number) = arguments.point {
-        let point = client.get(&format!("{path}/points/{number}"))?;
+        let point: PointDetail = client.get(&format!("{path}/points/{number}"))?;
         return if arguments.json { print_json(&point) } else { print_point(&point) };
     }
-    let mut sweep = client.get(&path)?;
-    let points = client.pages(&format!("{path}/points"), "points")?;
+    let sweep: Sweep = client.get(&path)?;
+    let points = client.points(&arguments.sweep)?;
     if arguments.json {
-        sweep["points"] = Value::Array(points);
+        let mut sweep = json!(sweep);
+        sweep["points"] = json!(points);
         return print_json(&sweep);
     }
     print(&sweep_line(&sweep));
     warn_of_bias(&sweep);
-    let names: Vec<&String> = points
-        .first()
-        .and_then(|point| point["parameters"].as_object())
-        .into_iter()
-        .flat_map(|p| p.keys())
-        .collect();
+    let names: Vec<&String> = points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
     let mut header = vec!["point", "state", "progress", "attempts"];
     header.extend(names.iter().map(|name| name.as_str()));
     header.push("error");
     let rows: Vec<Vec<String>> = points
         .iter()
         .map(|point| {
-            let progress = format!("{:.0} %", 100.0 * point["progress"].as_f64().unwrap_or(0.0));
-            let mut row =
-                vec![text(&point["ordinal"]), text(&point["state"]), progress, text(&point["attempts"])];
-            row.extend(names.iter().map(|name| text(&point["parameters"][name.as_str()])));
-            row.push(text(&point["error"]["reason"]));
+            let mut row = vec![
+                point.ordinal.to_string(),
+                point.state.to_string(),
+                format!("{:.0} %", 100.0 * point.progress),
+                point.attempts.to_string(),
+            ];
+            row.extend(names.iter().map(|name| text(&json!(point.parameters.get(*name)))));
+            row.push(point.error.as_ref().map_or_else(String::new, |error| error.reason.clone()));
             row
         })
         .collect();
@@ -219,8 +223,8 @@ pub(crate) fn resume(arguments: &SweepArguments) -> anyhow::Result<()> {
 }
 
 fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
-    let path = format!("/v1/sweeps/{}/{verb}", percent_encoded(&arguments.sweep));
-    let sweep = Client::new(&arguments.server).post(&path, &json!({}))?;
+    let path = format!("/v1/sweeps/{}/{verb}", path_segment(&arguments.sweep));
+    let sweep: Sweep = Client::new(&arguments.server).post(&path, &json!({}))?;
     print_sweep(&sweep, arguments.json)
 }
 
@@ -267,30 +271,25 @@ struct Changes {
 /// Changes name, tags, priority, pin or expiry of a sweep.
 pub(crate) fn change(arguments: &ChangeArguments) -> anyhow::Result<()> {
     let Changes { name, priority, tags, no_tags, pin, unpin, expires } = &arguments.changes;
-    let mut patch = Map::new();
-    if let Some(name) = name {
-        patch.insert("name".into(), if name.is_empty() { Value::Null } else { json!(name) });
-    }
-    if let Some(priority) = priority {
-        patch.insert("priority".into(), json!(priority));
-    }
-    if *no_tags || !tags.is_empty() {
-        patch.insert("tags".into(), json!(tags));
-    }
-    if *pin || *unpin {
-        patch.insert("pinned".into(), json!(pin));
-    }
-    if let Some(Lifetime(milliseconds)) = expires {
-        let at = |ms| Timestamp::now().checked_add(SignedDuration::from_millis(ms));
-        patch.insert("expires".into(), json!(milliseconds.map(at).transpose()?));
-    }
-    let path = format!("/v1/sweeps/{}", percent_encoded(&arguments.sweep));
-    let sweep = Client::new(&arguments.server).patch(&path, &Value::Object(patch))?;
+    let at = |ms| Timestamp::now().checked_add(SignedDuration::from_millis(ms));
+    let expires = match expires {
+        Some(Lifetime(milliseconds)) => Some(milliseconds.map(at).transpose()?),
+        None => None,
+    };
+    let patch = SweepPatch {
+        name: name.clone().map(|name| Some(name).filter(|name| !name.is_empty())),
+        priority: *priority,
+        tags: (*no_tags || !tags.is_empty()).then(|| tags.iter().cloned().collect()),
+        pinned: (*pin || *unpin).then_some(*pin),
+        expires,
+    };
+    let path = format!("/v1/sweeps/{}", path_segment(&arguments.sweep));
+    let sweep: Sweep = Client::new(&arguments.server).patch(&path, &patch)?;
     print_sweep(&sweep, arguments.json)
 }
 
 /// Prints a sweep in one line, or as JSON.
-pub(crate) fn print_sweep(sweep: &Value, as_json: bool) -> anyhow::Result<()> {
+pub(crate) fn print_sweep(sweep: &Sweep, as_json: bool) -> anyhow::Result<()> {
     if as_json {
         return print_json(sweep);
     }
@@ -301,24 +300,20 @@ pub(crate) fn print_sweep(sweep: &Value, as_json: bool) -> anyhow::Result<()> {
 /// Prints the workers and the depth of the queue.
 pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let queue = client.get("/v1/queue")?;
-    let workers = client.get("/v1/workers")?["workers"].take();
+    let queue: Queue = client.get("/v1/queue")?;
+    let WorkerList { workers } = client.get("/v1/workers")?;
     if arguments.json {
         return print_json(&json!({ "queue": queue, "workers": workers }));
     }
     print(&format!(
         "queue: {} waiting, {} paused, {} waiting for a retry, {} running",
-        text(&queue["queued"]),
-        text(&queue["paused"]),
-        text(&queue["waiting_for_retry"]),
-        text(&queue["running"])
+        queue.queued, queue.paused, queue.waiting_for_retry, queue.running
     ));
-    let rows: Vec<Vec<String>> = entries(&workers)
+    let rows: Vec<Vec<String>> = workers
+        .into_iter()
         .map(|worker| {
-            ["id", "host", "process", "version", "physics_version", "seen"]
-                .iter()
-                .map(|name| text(&worker[*name]))
-                .collect()
+            let (process, physics) = (worker.process.to_string(), worker.physics_version.to_string());
+            vec![worker.id, worker.host, process, worker.version, physics, worker.seen.to_string()]
         })
         .collect();
     let header = ["worker", "host", "process", "version", "physics", "last seen (UTC)"];
@@ -327,63 +322,72 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
 }
 
 /// A sweep in one line, and in a second what verifying some of its points has shown.
-pub(crate) fn sweep_line(sweep: &Value) -> String {
-    let counts = &sweep["counts"];
-    let mut line =
-        format!("{} {}: {} points", text(&sweep["id"]), text(&sweep["state"]), text(&counts["total"]));
-    for state in ["succeeded", "running", "queued", "failed", "cancelled"] {
-        if counts[state].as_u64().is_some_and(|number| number > 0) {
-            let _ = write!(line, ", {} {state}", counts[state]);
-        }
-    }
-    if let Some(verification) = sweep.get("verification") {
+pub(crate) fn sweep_line(sweep: &Sweep) -> String {
+    let counts = &sweep.counts;
+    let mut line = format!("{} {}: {} points", sweep.id, sweep.state.as_str(), counts.total);
+    write_counts(&mut line, &[(counts.succeeded, "succeeded")]);
+    write_counts(&mut line, &unfinished(counts));
+    if let Some(verification) = &sweep.verification {
         let _ = write!(line, "\n{}", verification_line(verification));
     }
     line
 }
 
 /// How far the points are verified, and the worst bias of orbit size.
-pub(crate) fn verification_line(verification: &Value) -> String {
-    let (counts, worst) = (&verification["counts"], &verification["worst"]);
-    let mut line = format!("verified by the reference: {} of {}", counts["succeeded"], counts["total"]);
-    for state in ["running", "queued", "failed", "cancelled"] {
-        if counts[state].as_u64().is_some_and(|number| number > 0) {
-            let _ = write!(line, ", {} {state}", counts[state]);
+pub(crate) fn verification_line(verification: &SweepVerification) -> String {
+    let counts = &verification.counts;
+    let mut line = format!("verified by the reference: {} of {}", counts.succeeded, counts.total);
+    write_counts(&mut line, &unfinished(counts));
+    if let Some(worst) = &verification.worst {
+        let (statistic, percent) = (&worst.statistic, 100.0 * worst.bias);
+        let _ = write!(line, "; bias of {statistic} up to {percent:+.2} % (point {})", worst.ordinal);
+        if let Some(promised) = worst.promised {
+            let _ = write!(line, ", promised {:.1} %", 100.0 * promised);
         }
-    }
-    if let Some(bias) = worst["bias"].as_f64() {
-        let (statistic, ordinal) = (text(&worst["statistic"]), text(&worst["ordinal"]));
-        let _ = write!(line, "; bias of {statistic} up to {:+.2} % (point {ordinal})", 100.0 * bias);
-    }
-    if let Some(promised) = worst["promised"].as_f64() {
-        let _ = write!(line, ", promised {:.1} %", 100.0 * promised);
     }
     line
 }
 
-/// Warns where verifying points has shown biases beyond what the accuracy promises.
-pub(crate) fn warn_of_bias(sweep: &Value) {
-    for warning in entries(&sweep["verification"]["warnings"]) {
-        tracing::warn!("{}", text(warning));
+/// The points that have no result, by state.
+fn unfinished(counts: &PointCounts) -> [(u64, &'static str); 4] {
+    [
+        (counts.running, "running"),
+        (counts.queued, "queued"),
+        (counts.failed, "failed"),
+        (counts.cancelled, "cancelled"),
+    ]
+}
+
+/// The states that occur.
+fn write_counts(line: &mut String, counts: &[(u64, &str)]) {
+    for (number, state) in counts.iter().filter(|(number, _)| *number > 0) {
+        let _ = write!(line, ", {number} {state}");
     }
 }
 
-fn print_point(point: &Value) -> anyhow::Result<()> {
-    print(&format!("point {} {}", text(&point["ordinal"]), text(&point["state"])));
-    if let Some(error) = point["error"].as_object() {
+/// Warns where verifying points has shown biases beyond what the accuracy promises.
+pub(crate) fn warn_of_bias(sweep: &Sweep) {
+    for warning in sweep.verification.iter().flat_map(|verification| &verification.warnings) {
+        tracing::warn!("{warning}");
+    }
+}
+
+fn print_point(point: &PointDetail) -> anyhow::Result<()> {
+    print(&format!("point {} {}", point.row.ordinal, point.row.state));
+    if let Some(error) = json!(point.row.error).as_object() {
         for (name, value) in error {
             print(&format!("  {name}: {}", text(value)));
         }
     }
-    let mut rows = Vec::new();
-    for group in ["parameters", "summary"] {
-        for (name, value) in point[group].as_object().into_iter().flatten() {
-            let unit = unit(name).filter(|unit| *unit != "1").unwrap_or_default();
-            rows.push(vec![name.clone(), text(value), unit.to_owned()]);
-        }
-    }
+    let parameters = point.row.parameters.iter().map(|(name, value)| (name, json!(value)));
+    let summary = point.summary.iter().flatten().map(|(name, value)| (name, value.clone()));
+    let row = |(name, value): (&String, Value)| {
+        let unit = unit(name).filter(|unit| *unit != "1").unwrap_or_default();
+        vec![name.clone(), text(&value), unit.to_owned()]
+    };
+    let rows: Vec<Vec<String>> = parameters.chain(summary).map(row).collect();
     print(&columns(&["quantity", "value", "unit"], &rows, numbers_in(&[1])));
-    let provenance = point["provenance"].as_object().into_iter().flatten();
+    let provenance = point.provenance.iter().flatten();
     let provenance: Vec<Vec<String>> =
         provenance.map(|(name, value)| vec![name.clone(), text(value)]).collect();
     if !provenance.is_empty() {
@@ -392,13 +396,9 @@ fn print_point(point: &Value) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn print_json(value: &Value) -> anyhow::Result<()> {
+fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     print(&serde_json::to_string_pretty(value)?);
     Ok(())
-}
-
-fn entries(list: &Value) -> impl Iterator<Item = &Value> {
-    list.as_array().into_iter().flatten()
 }
 
 fn numbers_in(right: &'static [usize]) -> impl Fn(usize) -> Alignment {
@@ -414,73 +414,58 @@ fn text(value: &Value) -> String {
 }
 
 /// A time to within the second.
-fn seconds(time: &Value) -> String {
-    text(time).chars().take("2026-01-01T00:00:00".len()).collect()
+fn seconds(time: Timestamp) -> String {
+    time.strftime("%Y-%m-%dT%H:%M:%S").to_string()
 }
 
 /// A path with the filters of a list that are given.
 fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String {
     for (name, value) in filters {
         if let Some(value) = value {
-            let _ = write!(path, "&{name}={}", percent_encoded(value));
+            let _ = write!(path, "&{name}={}", path_segment(value));
         }
     }
     path
 }
 
-/// A text as part of a path or query.
-pub(crate) fn percent_encoded(text: &str) -> String {
-    let mut encoded = String::new();
-    for byte in text.bytes() {
-        match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => {
-                encoded.push(char::from(byte))
-            }
-            _ => {
-                let _ = write!(encoded, "%{byte:02X}");
-            }
-        }
-    }
-    encoded
-}
-
 #[cfg(test)]
 mod tests {
+    use drillsweep_api::SweepLinks;
+    use drillsweep_api::view::verification::WorstBias;
+
     use super::*;
 
-    #[test]
-    fn identifiers_cannot_leave_their_place_in_a_path() {
-        assert_eq!(percent_encoded("019a-b_c.~"), "019a-b_c.~");
-        assert_eq!(percent_encoded("../x?y#z é"), "..%2Fx%3Fy%23z%20%C3%A9");
+    fn sweep(counts: PointCounts) -> Sweep {
+        serde_json::from_value(json!({
+            "id": "a", "owner": "default", "state": "running", "counts": counts, "progress": 0.5, "priority": 0,
+            "created": "2026-01-01T00:00:00Z", "links": SweepLinks::new("a"),
+        }))
+        .unwrap()
     }
 
     #[test]
     fn a_line_names_only_the_states_that_occur() {
-        let sweep = json!({
-            "id": "a", "state": "running",
-            "counts": {"total": 3, "queued": 0, "running": 1, "succeeded": 2, "failed": 0, "cancelled": 0},
-        });
-        assert_eq!(sweep_line(&sweep), "a running: 3 points, 2 succeeded, 1 running");
+        let counts = PointCounts { total: 3, running: 1, succeeded: 2, ..PointCounts::default() };
+        assert_eq!(sweep_line(&sweep(counts)), "a running: 3 points, 2 succeeded, 1 running");
     }
 
     #[test]
     fn a_second_line_says_what_verifying_has_shown() {
-        let mut sweep = json!({
-            "id": "a", "state": "running",
-            "counts": {"total": 3, "queued": 0, "running": 0, "succeeded": 3, "failed": 0, "cancelled": 0},
-            "verification": {"counts": {"total": 2, "queued": 0, "running": 1, "succeeded": 1, "failed": 0, "cancelled": 0}},
-        });
+        let counts = PointCounts { total: 2, running: 1, succeeded: 1, ..PointCounts::default() };
+        let verification = SweepVerification { counts, worst: None, warnings: Vec::new() };
+        assert_eq!(verification_line(&verification), "verified by the reference: 1 of 2, 1 running");
+        let worst = WorstBias {
+            statistic: "orbit_radius_rms_49".to_owned(),
+            ordinal: 7,
+            bias: 0.4,
+            promised: Some(0.02),
+        };
+        let verification = SweepVerification { worst: Some(worst), ..verification };
+        let done = PointCounts { total: 3, succeeded: 3, ..PointCounts::default() };
         assert_eq!(
-            sweep_line(&sweep),
-            "a running: 3 points, 3 succeeded\nverified by the reference: 1 of 2, 1 running"
-        );
-        sweep["verification"]["worst"] =
-            json!({"statistic": "orbit_radius_rms_49", "ordinal": 7, "bias": 0.4, "promised": 0.02});
-        let line = sweep_line(&sweep);
-        let (_, verified) = line.split_once('\n').unwrap();
-        assert_eq!(
-            verified,
-            "verified by the reference: 1 of 2, 1 running; bias of orbit_radius_rms_49 up to +40.00 % (point 7), promised 2.0 %"
+            sweep_line(&Sweep { verification: Some(verification), ..sweep(done) }),
+            "a running: 3 points, 3 succeeded\n\
+             verified by the reference: 1 of 2, 1 running; bias of orbit_radius_rms_49 up to +40.00 % (point 7), promised 2.0 %"
         );
     }
 }

@@ -2,12 +2,12 @@
 
 use anyhow::ensure;
 use clap::Args;
+use drillsweep_api::{Sweep, SweepVerification};
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::Value;
 
-use crate::client::{Client, ServerArguments};
+use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
-use crate::sweeps::{percent_encoded, sweep_line, warn_of_bias};
+use crate::sweeps::{sweep_line, warn_of_bias};
 
 #[derive(Args)]
 pub(crate) struct WatchArguments {
@@ -34,28 +34,25 @@ pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
 
 /// Follows a sweep with a progress bar and returns it as it is when every point is final. A server that is away for
 /// a while, as when it is started anew, is waited for.
-pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Value> {
-    let path = format!("/v1/sweeps/{}", percent_encoded(id));
+pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
+    let path = format!("/v1/sweeps/{}", path_segment(id));
     let bar = ProgressBar::new(1000);
     bar.set_style(ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed}, {eta} left, {msg}")?);
-    let mut sweep = client.get(&path)?;
+    let mut sweep: Sweep = client.get(&path)?;
     loop {
-        let counts = &sweep["counts"];
-        let count = |name: &str| counts[name].as_u64().unwrap_or(0);
-        bar.set_position((sweep["progress"].as_f64().unwrap_or(0.0) * 1000.0) as u64);
-        let verified = &sweep["verification"]["counts"];
-        let verified = match verified["total"].as_u64() {
-            Some(total) => format!(", {} of {total} verified", verified["succeeded"]),
+        let counts = &sweep.counts;
+        bar.set_position((sweep.progress * 1000.0) as u64);
+        let verified = match &sweep.verification {
+            Some(SweepVerification { counts, .. }) => {
+                format!(", {} of {} verified", counts.succeeded, counts.total)
+            }
             None => String::new(),
         };
         bar.set_message(format!(
             "{} of {} points, {} running, {} failed{verified}",
-            count("succeeded"),
-            count("total"),
-            count("running"),
-            count("failed")
+            counts.succeeded, counts.total, counts.running, counts.failed
         ));
-        if !sweep["finished"].is_null() {
+        if sweep.finished.is_some() {
             bar.abandon();
             return Ok(sweep);
         }
@@ -64,18 +61,13 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Value> {
 }
 
 /// An error if a point has no result, so that scripts can tell by the exit status.
-pub(crate) fn check(sweep: &Value) -> anyhow::Result<()> {
-    let count = |name: &str| sweep["counts"][name].as_u64().unwrap_or(0);
-    let id = sweep["id"].as_str().unwrap_or_default();
+pub(crate) fn check(sweep: &Sweep) -> anyhow::Result<()> {
+    let Sweep { id, counts, .. } = sweep;
+    ensure!(counts.failed == 0, "{} points failed; `drillsweep show {id}` has the reasons", counts.failed);
     ensure!(
-        count("failed") == 0,
-        "{} points failed; `drillsweep show {id}` has the reasons",
-        count("failed")
-    );
-    ensure!(
-        count("cancelled") == 0,
+        counts.cancelled == 0,
         "{} points were cancelled; `drillsweep retry {id}` queues them",
-        count("cancelled")
+        counts.cancelled
     );
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! The HTTP service: routes, formats and long polls over the store. It computes nothing but views of results.
 //!
 //! [`serve`] runs it on a listener until told to stop; [`router`] is the same without the network, for tests
-//! and for embedding; [`openapi`] is the document that it serves.
+//! and for embedding; [`openapi_json`] is the document that it serves.
 
 mod answer;
 mod app;
@@ -12,5 +12,5 @@ mod serve;
 
 pub use app::Config;
 pub use app::limit::OwnerLimits;
-pub use router::{openapi, openapi_json, router};
+pub use router::{openapi_json, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

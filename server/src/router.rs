@@ -8,12 +8,14 @@ use axum::response::IntoResponse;
 use axum::routing::get;
 use drillsweep_api::ProblemKind;
 use drillsweep_store::Store;
+use serde_json::json;
 use tokio::sync::watch;
 use utoipa::OpenApi;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
 use crate::answer::document::{Document, Problems};
 use crate::answer::error::Error;
+use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
@@ -74,18 +76,12 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(health::ready))
 }
 
-/// The OpenAPI 3.1 document of the service.
-pub fn openapi() -> utoipa::openapi::OpenApi {
-    documented().into_openapi()
-}
-
-/// The document as it is served and committed: indented JSON with a final newline.
+/// The OpenAPI 3.1 document of the service as it is served and committed: indented JSON with a final newline.
 pub fn openapi_json() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(|| {
-        let mut text =
-            openapi().to_pretty_json().expect("a document made of strings and numbers has a JSON form");
-        text.push('\n');
-        text
+        let mut document = json!(documented().into_openapi());
+        vocabulary::describe(&mut document);
+        format!("{document:#}\n")
     });
     &TEXT
 }

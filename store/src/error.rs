@@ -3,8 +3,6 @@
 use std::error::Error as _;
 use std::io::ErrorKind;
 
-use crate::table::TableError;
-
 /// The store's results.
 pub type Result<T> = std::result::Result<T, StoreError>;
 
@@ -31,9 +29,6 @@ pub enum StoreError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// A stored table cannot be read.
-    #[error(transparent)]
-    Table(#[from] TableError),
     /// A stored value is not what this program writes.
     #[error("the database holds an unexpected value: {0}")]
     Corrupt(String),

@@ -57,17 +57,6 @@ pub enum Renewal {
     Lost,
 }
 
-/// Why a work item ended without a result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FailureClass {
-    /// The simulation itself; it would happen again.
-    Physical,
-    /// It ran longer than allowed.
-    Timeout,
-    /// It was cancelled. Where it has been asked for again since, it goes back to the queue instead.
-    Cancelled,
-}
-
 /// An artifact of a result, its blob already written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewArtifact {
@@ -263,12 +252,17 @@ impl Store {
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn finish_failed(&self, lease: &Lease, class: FailureClass, error_json: &str) -> Result<bool> {
-        let statement = match class {
-            FailureClass::Physical | FailureClass::Timeout => sql::queue::FAIL,
-            FailureClass::Cancelled => sql::queue::CANCEL,
-        };
-        self.leave(statement, lease, error_json).await
+    pub async fn finish_failed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
+        self.leave(sql::queue::FAIL, lease, error_json).await
+    }
+
+    /// Ends a work item that was cancelled. Where it has been asked for again since, it goes back to the queue instead. False if the
+    /// lease was lost.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn finish_cancelled(&self, lease: &Lease, error_json: &str) -> Result<bool> {
+        self.leave(sql::queue::CANCEL, lease, error_json).await
     }
 
     /// Keeps the blob from which the work can go on, written before; the next claim brings it. False if the lease was

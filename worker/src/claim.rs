@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use drillsweep_api::compose;
+use drillsweep_api::{FailureClass, PointError, compose};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::transient::Checkpoint;
 use drillsweep_store::{
-    BlobId, Claim, FailureClass, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError,
-    WorkerRecord,
+    BlobId, Claim, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError, WorkerRecord,
 };
+use drillsweep_table::parquet::TableError;
 use jiff::Timestamp;
 use serde_json::{Value, json};
 use tokio::sync::watch;
@@ -21,6 +21,7 @@ use crate::compute::{
     Computation, ComputeError, Computed, EncodedArtifact, compute_from, simulated_time_total,
 };
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
+use crate::provenance::WorkerProvenance;
 
 /// How a worker works.
 #[derive(Debug, Clone)]
@@ -246,13 +247,13 @@ async fn work_on(
     };
     let ended = match joined {
         Ok(Ok(Computation::Finished(mut computed))) => {
-            let provenance = &mut computed.provenance;
-            provenance.insert("host".into(), json!(worker.host));
-            provenance.insert("worker".into(), json!(worker.id));
-            provenance.insert("attempt".into(), json!(lease.attempt));
-            // By the clock of that host, for people; nothing is decided by them.
-            provenance.insert("started".into(), json!(started));
-            provenance.insert("ended".into(), json!(Timestamp::now()));
+            computed.provenance.worker = Some(WorkerProvenance {
+                host: worker.host.clone(),
+                worker: worker.id.clone(),
+                attempt: lease.attempt,
+                started,
+                ended: Timestamp::now(),
+            });
             Ended::Computed(Ok(Computation::Finished(computed)))
         }
         Ok(result) => Ended::Computed(result),
@@ -301,7 +302,7 @@ async fn write_end(
         Ended::Computed(Ok(Computation::Finished(computed))) => match upload(store, computed).await {
             Ok(artifacts) => {
                 let summary = Value::Object(computed.summary_row()).to_string();
-                let provenance = Value::Object(computed.provenance.clone()).to_string();
+                let provenance = json!(computed.provenance).to_string();
                 let result = NewResult {
                     summary_json: &summary,
                     provenance_json: &provenance,
@@ -313,8 +314,8 @@ async fn write_end(
             }
             Err(error) => {
                 tracing::warn!(%error, "artifacts cannot be written");
-                let json = json!({ "class": "infrastructure", "reason": error.to_string() });
-                store.retry_later(lease, &json.to_string()).await
+                let error = PointError::new(FailureClass::Infrastructure, error.to_string());
+                store.retry_later(lease, &text_of(&error)).await
             }
         },
         Ended::Computed(Ok(Computation::Suspended(checkpoint))) => {
@@ -323,14 +324,19 @@ async fn write_end(
         Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
         Ended::Computed(Err(error)) => {
             tracing::warn!(%error, "point failed");
-            store.finish_failed(lease, FailureClass::Physical, &error.to_json().to_string()).await
+            store.finish_failed(lease, &text_of(&error.to_point_error())).await
         }
         Ended::Panicked(text) => {
             tracing::error!(text, "the simulation panicked");
-            let json = json!({ "class": "crash", "reason": format!("the simulation panicked: {text}") });
-            store.crashed(lease, &json.to_string()).await
+            let reason = format!("the simulation panicked: {text}");
+            store.crashed(lease, &text_of(&PointError::new(FailureClass::Crash, reason))).await
         }
     }
+}
+
+/// A failure as it is stored.
+fn text_of(error: &PointError) -> String {
+    json!(error).to_string()
 }
 
 /// Writes the end of a point that was told to stop before its end.
@@ -341,18 +347,19 @@ async fn halted(
     reason: StopReason,
     halt: Halt,
 ) -> drillsweep_store::Result<bool> {
-    let cancelled = r#"{"class":"cancelled","reason":"cancelled"}"#;
     match (reason, halt) {
         (StopReason::LeaseLost, _) => Ok(false),
-        (StopReason::Cancelled, _) => store.finish_failed(lease, FailureClass::Cancelled, cancelled).await,
+        (StopReason::Cancelled, _) => {
+            let error = PointError::new(FailureClass::Cancelled, "cancelled");
+            store.finish_cancelled(lease, &text_of(&error)).await
+        }
         (StopReason::None, Halt::Timeout(time)) => {
             let reason =
                 format!("it took longer than the {} s that this worker gives a point", time.as_secs_f64());
-            let json = json!({ "class": "timeout", "reason": reason });
             if let Some(blob) = write_checkpoint(store, checkpoint).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
-            store.finish_failed(lease, FailureClass::Timeout, &json.to_string()).await
+            store.finish_failed(lease, &text_of(&PointError::new(FailureClass::Timeout, reason))).await
         }
         (StopReason::None, Halt::Stop | Halt::No) => {
             if let Some(blob) = write_checkpoint(store, checkpoint).await {
@@ -376,8 +383,19 @@ async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Opt
         .ok()
 }
 
+/// Why the tables of a result cannot be kept.
+#[derive(Debug, thiserror::Error)]
+enum UploadError {
+    /// A table cannot be encoded.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Or not be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
 /// Writes the tables as blobs, before any row names them.
-async fn upload(store: &Store, computed: &Computed) -> drillsweep_store::Result<Vec<NewArtifact>> {
+async fn upload(store: &Store, computed: &Computed) -> Result<Vec<NewArtifact>, UploadError> {
     let mut artifacts = Vec::new();
     for EncodedArtifact { name, media_type, row_count, bytes } in computed.encode()? {
         let size = bytes.len() as i64;

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use drillsweep_api::{FailureClass, PointError};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{Model, ModelError};
@@ -15,10 +16,13 @@ use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{Checkpoint, Outcome, Transient, TransientError};
-use drillsweep_store::{Table, TableError, encode_parquet};
+use drillsweep_table::Table;
+use drillsweep_table::parquet::{self, TableError};
+use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
 use crate::cost::{cost_study, study_time};
+use crate::provenance::{Provenance, RunProvenance};
 use crate::tables::{point_tables, summary_row};
 
 /// A finished point.
@@ -45,7 +49,7 @@ pub struct Computed {
     /// What was run that is probably not meant, in words.
     pub warnings: Vec<String>,
     /// Versions, integrator, steps and cost.
-    pub provenance: Map<String, Value>,
+    pub provenance: Provenance,
 }
 
 /// How far a point got.
@@ -114,28 +118,27 @@ pub enum ComputeError {
 
 impl ComputeError {
     /// The error as the service shows it: class, reason, and time and node where there are any.
-    pub fn to_json(&self) -> Value {
-        let mut error = json!({ "class": "physical", "reason": self.to_string() });
+    pub fn to_point_error(&self) -> PointError {
+        let error = PointError::new(FailureClass::Physical, self.to_string());
+        let number = |node: Option<usize>| node.and_then(|node| u32::try_from(node).ok());
         match self {
             ComputeError::Run { error: failure, stability } => {
-                if let TransientError::Diverged { time, node, .. } = failure {
-                    error["time"] = json!(time);
-                    error["node"] = json!(node);
-                }
-                error["stability"] = json!(stability);
+                let (time, node) = match failure {
+                    TransientError::Diverged { time, node, .. } => (Some(*time), number(Some(*node))),
+                    _ => (None, None),
+                };
+                let details = Map::from_iter([("stability".to_owned(), json!(stability))]);
+                PointError { time, node, details, ..error }
             }
             // What fails before the first step fails at its time.
             ComputeError::Statics(failure) => {
-                error["time"] = json!(0.0);
-                error["node"] = json!(failure.node());
+                PointError { time: Some(0.0), node: number(Some(failure.node())), ..error }
             }
             ComputeError::Transient(failure) => {
-                error["time"] = json!(0.0);
-                error["node"] = json!(failure.node());
+                PointError { time: Some(0.0), node: number(failure.node()), ..error }
             }
-            _ => {}
+            _ => error,
         }
-        error
     }
 }
 
@@ -146,51 +149,39 @@ impl Computed {
             summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at);
         if let Some(stability) = &self.stability {
             let unstable = stability.instability;
-            row.insert("stable".into(), json!(stability.stable));
-            row.insert("instability".into(), json!(unstable.map(|unstable| unstable.kind)));
-            row.insert(
-                "instability_growth_rate".into(),
-                json!(unstable.map(|unstable| unstable.growth_rate)),
-            );
-            row.insert(
-                "instability_frequency_hz".into(),
-                json!(unstable.map(|unstable| unstable.frequency_hz)),
-            );
+            row.put(&STABLE, stability.stable);
+            row.put(&INSTABILITY, unstable.map(|unstable| unstable.kind));
+            row.put(&INSTABILITY_GROWTH_RATE, unstable.map(|unstable| unstable.growth_rate));
+            row.put(&INSTABILITY_FREQUENCY_HZ, unstable.map(|unstable| unstable.frequency_hz));
         }
         if let Some(torsion) = &self.undamped_torsion {
-            row.insert("undamped_torsion_hz".into(), json!(torsion.highest_hz));
-            row.insert("undamped_torsion_growth".into(), json!(torsion.highest_growth));
+            row.put(&UNDAMPED_TORSION_HZ, torsion.highest_hz);
+            row.put(&UNDAMPED_TORSION_GROWTH, torsion.highest_growth);
         }
         if let Some(ResultErrors { time, mesh, spread }) = &self.errors {
-            row.insert("time_error".into(), json!(time.statistics()));
-            row.insert("relative_spread".into(), json!(spread.orbit_size()));
+            row.put(&TIME_ERROR, time.statistics());
+            row.put(&RELATIVE_SPREAD, spread.orbit_size());
             let errors = mesh.estimate();
-            row.insert("mesh_error_mean_radius".into(), json!(errors.and_then(|errors| errors.mean_radius)));
-            row.insert(
-                "mesh_error_static_position".into(),
-                json!(errors.map(|errors| errors.static_position)),
-            );
-            row.insert(
-                "mesh_error_friction_coefficient".into(),
-                json!(errors.and_then(|errors| errors.friction_coefficient)),
-            );
+            row.put(&MESH_ERROR_MEAN_RADIUS, errors.and_then(|errors| errors.mean_radius));
+            row.put(&MESH_ERROR_STATIC_POSITION, errors.map(|errors| errors.static_position));
+            row.put(&MESH_ERROR_FRICTION_COEFFICIENT, errors.and_then(|errors| errors.friction_coefficient));
         }
         if let Some(study) = &self.study {
-            row.insert("histories_part_at".into(), json!(study.histories_part_at));
+            row.put(&HISTORIES_PART_AT, study.histories_part_at);
             for Recommendation { quantity, accuracy, cpu_time, .. } in &study.recommendations {
                 // 0.003 is 0.3 %; a dot in a column's name would read as a path.
                 let percent = (100.0 * accuracy).to_string().replace('.', "_");
-                let name = format!("cost_cpu_time_{}_{percent}_percent", quantity.name());
-                row.insert(name, json!(cpu_time));
+                let accuracy = format!("{}_{percent}_percent", quantity.name());
+                row.put(COST_CPU_TIME.of(&accuracy), cpu_time);
             }
             if let Some(total) = &study.total {
                 // 0.07 is 7 %, not 7.000000000000001 %.
                 let percent = ((1e8 * total.wanted).round() / 1e6).to_string().replace('.', "_");
                 let cpu_time = total.choice.as_ref().map(|choice| choice.cpu_time);
-                row.insert(format!("cost_cpu_time_total_{percent}_percent"), json!(cpu_time));
+                row.put(COST_CPU_TIME.of(&format!("total_{percent}_percent")), cpu_time);
             }
         }
-        row
+        row.0
     }
 
     /// The tables as Parquet, and the study as JSON.
@@ -200,7 +191,7 @@ impl Computed {
     pub fn encode(&self) -> Result<Vec<EncodedArtifact>, TableError> {
         let mut artifacts = Vec::new();
         for (name, table) in &self.tables {
-            let bytes = encode_parquet(table)?;
+            let bytes = parquet::write(table)?;
             artifacts.push(EncodedArtifact { name, media_type: PARQUET, row_count: table.rows(), bytes });
         }
         if let Some(study) = &self.study {
@@ -310,51 +301,29 @@ pub fn compute_from(
     let stability = if scenario.recording.stability { judge() } else { None };
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
-    let mut provenance = Map::new();
-    provenance.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
-    provenance.insert("physics_version".into(), json!(PHYSICS_VERSION));
-    provenance.insert("target".into(), json!(std::env::consts::ARCH));
-    provenance.insert("elements".into(), json!(model.elements.len()));
-    provenance.insert("newton_iterations".into(), json!(equilibrium.effort.newton_iterations));
-    provenance.insert("hydraulic_passes".into(), json!(equilibrium.effort.hydraulic_passes));
-    provenance.insert("statics_wall_time".into(), json!(statics_cost.0));
-    provenance.insert("statics_cpu_time".into(), json!(statics_cost.1));
-    if let Some(records) = &records {
-        let effort = &records.effort;
-        provenance.insert("integrator".into(), json!(effort.stepping.integrator));
-        provenance.insert("step".into(), json!(effort.stepping.step));
-        provenance.insert("tolerance".into(), json!(effort.stepping.tolerance));
-        provenance.insert("contact_sweeps".into(), json!(effort.stepping.contact_sweeps));
-        provenance.insert("step_subdivisions".into(), json!(effort.subdivisions));
-        provenance.insert("steps".into(), json!(effort.steps));
-        provenance.insert("rejected_steps".into(), json!(effort.rejected_steps));
-        provenance.insert("unresolved_steps".into(), json!(effort.unresolved_steps));
-        provenance.insert("shortest_step".into(), json!(effort.step_range[0]));
-        provenance.insert("longest_step".into(), json!(effort.step_range[1]));
-        provenance.insert("sweeps".into(), json!(effort.sweeps.sweeps));
-        provenance.insert("sweep_largest_change".into(), json!(effort.sweeps.largest_change));
-        provenance.insert("loose_solves".into(), json!(effort.sweeps.loose_solves));
-        provenance.insert("error_estimate".into(), json!(records.error));
-        provenance.insert("error_estimate_of".into(), json!(ERROR_ESTIMATE_OF));
-        provenance.insert("resumed".into(), json!(is_resumed));
-        provenance.insert("transient_wall_time".into(), json!(transient_cost.0));
-        provenance.insert("transient_cpu_time".into(), json!(transient_cost.1));
-    }
     let errors = transient.as_ref().map(|transient| {
         let mesh = MeshEstimate::of(&model, &equilibrium);
         ResultErrors::new(transient, &ensemble, undamped_torsion.as_ref(), mesh)
     });
-    if let Some(errors) = &errors {
-        provenance.insert("errors".into(), json!(errors));
-    }
     let mut warnings = Vec::new();
     if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
-        provenance.insert("undamped_torsion".into(), json!(torsion));
         warnings.extend(torsion.warning(records.effort.resolved_hz));
     }
-    if !warnings.is_empty() {
-        provenance.insert("warnings".into(), json!(warnings));
-    }
+    let provenance = Provenance {
+        version: env!("CARGO_PKG_VERSION"),
+        physics_version: PHYSICS_VERSION,
+        target: std::env::consts::ARCH,
+        elements: model.elements.len(),
+        newton_iterations: equilibrium.effort.newton_iterations,
+        hydraulic_passes: equilibrium.effort.hydraulic_passes,
+        statics_wall_time: statics_cost.0,
+        statics_cpu_time: statics_cost.1,
+        run: records.as_ref().map(|records| RunProvenance::new(records, is_resumed, transient_cost)),
+        errors: errors.clone(),
+        undamped_torsion: undamped_torsion.filter(|_| records.is_some()),
+        warnings: warnings.clone(),
+        worker: None,
+    };
     let tables = point_tables(&model, &equilibrium, records.as_ref());
     let computed = Computed {
         tables,
@@ -371,10 +340,6 @@ pub fn compute_from(
     };
     Ok(Computation::Finished(Box::new(computed)))
 }
-
-/// What the error estimate is an estimate of, for people.
-const ERROR_ESTIMATE_OF: &str = "root mean square error of a lateral displacement over all nodes at the end of the run, \
-                                 as long as histories do not part: displacement [m], and relative to the motion";
 
 /// Wall and processor time of the calling thread.
 pub(crate) struct Stopwatch {
@@ -400,13 +365,16 @@ fn thread_cpu_time() -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::{Effect, Switch, preset};
+    use std::collections::BTreeSet;
+
+    use drillsweep_sim::scenario::{Effect, Outputs, Switch, TimeWindow, preset};
+    use drillsweep_table::quantity::{Name, tables};
 
     use super::*;
 
     fn failure(scenario: &Scenario) -> Value {
         let ended = compute(scenario, &Control::new());
-        ended.expect_err("it must fail").to_json()
+        json!(ended.expect_err("it must fail").to_point_error())
     }
 
     #[test]
@@ -439,10 +407,11 @@ mod tests {
         assert!(
             row["undamped_torsion_hz"].as_f64().unwrap() > 4e3 && row["undamped_torsion_growth"].is_number()
         );
-        assert!(printed.provenance["warnings"][0].as_str().unwrap().contains("stiffness_proportional"));
+        let provenance = json!(printed.provenance);
+        assert!(provenance["warnings"][0].as_str().unwrap().contains("stiffness_proportional"));
         // Its contact law is a node's, so its mesh's part is not known.
         assert!(row["mesh_error_static_position"].is_null());
-        let errors = &printed.provenance["errors"];
+        let errors = &provenance["errors"];
         assert_eq!(errors["mesh"]["state"], "unknown");
         // Nor is that of steps which leave torsion out, nor any spread of one run.
         assert_eq!(errors["time"]["state"], "unknown");
@@ -452,7 +421,46 @@ mod tests {
 
         let damped = computed("paper-200m-damped");
         assert!(damped.summary_row()["undamped_torsion_hz"].as_f64().unwrap() < 20.0);
-        assert_eq!(damped.provenance.get("warnings"), None);
+        assert_eq!(json!(damped.provenance).get("warnings"), None);
+    }
+
+    #[test]
+    fn tables_have_the_columns_that_the_vocabulary_lists_and_rows_only_what_it_knows() {
+        let computed = |outputs| {
+            let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+            scenario.duration = 0.02;
+            scenario.ensemble = 2;
+            scenario.recording.stability = true;
+            scenario.recording.outputs = outputs;
+            scenario.recording.spectrum_windows = vec![TimeWindow { from: 0.0, to: 0.02 }];
+            scenario.recording.orbit_window = None;
+            compute(&scenario, &Control::new()).expect("runs")
+        };
+        let (full, spectra) = (computed(Outputs::Full), computed(Outputs::Spectra));
+        let names: BTreeSet<&str> =
+            full.tables.iter().chain(&spectra.tables).map(|(name, _)| *name).collect();
+        let stored = [
+            &tables::PROFILE,
+            &tables::STATICS,
+            &tables::HISTORY,
+            &tables::SPECTRA,
+            &tables::CONTACTS,
+            &tables::ENERGY,
+        ];
+        assert_eq!(names, stored.iter().map(|layout| layout.name).collect());
+        for (name, table) in full.tables.iter().chain(&spectra.tables) {
+            let layout = stored.iter().find(|layout| layout.name == *name).unwrap();
+            let columns = table.columns.keys().map(|column| Name::parse(column).expect(column));
+            let (by_node, once): (Vec<_>, Vec<_>) = columns.partition(|name| name.node.is_some());
+            assert!(once.iter().map(|name| name.quantity).eq(layout.columns.iter().copied()), "{name}");
+            let nodes = by_node.chunks(layout.by_node.len().max(1));
+            for node in nodes {
+                assert!(node.iter().map(|name| name.quantity).eq(layout.by_node.iter().copied()), "{name}");
+            }
+        }
+        for name in full.summary_row().keys() {
+            assert!(Name::parse(name).is_some(), "{name} is not in the vocabulary");
+        }
     }
 
     #[test]

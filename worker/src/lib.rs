@@ -10,6 +10,7 @@ mod claim;
 mod compute;
 mod cost;
 mod lease;
+mod provenance;
 mod tables;
 
 pub use calibration::calibrate;
@@ -18,4 +19,5 @@ pub use compute::{
     Computation, ComputeError, Computed, EncodedArtifact, compute, compute_from, simulated_time_total,
 };
 pub use cost::{cost_study, study_cpu_time, study_time};
-pub use tables::{point_tables, summary_row};
+pub use provenance::{Provenance, RunProvenance, WorkerProvenance};
+pub use tables::point_tables;

@@ -6,8 +6,8 @@ mod table;
 mod text;
 
 pub use measure::Measure;
-pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_csv, summary_text};
-pub use table::{csv, table};
+pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_table, summary_text};
+pub use table::table;
 pub use text::text;
 
 pub use drillsweep_sim::study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};

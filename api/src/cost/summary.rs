@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 
 use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
 use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
+use drillsweep_table::quantity::columns;
+use drillsweep_table::{Column, Table};
 use serde::Serialize;
 
 use super::text::{Cells, aligned, four_digits, percent, signed_percent};
 use super::{step_text, three_digits};
-use crate::table::{Column, Table};
 
 /// Named accuracies.
 const PRESETS: [AccuracyPreset; 3] =
@@ -179,37 +180,31 @@ fn summary_row(report: &CostReport, row: &CostRow) -> SummaryRow {
     }
 }
 
-/// The lines of several studies as comma-separated values, in SI units; what is absent is empty.
-pub fn summary_csv(rows: &[SummaryRow]) -> String {
+/// The lines of several studies as a table.
+pub fn summary_table(rows: &[SummaryRow]) -> Table {
     let texts = |text: &dyn Fn(&SummaryRow) -> Option<String>| Column::Text(rows.iter().map(text).collect());
     let numbers = |number: &dyn Fn(&SummaryRow) -> Option<f64>| {
         Column::Number(rows.iter().map(|row| number(row).unwrap_or(f64::NAN)).collect())
     };
-    let mut table = Table::default()
-        .with("scenario", texts(&|row| Some(row.scenario.clone())))
-        .with("reference_orbit_size", numbers(&|row| row.reference_orbit_size))
-        .with("measured_depth", numbers(&|row| row.measured_depth))
-        .with("rk4_step", numbers(&|row| row.rk4_step))
-        .with("name", texts(&|row| Some(row.name.clone())))
-        .with("integrator", texts(&|row| Some(row.integrator.name().to_owned())))
-        .with("step", numbers(&|row| Some(row.step)))
-        .with("tolerance", numbers(&|row| row.tolerance));
-    type Worst = fn(&SummaryRow) -> Option<WorstBias>;
-    let statistics: [(&str, Worst); 2] =
-        [("orbit_size", |row| row.orbit_size), ("radius_deviation", |row| row.radius_deviation)];
-    for (name, worst) in statistics {
-        table = table
-            .with(format!("{name}_bias"), numbers(&|row| Some(worst(row)?.bias)))
-            .with(format!("{name}_half_width"), numbers(&|row| worst(row)?.half_width));
-    }
     let spurious = rows.iter().map(|row| i64::try_from(row.spurious_lines?).ok());
-    table
-        .with("cpu_per_simulated_second", numbers(&|row| row.cpu_per_simulated_second))
-        .with("speed_over_rk4", numbers(&|row| row.speed_over_rk4))
-        .with("promise", texts(&|row| Some(row.promise?.verdict.word().to_owned())))
-        .with("spurious_lines", Column::Integer(spurious.collect()))
-        .with("failure", texts(&|row| row.failure.clone()))
-        .csv()
+    Table::default()
+        .with(&columns::SCENARIO, texts(&|row| Some(row.scenario.clone())))
+        .with(&columns::REFERENCE_ORBIT_SIZE, numbers(&|row| row.reference_orbit_size))
+        .with(&columns::MEASURED_DEPTH, numbers(&|row| row.measured_depth))
+        .with(&columns::RK4_STEP, numbers(&|row| row.rk4_step))
+        .with(&columns::NAME, texts(&|row| Some(row.name.clone())))
+        .with(&columns::INTEGRATOR, texts(&|row| Some(row.integrator.name().to_owned())))
+        .with(&columns::STEP, numbers(&|row| Some(row.step)))
+        .with(&columns::TOLERANCE, numbers(&|row| row.tolerance))
+        .with(&columns::ORBIT_SIZE_BIAS, numbers(&|row| Some(row.orbit_size?.bias)))
+        .with(&columns::ORBIT_SIZE_HALF_WIDTH, numbers(&|row| row.orbit_size?.half_width))
+        .with(&columns::RADIUS_DEVIATION_BIAS, numbers(&|row| Some(row.radius_deviation?.bias)))
+        .with(&columns::RADIUS_DEVIATION_HALF_WIDTH, numbers(&|row| row.radius_deviation?.half_width))
+        .with(&columns::CPU_PER_SIMULATED_SECOND, numbers(&|row| row.cpu_per_simulated_second))
+        .with(&columns::SPEED_OVER_RK4, numbers(&|row| row.speed_over_rk4))
+        .with(&columns::PROMISE, texts(&|row| Some(row.promise?.verdict.word().to_owned())))
+        .with(&columns::SPURIOUS_LINES, Column::Integer(spurious.collect()))
+        .with(&columns::FAILURE, texts(&|row| row.failure.clone()))
 }
 
 /// The lines of several studies in words and aligned columns.
@@ -367,7 +362,7 @@ mod tests {
     #[test]
     fn rows_are_served_as_a_table_and_as_json() {
         let rows = summary(&[report()]);
-        let csv = summary_csv(&rows);
+        let csv = drillsweep_table::csv::write(&summary_table(&rows)).unwrap();
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(
             lines[0],

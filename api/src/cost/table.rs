@@ -3,8 +3,8 @@
 use drillsweep_sim::study::cost::{
     CostErrors, CostReport, CostRow, LineErrors, MeshPart, Quantity, StatisticError, TotalChoice,
 };
-
-use crate::table::{Column, Table};
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::{Column, Table};
 
 /// One row a line of the study: its `role` (`reference`, `method`, `mesh` or `effect`), what it was, what it took, its errors against
 /// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none. Where a whole
@@ -48,20 +48,20 @@ pub fn table(report: &CostReport) -> Table {
         Column::Number(runs.iter().map(|(role, row)| of_run(role, row).unwrap_or(f64::NAN)).collect())
     };
     let mut table = Table::default()
-        .with("role", Column::Text(runs.iter().map(|(role, _)| Some((*role).to_owned())).collect()))
-        .with("name", texts(|row| Some(row.name.clone())))
-        .with("without_effect", texts(|row| row.effect.map(|effect| effect.name().to_owned())))
-        .with("integrator", texts(|row| Some(row.integrator.name().to_owned())))
-        .with("step", numbers(|row| row.step))
-        .with("tolerance", numbers(|row| row.tolerance.unwrap_or(f64::NAN)))
-        .with("contact_sweeps", counts(|row| row.contact_sweeps.into()))
-        .with("mesh_factor", numbers(|row| row.mesh_factor))
-        .with("elements", counts(|row| row.elements as u64))
-        .with("steps", counts(|row| row.steps))
-        .with("step_subdivisions", counts(|row| row.step_subdivisions.into()))
-        .with("cpu_time", numbers(|row| row.cpu_time))
-        .with("cpu_per_simulated_second", numbers(|row| row.cpu_per_simulated_second))
-        .with("speed_over_rk4", numbers(|row| row.speed_over_rk4.unwrap_or(f64::NAN)));
+        .with(&ROLE, Column::Text(runs.iter().map(|(role, _)| Some((*role).to_owned())).collect()))
+        .with(&NAME, texts(|row| Some(row.name.clone())))
+        .with(&WITHOUT_EFFECT, texts(|row| row.effect.map(|effect| effect.name().to_owned())))
+        .with(&INTEGRATOR, texts(|row| Some(row.integrator.name().to_owned())))
+        .with(&STEP, numbers(|row| row.step))
+        .with(&TOLERANCE, numbers(|row| row.tolerance.unwrap_or(f64::NAN)))
+        .with(&CONTACT_SWEEPS, counts(|row| row.contact_sweeps.into()))
+        .with(&MESH_FACTOR, numbers(|row| row.mesh_factor))
+        .with(&ELEMENTS, counts(|row| row.elements as u64))
+        .with(&STEPS, counts(|row| row.steps))
+        .with(&STEP_SUBDIVISIONS, counts(|row| row.step_subdivisions.into()))
+        .with(&CPU_TIME, numbers(|row| row.cpu_time))
+        .with(&CPU_PER_SIMULATED_SECOND, numbers(|row| row.cpu_per_simulated_second))
+        .with(&SPEED_OVER_RK4, numbers(|row| row.speed_over_rk4.unwrap_or(f64::NAN)));
     for &quantity in Quantity::ALL.iter().filter(|&&quantity| quantity != Quantity::Lines) {
         let statistic = |value: fn(&StatisticError) -> Option<f64>| {
             let of_run = |row: &CostRow| value(row.errors.as_ref()?.statistic(quantity)?);
@@ -74,19 +74,19 @@ pub fn table(report: &CostReport) -> Table {
             .with(format!("{name}_spread"), statistic(|error| error.spread));
     }
     table
-        .with("line_frequency_error_hz", errors(|errors| errors.lines.as_ref()?.frequency_hz))
-        .with("line_amplitude_error", errors(|errors| Some(errors.lines.as_ref()?.amplitude)))
-        .with("missing_lines", lines(|lines| lines.missing as usize))
-        .with("spurious_lines", lines(|lines| lines.spurious.len()))
-        .with("trajectory_error", errors(|errors| errors.trajectory))
-        .with("static_position_error", errors(|errors| Some(errors.static_position)))
-        .with("friction_coefficient_error", errors(|errors| errors.friction_coefficient))
-        .with("energy_error", errors(|errors| errors.energy))
-        .with("estimated_error", errors(|errors| Some(errors.estimate)))
-        .with("mesh_error", parts(|mesh| Some(mesh.error), |choice| choice.mesh_error))
-        .with("time_error", parts(|_| None, |choice| choice.time_error))
-        .with("whole_error", parts(|_| None, |choice| choice.whole_error))
-        .with("failure", texts(|row| row.failure.clone()))
+        .with(&LINE_FREQUENCY_ERROR_HZ, errors(|errors| errors.lines.as_ref()?.frequency_hz))
+        .with(&LINE_AMPLITUDE_ERROR, errors(|errors| Some(errors.lines.as_ref()?.amplitude)))
+        .with(&MISSING_LINES, lines(|lines| lines.missing as usize))
+        .with(&SPURIOUS_LINES, lines(|lines| lines.spurious.len()))
+        .with(&TRAJECTORY_ERROR, errors(|errors| errors.trajectory))
+        .with(&STATIC_POSITION_ERROR, errors(|errors| Some(errors.static_position)))
+        .with(&FRICTION_COEFFICIENT_ERROR, errors(|errors| errors.friction_coefficient))
+        .with(&ENERGY_ERROR, errors(|errors| errors.energy))
+        .with(&ESTIMATED_ERROR, errors(|errors| Some(errors.estimate)))
+        .with(&MESH_ERROR, parts(|mesh| Some(mesh.error), |choice| choice.mesh_error))
+        .with(&TIME_ERROR, parts(|_| None, |choice| choice.time_error))
+        .with(&WHOLE_ERROR, parts(|_| None, |choice| choice.whole_error))
+        .with(&FAILURE, texts(|row| row.failure.clone()))
 }
 
 /// The line of the chosen method on the chosen mesh, with the time expected of it.
@@ -109,19 +109,16 @@ fn chosen_row(report: &CostReport, choice: &TotalChoice) -> Option<CostRow> {
     })
 }
 
-/// The table of a study as comma-separated values, times in seconds; what is absent is empty.
-pub fn csv(report: &CostReport) -> String {
-    table(report).csv()
-}
-
 #[cfg(test)]
 mod tests {
+    use drillsweep_table::csv::write;
+
     use super::*;
     use crate::cost::tests::{report, total};
 
     #[test]
     fn every_run_has_a_row_and_a_failed_one_says_why() {
-        let csv = csv(&report());
+        let csv = write(&table(&report())).unwrap();
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(
             lines[0],
@@ -150,7 +147,7 @@ mod tests {
     #[test]
     fn the_choice_for_a_whole_error_is_a_row_of_its_own() {
         let report = CostReport { total: Some(total()), ..report() };
-        let csv = csv(&report);
+        let csv = write(&table(&report)).unwrap();
         let lines: Vec<&str> = csv.lines().collect();
         assert!(lines[6].ends_with(",0.08,,,") && lines[7].ends_with(",0.005,,,"), "{csv}");
         // The steps are those of the run; 96 s are expected for the scenario's 60.

@@ -1,7 +1,9 @@
 //! Histories as recorded, over a window and thinned by stride.
 
+use drillsweep_table::quantity::columns;
+use drillsweep_table::{Column, Table};
+
 use super::window;
-use crate::table::{Column, Table};
 
 /// The rows of a time-major table over a half-open window \[from, to) of its column `time`.
 ///
@@ -10,19 +12,13 @@ use crate::table::{Column, Table};
 /// by its extremes instead ([`super::orbit`]). The attribute `samples` is the number of rows in the window.
 /// A table without a column `time` comes back as it is.
 pub fn history(table: Table, from: Option<f64>, to: Option<f64>, max_points: Option<usize>) -> Table {
-    let Some(Column::Number(time)) = table.columns.get("time") else { return table };
+    let Some(Column::Number(time)) = table.columns.get(columns::TIME.name) else { return table };
     let range = window::samples(time, from, to);
     let samples = range.len();
     let stride = max_points.map_or(1, |max_points| samples.div_ceil(max_points.max(1)).max(1));
     let mut thinned = Table { attributes: table.attributes, ..Table::default() };
     for (name, column) in table.columns {
-        let rows = range.clone().step_by(stride);
-        let column = match column {
-            Column::Integer(values) => Column::Integer(rows.map(|row| values[row]).collect()),
-            Column::Number(values) => Column::Number(rows.map(|row| values[row]).collect()),
-            Column::Text(values) => Column::Text(rows.map(|row| values[row].clone()).collect()),
-        };
-        thinned.push(name, column);
+        thinned.push(name, column.rows(range.clone().step_by(stride)));
     }
     thinned.attribute("samples", samples)
 }

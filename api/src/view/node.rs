@@ -1,11 +1,16 @@
 //! Which of the recorded nodes a client means.
 
+use drillsweep_table::quantity::{Name, columns};
+
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
 /// The nodes whose motion a history holds, from its column names, by number.
-pub fn recorded<'a>(columns: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
-    let mut nodes: Vec<u32> =
-        columns.into_iter().filter_map(|name| name.strip_prefix("u_")?.parse().ok()).collect();
+pub fn recorded<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
+    let node = |name: &str| {
+        let name = Name::parse(name).filter(|name| name.quantity == &columns::U)?;
+        u32::try_from(name.node?).ok()
+    };
+    let mut nodes: Vec<u32> = names.into_iter().filter_map(node).collect();
     nodes.sort_unstable();
     nodes
 }

@@ -1,7 +1,9 @@
 //! The orbit of one node: its path in the plane across the hole.
 
+use drillsweep_table::quantity::columns;
+use drillsweep_table::{Column, Table};
+
 use super::window;
-use crate::table::{Column, Table};
 
 /// The recorded lateral motion of one node.
 #[derive(Debug, Clone, Copy)]
@@ -39,10 +41,10 @@ pub fn orbit(motion: &Motion<'_>, from: Option<f64>, to: Option<f64>, max_points
     };
     let take = |values: &[f64]| kept.iter().map(|&i| values[i]).collect();
     Table::default()
-        .with("time", Column::Number(take(time)))
-        .with("u", Column::Number(take(u)))
-        .with("v", Column::Number(take(v)))
-        .with("radius", Column::Number(kept.iter().map(|&i| u[i].hypot(v[i])).collect()))
+        .with(&columns::TIME, Column::Number(take(time)))
+        .with(&columns::U, Column::Number(take(u)))
+        .with(&columns::V, Column::Number(take(v)))
+        .with(&columns::RADIUS, Column::Number(kept.iter().map(|&i| u[i].hypot(v[i])).collect()))
         .attribute("samples", time.len())
 }
 

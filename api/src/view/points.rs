@@ -1,11 +1,11 @@
 //! The table of a sweep: one row a point, with its parameters and its summary.
 
+use drillsweep_table::quantity::{Variant, columns};
+use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 use serde_json::{Map, Value};
 
 use crate::point::{PointError, PointState};
-use crate::table::{Column, Table};
-use crate::view::verification::bias_column;
 
 /// What the table needs to know of a point.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +32,8 @@ pub struct PointSummary {
 /// `outer.inner`; lists become JSON text.
 pub fn points(rows: &[PointSummary]) -> Table {
     let mut table = Table::default()
-        .with("ordinal", Column::Integer(rows.iter().map(|row| Some(row.ordinal.into())).collect()))
-        .with("state", Column::Text(rows.iter().map(|row| Some(row.state.to_string())).collect()));
+        .with(&columns::ORDINAL, Column::Integer(rows.iter().map(|row| Some(row.ordinal.into())).collect()))
+        .with(&columns::STATE, Column::Text(rows.iter().map(|row| Some(row.state.to_string())).collect()));
 
     let parameters: IndexSet<&str> =
         rows.iter().flat_map(|row| row.parameters.keys().map(String::as_str)).collect();
@@ -58,18 +58,21 @@ pub fn points(rows: &[PointSummary]) -> Table {
         rows.iter().flat_map(|row| row.biases.keys().map(String::as_str)).collect();
     for name in statistics {
         let values = rows.iter().map(|row| row.biases.get(name).copied().unwrap_or(f64::NAN));
-        table.push(bias_column(name), Column::Number(values.collect()));
+        table.push(Variant::Bias.of(name), Column::Number(values.collect()));
     }
 
     let errors = || rows.iter().map(|row| row.error.as_ref());
     table
-        .with("error", Column::Text(errors().map(|error| error.map(|error| error.reason.clone())).collect()))
         .with(
-            "error_time",
+            &columns::ERROR,
+            Column::Text(errors().map(|error| error.map(|error| error.reason.clone())).collect()),
+        )
+        .with(
+            &columns::ERROR_TIME,
             Column::Number(errors().map(|error| error.and_then(|e| e.time).unwrap_or(f64::NAN)).collect()),
         )
         .with(
-            "error_node",
+            &columns::ERROR_NODE,
             Column::Integer(errors().map(|error| error.and_then(|e| e.node).map(i64::from)).collect()),
         )
 }

@@ -1,11 +1,12 @@
 //! The full spectrum of one node's orbit.
 
 use drillsweep_sim::signal::{PeakSearch, full_spectrum};
+use drillsweep_table::quantity::columns;
+use drillsweep_table::{Column, Table};
 use serde_json::{Value, json};
 
 use super::orbit::Motion;
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
-use crate::table::{Column, Table};
 
 pub use drillsweep_sim::signal::{FullSpectrum, Window as Weighting};
 
@@ -104,9 +105,9 @@ pub fn part(whole: &FullSpectrum, range: f64, peaks: usize) -> Table {
         .collect();
     let peak_to_peak = spectrum.peak_to_peak();
     Table::default()
-        .with("frequency", Column::Number(spectrum.frequency_hz))
-        .with("amplitude", Column::Number(spectrum.amplitude))
-        .with("peak_to_peak", Column::Number(peak_to_peak))
+        .with(&columns::FREQUENCY, Column::Number(spectrum.frequency_hz))
+        .with(&columns::AMPLITUDE, Column::Number(spectrum.amplitude))
+        .with(&columns::PEAK_TO_PEAK, Column::Number(peak_to_peak))
         .attribute("samples", samples)
         .attribute("resolution", spectrum.resolution_hz)
         .attribute("window", json!(spectrum.window))

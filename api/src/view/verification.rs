@@ -3,6 +3,8 @@
 use std::fmt;
 
 use drillsweep_sim::scenario::Promise;
+use drillsweep_table::quantity::{Name, Variant, columns};
+use drillsweep_table::{Column, Quantity, Table};
 use indexmap::{IndexMap, IndexSet};
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -10,44 +12,39 @@ use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use crate::point::{PointError, PointState};
-use crate::table::{Column, Table};
 
 /// Lengths below this \[m\] are what rounding and the iteration of the equilibrium leave of no motion at all: they have no bias.
 const LEAST_LENGTH: f64 = 1e-9;
 
-/// What the bias of a statistic is called in tables, before the statistic's name.
-const BIAS: &str = "bias_";
-
-/// What the reference's value of a statistic is called in tables, before the statistic's name.
-const REFERENCE: &str = "reference_";
-
-/// A quantity of the summary whose bias is told; a node's number, and a spectrum window's, follow its name.
+/// A statistic of a node whose bias is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Quantity {
+enum Statistic {
     OrbitSize,
     RadiusDeviation,
     MeanRadius,
     LineFrequency,
 }
 
-impl Quantity {
-    const NAMES: [(&'static str, Quantity); 4] = [
-        ("orbit_radius_rms_", Quantity::OrbitSize),
-        ("orbit_radius_deviation_", Quantity::RadiusDeviation),
-        ("orbit_mean_radius_", Quantity::MeanRadius),
-        ("line_frequency_hz_", Quantity::LineFrequency),
+impl Statistic {
+    const QUANTITIES: [(&'static Quantity, Statistic); 4] = [
+        (&columns::ORBIT_RADIUS_RMS, Statistic::OrbitSize),
+        (&columns::ORBIT_RADIUS_DEVIATION, Statistic::RadiusDeviation),
+        (&columns::ORBIT_MEAN_RADIUS, Statistic::MeanRadius),
+        (&columns::LINE_FREQUENCY_HZ, Statistic::LineFrequency),
     ];
 
     /// That of a field of the summary, if its bias is told.
     fn of(name: &str) -> Option<Self> {
-        Quantity::NAMES.iter().find(|(start, _)| name.starts_with(start)).map(|(_, quantity)| *quantity)
+        let name = Name::parse(name).filter(|name| name.variant == Variant::Value && name.node.is_some())?;
+        let is_it = |(quantity, _): &&(&Quantity, Statistic)| *quantity == name.quantity;
+        Self::QUANTITIES.iter().find(is_it).map(|(_, statistic)| *statistic)
     }
 
     /// The bias of a value: relative for lengths, in Hz for frequencies. Which way a line turns does not count: forward and backward
     /// lines of one motion are often nearly alike.
     fn bias(self, value: f64, reference: f64) -> Option<f64> {
         let bias = match self {
-            Quantity::LineFrequency => value.abs() - reference.abs(),
+            Statistic::LineFrequency => value.abs() - reference.abs(),
             _ if reference < LEAST_LENGTH => return None,
             _ => (value - reference) / reference,
         };
@@ -57,9 +54,9 @@ impl Quantity {
     /// What is promised of it; nothing of mean radii and of frequencies.
     fn promised(self, promise: Option<Promise>) -> Option<f64> {
         match self {
-            Quantity::OrbitSize => Some(promise?.orbit_size),
-            Quantity::RadiusDeviation => Some(promise?.radius_deviation),
-            Quantity::MeanRadius | Quantity::LineFrequency => None,
+            Statistic::OrbitSize => Some(promise?.orbit_size),
+            Statistic::RadiusDeviation => Some(promise?.radius_deviation),
+            Statistic::MeanRadius | Statistic::LineFrequency => None,
         }
     }
 }
@@ -105,11 +102,11 @@ impl<'de> Visitor<'de> for StatisticsVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Statistics, A::Error> {
         let (mut statistics, mut means) = (IndexMap::new(), IndexMap::new());
         while let Some(name) = map.next_key::<String>()? {
-            let (name, into) = match name.strip_prefix("ensemble_mean_") {
+            let (name, into) = match Variant::EnsembleMean.strip(&name) {
                 Some(of_ensemble) => (of_ensemble, &mut means),
                 None => (name.as_str(), &mut statistics),
             };
-            if Quantity::of(name).is_none() {
+            if Statistic::of(name).is_none() {
                 map.next_value::<IgnoredAny>()?;
             } else if let Some(value) = map.next_value::<Value>()?.as_f64() {
                 into.insert(name.to_owned(), value);
@@ -136,8 +133,9 @@ impl VerifiedPoint {
         };
         let mut pairs = IndexMap::new();
         for (name, &value) in own {
-            if let (Some(quantity), Some(&reference)) = (Quantity::of(name), of_reference.get(name)) {
-                pairs.insert(name.as_str(), Pair { value, reference, bias: quantity.bias(value, reference) });
+            if let (Some(statistic), Some(&reference)) = (Statistic::of(name), of_reference.get(name)) {
+                pairs
+                    .insert(name.as_str(), Pair { value, reference, bias: statistic.bias(value, reference) });
             }
         }
         pairs
@@ -205,7 +203,7 @@ impl Findings {
             }
         }
         let statistic = |(name, biases): (String, Vec<(u32, f64)>)| {
-            let promised = Quantity::of(&name)?.promised(promise);
+            let promised = Statistic::of(&name)?.promised(promise);
             Some((name, StatisticBias::new(&biases, promised)?))
         };
         let statistics: IndexMap<String, StatisticBias> = biases.into_iter().filter_map(statistic).collect();
@@ -216,7 +214,7 @@ impl Findings {
     /// The bias of orbit size that is farthest from zero.
     pub fn worst_orbit_size(&self) -> Option<WorstBias> {
         let orbit_sizes =
-            self.statistics.iter().filter(|(name, _)| Quantity::of(name) == Some(Quantity::OrbitSize));
+            self.statistics.iter().filter(|(name, _)| Statistic::of(name) == Some(Statistic::OrbitSize));
         let (name, worst) =
             orbit_sizes.max_by(|(_, a), (_, b)| a.largest.abs().total_cmp(&b.largest.abs()))?;
         Some(WorstBias {
@@ -274,8 +272,8 @@ impl StatisticBias {
 
 /// A bias with its sign, in per cent or Hz.
 fn in_words(name: &str, bias: f64) -> String {
-    match Quantity::of(name) {
-        Some(Quantity::LineFrequency) => format!("{bias:+.2} Hz").replace('-', "−"),
+    match Statistic::of(name) {
+        Some(Statistic::LineFrequency) => format!("{bias:+.2} Hz").replace('-', "−"),
         _ => format!("{:+.2} %", 100.0 * bias).replace('-', "−"),
     }
 }
@@ -311,14 +309,20 @@ pub fn verification(points: &[VerifiedPoint], findings: &Findings) -> Table {
     let mut table = Table::default()
         .attribute("statistics", json!(findings.statistics))
         .attribute("warnings", json!(findings.warnings))
-        .with("ordinal", Column::Integer(points.iter().map(|point| Some(point.ordinal.into())).collect()));
+        .with(
+            &columns::ORDINAL,
+            Column::Integer(points.iter().map(|point| Some(point.ordinal.into())).collect()),
+        );
     let parameters: IndexSet<&str> =
         points.iter().flat_map(|point| point.parameters.keys().map(String::as_str)).collect();
     for name in parameters {
         let values = points.iter().map(|point| point.parameters.get(name).copied().unwrap_or(f64::NAN));
         table.push(name, Column::Number(values.collect()));
     }
-    table.push("state", Column::Text(points.iter().map(|point| Some(point.state.to_string())).collect()));
+    table.push(
+        &columns::STATE,
+        Column::Text(points.iter().map(|point| Some(point.state.to_string())).collect()),
+    );
     let pairs: Vec<IndexMap<&str, Pair>> = points.iter().map(VerifiedPoint::pairs).collect();
     let names: IndexSet<&str> = pairs.iter().flat_map(|pairs| pairs.keys().copied()).collect();
     for name in names {
@@ -327,21 +331,16 @@ pub fn verification(points: &[VerifiedPoint], findings: &Findings) -> Table {
             Column::Number(values.collect())
         };
         table.push(name, column(|pair| Some(pair.value)));
-        table.push(format!("{REFERENCE}{name}"), column(|pair| Some(pair.reference)));
-        table.push(bias_column(name), column(|pair| pair.bias));
+        table.push(Variant::Reference.of(name), column(|pair| Some(pair.reference)));
+        table.push(Variant::Bias.of(name), column(|pair| pair.bias));
     }
     let error = |point: &VerifiedPoint| point.error.as_ref().map(|error| error.reason.clone());
-    table.with("error", Column::Text(points.iter().map(error).collect()))
-}
-
-/// The column of a table that has the bias of a statistic.
-pub(crate) fn bias_column(statistic: &str) -> String {
-    format!("{BIAS}{statistic}")
+    table.with(&columns::ERROR, Column::Text(points.iter().map(error).collect()))
 }
 
 /// Whether a column of a table is the bias of a statistic.
 pub fn is_bias_column(name: &str) -> bool {
-    name.strip_prefix(BIAS).is_some_and(|statistic| Quantity::of(statistic).is_some())
+    Variant::Bias.strip(name).is_some_and(|statistic| Statistic::of(statistic).is_some())
 }
 
 #[cfg(test)]

@@ -6,11 +6,13 @@ use axum::body::Bytes;
 use drillsweep_api::view::node::{self, Choice};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
-use drillsweep_api::{Column, PointState, ProblemDetails, ProblemKind, Table};
+use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::Hole;
-use drillsweep_store::{
-    Artifact, BlobId, ColumnData, Store, TableError, WorkKey, column_names, decode_parquet,
-};
+use drillsweep_store::{Artifact, BlobId, Store, WorkKey};
+use drillsweep_table::parquet::{self, TableError, column_names};
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::{Name, tables};
+use drillsweep_table::{Column, Quantity, Table};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::records;
@@ -66,21 +68,8 @@ pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<Wor
 }
 
 /// Columns of a stored table, or all of them, for the wire.
-pub(crate) fn decode(parquet: Bytes, columns: Option<&[&str]>) -> Result<Table, TableError> {
-    let mut table = Table::default();
-    for column in decode_parquet(parquet, columns, None)?.columns {
-        let values = match column.data {
-            ColumnData::F64(values) => Column::Number(values),
-            ColumnData::F32(values) => Column::Number(values.into_iter().map(f64::from).collect()),
-            ColumnData::I64(values) => Column::Integer(values.into_iter().map(Some).collect()),
-            ColumnData::Text(values) => Column::Text(values.into_iter().map(Some).collect()),
-        };
-        table.push(&column.name, values);
-        if let Some(unit) = column.unit {
-            table.units.insert(column.name, unit);
-        }
-    }
-    Ok(table)
+pub(crate) fn decode(bytes: Bytes, columns: Option<&[&str]>) -> Result<Table, TableError> {
+    Ok(parquet::read(bytes, columns, None)?.widened())
 }
 
 /// The recorded histories of a run, and where their nodes are.
@@ -124,11 +113,11 @@ impl SpectrumSource {
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
         let key = result_key(store, sweep, n).await?;
         let artifacts = store.artifacts(&key).await?;
-        if !artifacts.iter().any(|artifact| artifact.name == "spectra") {
+        if !artifacts.iter().any(|artifact| artifact.name == tables::SPECTRA.name) {
             return Ok(SpectrumSource::Recording(Recording::load_of(store, &key).await?));
         }
-        let spectra = load_of(store, &key, "spectra").await?;
-        let statics = load_of(store, &key, "statics").await?;
+        let spectra = load_of(store, &key, tables::SPECTRA.name).await?;
+        let statics = load_of(store, &key, tables::STATICS.name).await?;
         Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
     }
 }
@@ -143,19 +132,20 @@ impl KeptSpectra {
         weighting: Weighting,
     ) -> Result<NodeSpectrum> {
         let amplitude = match weighting {
-            Weighting::Rectangular => "amplitude_rectangular",
-            Weighting::Hann => "amplitude_hann",
+            Weighting::Rectangular => &AMPLITUDE_RECTANGULAR,
+            Weighting::Hann => &AMPLITUDE_HANN,
         };
-        let table = decode(self.spectra.clone(), Some(&["node", "from", "to", "frequency", amplitude]))?;
-        let Some(Column::Integer(nodes)) = table.columns.get("node") else {
+        let wanted = [&NODE, &FROM, &TO, &FREQUENCY, amplitude].map(|quantity| quantity.name);
+        let table = decode(self.spectra.clone(), Some(&wanted))?;
+        let Some(Column::Integer(nodes)) = table.columns.get(NODE.name) else {
             return Err(Error::internal("a table of spectra without nodes"));
         };
-        let column = |name: &str| match table.columns.get(name) {
+        let column = |Quantity { name, .. }: &Quantity| match table.columns.get(*name) {
             Some(Column::Number(values)) => Ok(values.as_slice()),
             _ => Err(Error::internal(&format!("a table of spectra without numbers in the column {name}"))),
         };
         let (starts, ends, frequency, amplitude) =
-            (column("from")?, column("to")?, column("frequency")?, column(amplitude)?);
+            (column(&FROM)?, column(&TO)?, column(&FREQUENCY)?, column(amplitude)?);
         let recorded: BTreeSet<u32> =
             nodes.iter().flatten().filter_map(|&node| u32::try_from(node).ok()).collect();
         let (node, measured_depth) = choice.among(&depths(&self.statics, recorded)?)?;
@@ -186,7 +176,7 @@ impl KeptSpectra {
 impl NodeSpectrum {
     /// A view of this spectrum with the node that it is of.
     pub(crate) fn label(&self, table: Table) -> Table {
-        table.attribute("node", self.node).attribute("measured_depth", self.measured_depth)
+        of_node(table, self.node, self.measured_depth)
     }
 }
 
@@ -197,8 +187,8 @@ impl Recording {
     }
 
     async fn load_of(store: &Store, key: &WorkKey) -> Result<Self> {
-        let history = load_of(store, key, "history").await?;
-        let statics = load_of(store, key, "statics").await?;
+        let history = load_of(store, key, tables::HISTORY.name).await?;
+        let statics = load_of(store, key, tables::STATICS.name).await?;
         Ok(Recording { history, statics })
     }
 
@@ -211,53 +201,52 @@ impl Recording {
     pub(crate) fn table_of(&self, choice: Choice) -> Result<Table> {
         let columns = column_names(self.history.clone())?;
         let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
-        let suffix = format!("_{node}");
-        let wanted: Vec<&str> = columns
-            .iter()
-            .map(String::as_str)
-            .filter(|name| *name == "time" || name.ends_with(&suffix))
-            .collect();
-        let table = decode(self.history.clone(), Some(&wanted))?;
-        Ok(table.attribute("node", node).attribute("measured_depth", measured_depth))
+        let is_wanted = |name: &&str| {
+            Name::parse(name).is_some_and(|name| match name.node {
+                Some(of) => of == node as usize,
+                None => name.quantity == &TIME,
+            })
+        };
+        let wanted: Vec<&str> = columns.iter().map(String::as_str).filter(is_wanted).collect();
+        Ok(of_node(decode(self.history.clone(), Some(&wanted))?, node, measured_depth))
     }
 
     /// The lateral motion of one node.
     pub(crate) fn motion_of(&self, choice: Choice) -> Result<NodeMotion> {
         let columns = column_names(self.history.clone())?;
         let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
-        let (u, v) = (format!("u_{node}"), format!("v_{node}"));
-        let mut table = decode(self.history.clone(), Some(&["time", &u, &v]))?;
+        let (u, v) = (U.at_node(node as usize), V.at_node(node as usize));
+        let mut table = decode(self.history.clone(), Some(&[TIME.name, &u, &v]))?;
         let mut take = |name: &str| match table.columns.swap_remove(name) {
             Some(Column::Number(values)) => Ok(values),
             _ => Err(Error::internal(&format!("a history without numbers in the column {name}"))),
         };
-        Ok(NodeMotion { node, measured_depth, time: take("time")?, u: take(&u)?, v: take(&v)? })
+        Ok(NodeMotion { node, measured_depth, time: take(TIME.name)?, u: take(&u)?, v: take(&v)? })
     }
 
     /// How the hole stands about a node.
     pub(crate) fn hole_at(&self, node: u32) -> Result<Hole> {
-        const COLUMNS: [&str; 5] =
-            ["node", "measured_depth", "true_vertical_depth", "clearance", "low_side_angle"];
         /// Below this part of a hole's length gained in depth the low side is worth the name: 0.1 degrees.
         const VERTICAL: f64 = 0.999_998_5;
-        let statics = decode(self.statics.clone(), Some(&COLUMNS))?;
-        let column = |name: &str| match statics.columns.get(name) {
+        let wanted = [&NODE, &MEASURED_DEPTH, &TRUE_VERTICAL_DEPTH, &CLEARANCE, &LOW_SIDE_ANGLE];
+        let statics = decode(self.statics.clone(), Some(&wanted.map(|quantity| quantity.name)))?;
+        let column = |quantity: &Quantity| match statics.columns.get(quantity.name) {
             Some(Column::Number(values)) => values.as_slice(),
             _ => &[],
         };
-        let Some(Column::Integer(nodes)) = statics.columns.get("node") else { return Ok(Hole::default()) };
+        let Some(Column::Integer(nodes)) = statics.columns.get(NODE.name) else { return Ok(Hole::default()) };
         let Some(row) = nodes.iter().position(|number| *number == Some(node.into())) else {
             return Ok(Hole::default());
         };
-        let value = |name: &str, row: usize| column(name).get(row).copied();
+        let value = |quantity: &Quantity, row: usize| column(quantity).get(row).copied();
         let (above, below) = (row.saturating_sub(1), (row + 1).min(nodes.len() - 1));
-        let gain = |name: &str| Some(value(name, below)? - value(name, above)?);
-        let is_inclined = gain("true_vertical_depth")
-            .zip(gain("measured_depth"))
+        let gain = |quantity: &Quantity| Some(value(quantity, below)? - value(quantity, above)?);
+        let is_inclined = gain(&TRUE_VERTICAL_DEPTH)
+            .zip(gain(&MEASURED_DEPTH))
             .is_some_and(|(depth, length)| depth.abs() < VERTICAL * length);
         Ok(Hole {
-            clearance: value("clearance", row),
-            low_side: value("low_side_angle", row).filter(|_| is_inclined),
+            clearance: value(&CLEARANCE, row),
+            low_side: value(&LOW_SIDE_ANGLE, row).filter(|_| is_inclined),
         })
     }
 
@@ -267,11 +256,16 @@ impl Recording {
     }
 }
 
+/// A view with the node that it is of.
+fn of_node(table: Table, node: u32, measured_depth: f64) -> Table {
+    table.attribute(NODE.name, node).attribute(MEASURED_DEPTH.name, measured_depth)
+}
+
 /// Nodes with their measured depths \[m\], from the table of the statics.
 fn depths(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<(u32, f64)>> {
-    let statics = decode(statics.clone(), Some(&["node", "measured_depth"]))?;
+    let statics = decode(statics.clone(), Some(&[NODE.name, MEASURED_DEPTH.name]))?;
     let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
-        (statics.columns.get("node"), statics.columns.get("measured_depth"))
+        (statics.columns.get(NODE.name), statics.columns.get(MEASURED_DEPTH.name))
     else {
         return Err(Error::internal("a table of statics without nodes and their depths"));
     };
@@ -290,6 +284,6 @@ impl NodeMotion {
 
     /// A view of this motion with the node that it is of.
     pub(crate) fn label(&self, table: Table) -> Table {
-        table.attribute("node", self.node).attribute("measured_depth", self.measured_depth)
+        of_node(table, self.node, self.measured_depth)
     }
 }

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use axum::http::header;
-use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList, Table};
+use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList};
+use drillsweep_table::Table;
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::openapi::{

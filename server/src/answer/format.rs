@@ -3,9 +3,9 @@
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::{Column, ProblemDetails, ProblemKind, Table, npz};
+use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
-use drillsweep_store::{ColumnData, TableError, encode_parquet};
+use drillsweep_table::{Table, csv, npz, parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
@@ -198,15 +198,17 @@ pub(crate) fn respond_or_draw(
     let table = match fields.filter(|_| !format.is_picture()) {
         None => table,
         Some(fields) => {
-            selected = table.select(fields).map_err(|missing| table.no_such_column(&missing))?;
+            selected = table
+                .select(fields)
+                .map_err(|missing| Box::new(ProblemDetails::no_such_column(table, &missing)))?;
             &selected
         }
     };
     let body = match format {
         Format::Json => serde_json::to_vec(table).map_err(|error| Error::internal(&error))?,
-        Format::Csv => table.csv().into_bytes(),
-        Format::Parquet => parquet(table)?,
-        Format::Npz => npz::npz(table).map_err(|error| Error::internal(&error))?,
+        Format::Csv => csv::write(table).map_err(|error| Error::internal(&error))?.into_bytes(),
+        Format::Parquet => parquet::write(table)?,
+        Format::Npz => npz::write(table).map_err(|error| Error::internal(&error))?,
         Format::Svg => draw(table)?.svg().into_bytes(),
         Format::Png => draw(table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
     };
@@ -231,28 +233,6 @@ pub(crate) fn file(body: impl Into<Bytes>, format: Format, name: &str) -> Respon
         headers.insert(header::CONTENT_DISPOSITION, disposition);
     }
     response
-}
-
-/// Every column is required there, so that a missing number is NaN and a missing text is empty.
-fn parquet(table: &Table) -> Result<Vec<u8>, TableError> {
-    let mut stored = drillsweep_store::Table::default();
-    for (name, column) in &table.columns {
-        let data = match column {
-            Column::Number(values) => ColumnData::F64(values.clone()),
-            Column::Integer(values) => match values.iter().copied().collect::<Option<Vec<_>>>() {
-                Some(values) => ColumnData::I64(values),
-                None => {
-                    let number = |value: &Option<i64>| value.map_or(f64::NAN, |value| value as f64);
-                    ColumnData::F64(values.iter().map(number).collect())
-                }
-            },
-            Column::Text(values) => {
-                ColumnData::Text(values.iter().map(|value| value.clone().unwrap_or_default()).collect())
-            }
-        };
-        stored.push(name, table.units.get(name).map(String::as_str), data);
-    }
-    encode_parquet(&stored)
 }
 
 #[cfg(test)]

@@ -7,3 +7,4 @@ pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod records;
+pub(crate) mod vocabulary;

@@ -3,8 +3,9 @@
 use axum::extract::State;
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::cost::{CostReport, Measure, csv};
+use drillsweep_api::cost::{CostReport, Measure, table};
 use drillsweep_chart::{PNG_WIDTH, work_precision};
+use drillsweep_table::csv;
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
@@ -94,7 +95,9 @@ pub(crate) async fn show(
         }
         let drawing = || work_precision(&report, measure.unwrap_or_else(|| Measure::usual(&report)));
         let body = match format {
-            CostFormat::Json | CostFormat::Csv => csv(&report).into_bytes(),
+            CostFormat::Json | CostFormat::Csv => {
+                csv::write(&table(&report)).map_err(|error| Error::internal(&error))?.into_bytes()
+            }
             CostFormat::Svg => drawing().svg().into_bytes(),
             CostFormat::Png => drawing().png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
         };

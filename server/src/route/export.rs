@@ -8,6 +8,7 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::view::points;
 use drillsweep_store::{Artifact, BlobStore, Store};
+use drillsweep_table::csv;
 use futures::StreamExt;
 use serde::Deserialize;
 use tokio::runtime::Handle;
@@ -132,10 +133,11 @@ impl Archive {
         let records = self.handle.block_on(self.store.table_rows(&self.id)).map_err(io::Error::other)?;
         let verified = self.handle.block_on(Verified::load(&self.store, &self.id)).map_err(failed)?;
         zip.start_file("table.csv", text.large_file(true))?;
-        zip.write_all(points::points(&verified.rows(&records).map_err(failed)?).csv().as_bytes())?;
+        let table = points::points(&verified.rows(&records).map_err(failed)?);
+        zip.write_all(csv::write(&table).map_err(io::Error::other)?.as_bytes())?;
         if !verified.points.is_empty() {
             zip.start_file("verification.csv", text)?;
-            zip.write_all(verified.table().csv().as_bytes())?;
+            zip.write_all(csv::write(&verified.table()).map_err(io::Error::other)?.as_bytes())?;
         }
         if self.wanted.as_ref().is_none_or(|wanted| !wanted.is_empty()) {
             self.write_points(&mut zip)?;

@@ -6,6 +6,7 @@ use axum::response::Response;
 use drillsweep_api::view::{history, node, orbit, spectrum};
 use drillsweep_chart as chart;
 use drillsweep_store::Store;
+use drillsweep_table::quantity::tables::{self, Layout};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
@@ -77,8 +78,8 @@ pub(crate) async fn profile(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let parquet = artifact::load(&app.store, &id, n, "profile").await?;
-    let file_name = file_name(&id, n, "profile");
+    let parquet = artifact::load(&app.store, &id, n, tables::PROFILE.name).await?;
+    let file_name = file_name(&id, n, tables::PROFILE.name);
     if format == Format::Parquet && fields.is_none() {
         return Ok(format::file(parquet, format, &file_name));
     }
@@ -107,7 +108,7 @@ pub(crate) async fn statics(
     query: Query<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    whole_table("statics", app, path, query, headers).await
+    whole_table(&tables::STATICS, app, path, query, headers).await
 }
 
 /// Contacts of every node with the hole over the run
@@ -125,7 +126,7 @@ pub(crate) async fn contacts(
     query: Query<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    whole_table("contacts", app, path, query, headers).await
+    whole_table(&tables::CONTACTS, app, path, query, headers).await
 }
 
 /// The energy ledger over the run
@@ -143,12 +144,12 @@ pub(crate) async fn energy(
     query: Query<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    whole_table("energy", app, path, query, headers).await
+    whole_table(&tables::ENERGY, app, path, query, headers).await
 }
 
 /// A table as the worker stored it; Parquet goes out as it lies there.
 async fn whole_table(
-    name: &'static str,
+    &Layout { name, .. }: &Layout,
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
     Query(query): Query<TableQuery>,
@@ -231,9 +232,9 @@ pub(crate) async fn history(
         (None, None) => None,
         (node, depth) => Some(node::Choice::from_parameters(node, depth)?),
     };
-    let file_name = file_name(&id, n, "history");
+    let file_name = file_name(&id, n, tables::HISTORY.name);
     if format == Format::Parquet && query.is_whole() {
-        let parquet = artifact::load(&app.store, &id, n, "history").await?;
+        let parquet = artifact::load(&app.store, &id, n, tables::HISTORY.name).await?;
         return Ok(format::file(parquet, format, &file_name));
     }
     let recording = Recording::load(&app.store, &id, n).await?;

@@ -56,7 +56,7 @@ impl Verified {
     }
 
     /// The table of the verified points.
-    pub(crate) fn table(&self) -> drillsweep_api::Table {
+    pub(crate) fn table(&self) -> drillsweep_table::Table {
         verification::verification(&self.points, &self.findings)
     }
 }

@@ -7,9 +7,8 @@ use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use drillsweep_server::{Config, router};
-use drillsweep_store::{
-    Claim, ColumnData, FailureClass, NewArtifact, NewResult, Role, Store, StoreConfig, Table, encode_parquet,
-};
+use drillsweep_store::{Claim, NewArtifact, NewResult, Role, Store, StoreConfig};
+use drillsweep_table::{Column, Table, parquet};
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -107,13 +106,13 @@ impl Bench {
             drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap();
         let mut artifacts = Vec::new();
         for (name, table) in tables() {
-            let parquet = encode_parquet(&table).unwrap();
+            let bytes = parquet::write(&table).unwrap();
             artifacts.push(NewArtifact {
                 name: name.to_owned(),
                 media_type: "application/vnd.apache.parquet".to_owned(),
-                bytes: parquet.len().try_into().unwrap(),
+                bytes: bytes.len().try_into().unwrap(),
                 row_count: table.rows().try_into().unwrap(),
-                blob: self.store.blobs().put(parquet).await.unwrap(),
+                blob: self.store.blobs().put(bytes).await.unwrap(),
             });
         }
         let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual, "resolved_hz": 200.0});
@@ -132,9 +131,7 @@ impl Bench {
         let claim = self.claim().await;
         let error =
             json!({"class": "physical", "reason": "the state is not finite", "time": 1.25, "node": 49});
-        assert!(
-            self.store.finish_failed(&claim.lease, FailureClass::Physical, &error.to_string()).await.unwrap()
-        );
+        assert!(self.store.finish_failed(&claim.lease, &error.to_string()).await.unwrap());
     }
 }
 
@@ -160,29 +157,21 @@ pub(crate) const NODES: [(u32, f64); 2] = [(10, 11.72), (49, 57.73)];
 fn tables() -> Vec<(&'static str, Table)> {
     let samples = (RATE * DURATION) as usize;
     let time: Vec<f64> = (0..samples).map(|k| k as f64 / RATE).collect();
-    let of_time = |f: fn(f64) -> f64| ColumnData::F64(time.iter().map(|t| f(*t)).collect());
+    let of_time = |f: fn(f64) -> f64| Column::Number(time.iter().map(|t| f(*t)).collect());
     let mut history = Table::default();
-    history.push("time", Some("s"), ColumnData::F64(time.clone()));
-    history.push("u_10", Some("m"), of_time(|_| 0.01));
-    history.push("v_10", Some("m"), of_time(|_| 0.0));
-    history.push(
-        "u_49",
-        Some("m"),
-        of_time(|t| 0.004 + 0.03 * (2.0 * TAU * t).cos() + 0.01 * (3.0 * TAU * t).cos()),
-    );
-    history.push(
-        "v_49",
-        Some("m"),
-        of_time(|t| 0.003 + 0.03 * (2.0 * TAU * t).sin() - 0.01 * (3.0 * TAU * t).sin()),
-    );
+    history.push("time", Column::Number(time.clone()));
+    history.push("u_10", of_time(|_| 0.01));
+    history.push("v_10", of_time(|_| 0.0));
+    history.push("u_49", of_time(|t| 0.004 + 0.03 * (2.0 * TAU * t).cos() + 0.01 * (3.0 * TAU * t).cos()));
+    history.push("v_49", of_time(|t| 0.003 + 0.03 * (2.0 * TAU * t).sin() - 0.01 * (3.0 * TAU * t).sin()));
 
     let mut statics = Table::default();
-    statics.push("node", None, ColumnData::I64(vec![1, 10, 49, 50]));
-    statics.push("measured_depth", Some("m"), ColumnData::F64(vec![0.0, NODES[0].1, NODES[1].1, 59.2]));
+    statics.push("node", Column::Integer([1, 10, 49, 50].map(Some).to_vec()));
+    statics.push("measured_depth", Column::Number(vec![0.0, NODES[0].1, NODES[1].1, 59.2]));
 
     let mut profile = Table::default();
-    profile.push("element", None, ColumnData::I64(vec![1, 2]));
-    profile.push("friction_coefficient", Some("1"), ColumnData::F64(vec![0.0192, f64::NAN]));
-    profile.push("regime", None, ColumnData::Text(vec!["laminar".to_owned(), "turbulent".to_owned()]));
+    profile.push("element", Column::Integer([1, 2].map(Some).to_vec()));
+    profile.push("friction_coefficient", Column::Number(vec![0.0192, f64::NAN]));
+    profile.push("regime", Column::Text(["laminar", "turbulent"].map(|text| Some(text.to_owned())).to_vec()));
     vec![("history", history), ("statics", statics), ("profile", profile)]
 }

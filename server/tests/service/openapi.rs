@@ -5,6 +5,7 @@ use std::path::Path;
 use drillsweep_api::ProblemKind;
 use drillsweep_server::openapi_json;
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
+use drillsweep_table::quantity::{self, tables};
 use serde_json::Value;
 
 use crate::bench::Bench;
@@ -96,6 +97,68 @@ fn every_reference_leads_somewhere_and_every_operation_is_described() {
             for parameter in operation["parameters"].as_array().into_iter().flatten() {
                 assert!(parameter["description"].is_string(), "{path}: {parameter}");
             }
+        }
+    }
+}
+
+/// A numeric field of a scenario: its path, the unit that its schema names, and what its description says.
+struct Field {
+    path: String,
+    unit: Option<String>,
+    description: String,
+}
+
+fn numeric_fields(document: &Value, schema: &Value, path: &str, fields: &mut Vec<Field>) {
+    if let Some(reference) = schema["$ref"].as_str() {
+        let schema = document.pointer(reference.strip_prefix('#').unwrap()).unwrap();
+        return numeric_fields(document, schema, path, fields);
+    }
+    let kinds = &schema["type"];
+    if ["number", "integer"].iter().any(|kind| kinds == kind || kinds[0] == *kind) {
+        let text = |name: &str| schema[name].as_str().map(str::to_owned);
+        let description = text("description").unwrap_or_default();
+        fields.push(Field { path: path.to_owned(), unit: text("x-unit"), description });
+        return;
+    }
+    for (name, schema) in schema["properties"].as_object().into_iter().flatten() {
+        let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+        numeric_fields(document, schema, &path, fields);
+    }
+    for forms in ["oneOf", "anyOf", "allOf"] {
+        for schema in schema[forms].as_array().into_iter().flatten() {
+            numeric_fields(document, schema, path, fields);
+        }
+    }
+    if schema["items"].is_object() {
+        numeric_fields(document, &schema["items"], path, fields);
+    }
+}
+
+#[test]
+fn every_number_of_a_scenario_is_in_the_vocabulary_with_the_unit_that_its_description_names() {
+    let document: Value = serde_json::from_str(openapi_json()).unwrap();
+    let mut fields = Vec::new();
+    numeric_fields(&document, &document["components"]["schemas"]["Scenario"], "", &mut fields);
+    assert!(fields.len() > 60, "{}", fields.len());
+    for Field { path, unit, description } in fields {
+        assert!(quantity::of(&path).is_some(), "{path} is not in the vocabulary");
+        assert_eq!(unit.as_deref(), quantity::unit(&path), "{path}");
+        let named = description.split_once("\\[").and_then(|(_, rest)| rest.split_once("\\]"));
+        if let Some((named, _)) = named {
+            assert_eq!(unit.as_deref(), Some(named), "{path}: {description}");
+        }
+    }
+}
+
+#[test]
+fn the_columns_of_every_table_are_described() {
+    let document: Value = serde_json::from_str(openapi_json()).unwrap();
+    for layout in tables::ALL.iter().filter(|layout| layout.name != "spectra") {
+        let path = format!("/paths/~1v1~1sweeps~1{{id}}~1points~1{{n}}~1{}/get/description", layout.name);
+        let description = document.pointer(&path).and_then(Value::as_str).unwrap();
+        for quantity in layout.columns {
+            assert!(!quantity.meaning.is_empty());
+            assert!(description.contains(&format!("| `{}` | ", quantity.name)), "{}", quantity.name);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use drillsweep_store::{ColumnData, decode_parquet};
+use drillsweep_table::{Column, parquet};
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, DURATION, RATE};
@@ -42,10 +42,10 @@ async fn a_stored_table_is_served_in_every_format() {
     let csv = bench.send(request.body(Body::empty()).unwrap()).await;
     assert_eq!(csv.headers[header::CONTENT_TYPE], "text/csv");
     assert_eq!(csv.text(), "element,friction_coefficient,regime\n1,0.0192,laminar\n2,,turbulent\n");
-    let parquet = bench.get(&format!("{path}/points/1/profile?format=parquet")).await;
-    assert_eq!(parquet.headers[header::CONTENT_TYPE], "application/vnd.apache.parquet");
-    let table = decode_parquet(parquet.body, None, None).unwrap();
-    assert_eq!(table.column("element").unwrap().data, ColumnData::I64(vec![1, 2]));
+    let whole = bench.get(&format!("{path}/points/1/profile?format=parquet")).await;
+    assert_eq!(whole.headers[header::CONTENT_TYPE], "application/vnd.apache.parquet");
+    let table = parquet::read(whole.body, None, None).unwrap();
+    assert_eq!(table.columns["element"], Column::Integer(vec![Some(1), Some(2)]));
 }
 
 #[tokio::test]
@@ -76,10 +76,10 @@ async fn the_table_of_a_sweep_has_a_row_for_every_point() {
             "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,200.0,,,\n2,failed,1500.0,0.01,,,,,the state is not finite,1.25,49\n"
         )
     );
-    let parquet = bench.get(&format!("{path}/table?format=parquet")).await;
-    let table = decode_parquet(parquet.body, None, None).unwrap();
-    assert_eq!(table.column("mud_density").unwrap().data, ColumnData::F64(vec![1200.0, 1500.0]));
-    assert_eq!(table.column("mud_density").unwrap().unit.as_deref(), Some("kg/m3"));
+    let whole = bench.get(&format!("{path}/table?format=parquet")).await;
+    let table = parquet::read(whole.body, None, None).unwrap();
+    assert_eq!(table.columns["mud_density"], Column::Number(vec![1200.0, 1500.0]));
+    assert_eq!(table.units["mud_density"], "kg/m3");
 }
 
 #[tokio::test]
@@ -159,8 +159,8 @@ async fn a_history_is_served_whole_or_of_one_node() {
     assert_eq!(numbers(&whole, "time").len(), 1000);
     let columns: Vec<_> = whole["columns"].as_object().unwrap().keys().cloned().collect();
     assert_eq!(columns, ["time", "u_10", "v_10", "u_49", "v_49"]);
-    let parquet = bench.get(&format!("{path}/points/1/history?format=parquet")).await;
-    assert_eq!(decode_parquet(parquet.body, None, None).unwrap().rows(), 10_000);
+    let whole = bench.get(&format!("{path}/points/1/history?format=parquet")).await;
+    assert_eq!(parquet::read(whole.body, None, None).unwrap().rows(), 10_000);
     let of_node = bench.get(&format!("{path}/points/1/history?node=10&from=1&to=1.003")).await.json();
     assert_eq!(
         of_node["columns"],

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use drillsweep_store::{FailureClass, NewResult};
+use drillsweep_store::NewResult;
 use serde_json::{Value, json};
 
 use crate::bench::Bench;
@@ -139,7 +139,7 @@ async fn reference_runs_that_fail_are_told_and_retried_and_known_ones_are_not_ru
     }
     let claim = bench.claim().await;
     let error = json!({"class": "physical", "reason": "the state is not finite"}).to_string();
-    assert!(bench.store.finish_failed(&claim.lease, FailureClass::Physical, &error).await.unwrap());
+    assert!(bench.store.finish_failed(&claim.lease, &error).await.unwrap());
     let sweep = bench.get(&path).await.json();
     assert_eq!(
         (&sweep["state"], &sweep["counts"]["failed"], &sweep["verification"]["counts"]["failed"]),

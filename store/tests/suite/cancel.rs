@@ -1,6 +1,6 @@
 //! Cancelling: what nobody wants stops, what somebody wants goes on.
 
-use drillsweep_store::{FailureClass, Renewal, StateCounts, WorkState};
+use drillsweep_store::{Renewal, StateCounts, WorkState};
 
 use crate::bench::{
     Engine, LEASE_MS, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
@@ -21,7 +21,7 @@ pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_ren
     assert_eq!(record.finished, None);
 
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
-    assert!(store.finish_failed(&running.lease, FailureClass::Cancelled, CANCELLED).await.unwrap());
+    assert!(store.finish_cancelled(&running.lease, CANCELLED).await.unwrap());
     let record = sweep_record(&store, "s").await;
     assert_eq!(record.counts, StateCounts { total: 3, done: 1, cancelled: 2, ..StateCounts::default() });
     assert!(record.finished.is_some());
@@ -55,7 +55,7 @@ pub(crate) async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
     submit(&store, &sweep("b", [1])).await;
     // The worker acts on what it heard before.
-    assert!(store.finish_failed(&running.lease, FailureClass::Cancelled, CANCELLED).await.unwrap());
+    assert!(store.finish_cancelled(&running.lease, CANCELLED).await.unwrap());
     let point = point_record(&store, "b", 1).await;
     assert_eq!((point.state, point.error_json, point.progress), (WorkState::Queued, None, 0.0));
     assert!(finish(&store, &claim(&store, "w").await).await);

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use drillsweep_store::{
-    Addition, AppendOutcome, CachePolicy, FailureClass, NewArtifact, NewPoint, NewResult, NewSweep,
-    QueueDepths, StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
+    Addition, AppendOutcome, CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, QueueDepths,
+    StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
 
 use crate::bench::{
@@ -283,7 +283,7 @@ pub(crate) async fn a_refresh_that_fails_leaves_the_old_result_and_says_why<E: E
     let error = r#"{"class":"timeout"}"#;
     submit(&store, &refresh("timeout")).await;
     let running = claim(&store, "second").await;
-    assert!(store.finish_failed(&running.lease, FailureClass::Timeout, error).await.unwrap());
+    assert!(store.finish_failed(&running.lease, error).await.unwrap());
     let point = point_record(&store, "timeout", 1).await;
     assert_eq!((point.state, point.error_json.as_deref()), (WorkState::Done, Some(error)));
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
@@ -315,7 +315,7 @@ pub(crate) async fn a_refresh_begins_at_the_beginning<E: Engine>() {
     let running = claim(&store, "first").await;
     let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
     assert!(store.keep_checkpoint(&running.lease, blob).await.unwrap());
-    assert!(store.finish_failed(&running.lease, FailureClass::Timeout, "{}").await.unwrap());
+    assert!(store.finish_failed(&running.lease, "{}").await.unwrap());
     submit(&store, &refresh("new")).await;
     assert_eq!(claim(&store, "second").await.checkpoint, None);
 }
@@ -326,7 +326,7 @@ pub(crate) async fn only_what_is_known_is_taken_or_nothing_is_stored<E: Engine>(
     submit(&store, &sweep("known", [1, 2, 3])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let failing = claim(&store, "w").await;
-    assert!(store.finish_failed(&failing.lease, FailureClass::Physical, "{}").await.unwrap());
+    assert!(store.finish_failed(&failing.lease, "{}").await.unwrap());
     let only = |id: &str, numbers: &[u32]| NewSweep {
         cache: CachePolicy::Only,
         ..sweep(id, numbers.iter().copied())

@@ -1,6 +1,6 @@
 //! A sweep's counts, end and events follow its points through whatever happens to them.
 
-use drillsweep_store::{Addition, Claim, FailureClass, StateCounts, Store, WorkState};
+use drillsweep_store::{Addition, Claim, StateCounts, Store, WorkState};
 
 use crate::bench::{
     Engine, LEASE_MS, addition, claim, claim_or_none, finish, key, scenario, states, submit, sweep,
@@ -103,8 +103,8 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
                     let lease = &claim.lease;
                     match kind {
                         7 => drop(finish(&store, &claim).await),
-                        8 => drop(store.finish_failed(lease, FailureClass::Physical, "{}").await.unwrap()),
-                        9 => drop(store.finish_failed(lease, FailureClass::Cancelled, "{}").await.unwrap()),
+                        8 => drop(store.finish_failed(lease, "{}").await.unwrap()),
+                        9 => drop(store.finish_cancelled(lease, "{}").await.unwrap()),
                         10 => drop(store.release(lease).await.unwrap()),
                         _ => drop(store.retry_later(lease, "{}").await.unwrap()),
                     }
@@ -128,7 +128,7 @@ pub(crate) async fn events_tell_the_history_in_the_order_of_versions<E: Engine>(
     assert_eq!(again.lease.key, silent.lease.key);
     assert!(finish(&later, &again).await);
     let failed = claim(&later, "w").await;
-    assert!(later.finish_failed(&failed.lease, FailureClass::Timeout, "{}").await.unwrap());
+    assert!(later.finish_failed(&failed.lease, "{}").await.unwrap());
 
     let events = store.events("s", 0, 100).await.unwrap();
     let told: Vec<_> = events.iter().map(|event| (event.work_key, event.state)).collect();

@@ -1,8 +1,6 @@
 //! The list of what was given up, over all sweeps.
 
-use drillsweep_store::{
-    FailureClass, FailureFilter, FailurePlace, FailureRecord, NewSweep, Store, WorkState,
-};
+use drillsweep_store::{FailureFilter, FailurePlace, FailureRecord, NewSweep, Store, WorkState};
 
 use crate::bench::{Engine, claim, finish, submit, sweep};
 
@@ -24,9 +22,9 @@ async fn all(store: &Store, filter: FailureFilter<'_>) -> Vec<(String, i64)> {
 }
 
 /// Fails the next piece of work in a way of its own.
-async fn fail(store: &Store, class: FailureClass, error: &str) {
+async fn fail(store: &Store, error: &str) {
     let lease = claim(store, "w").await.lease;
-    assert!(store.finish_failed(&lease, class, error).await.unwrap());
+    assert!(store.finish_failed(&lease, error).await.unwrap());
 }
 
 fn places(places: &[(&str, i64)]) -> Vec<(String, i64)> {
@@ -37,9 +35,9 @@ pub(crate) async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2, 3])).await;
-    fail(&store, FailureClass::Physical, r#"{"class":"physical"}"#).await;
+    fail(&store, r#"{"class":"physical"}"#).await;
     let later = engine.after(1_000).await;
-    fail(&later, FailureClass::Timeout, r#"{"class":"timeout"}"#).await;
+    fail(&later, r#"{"class":"timeout"}"#).await;
     assert!(finish(&later, &claim(&later, "w").await).await);
     // The same work as point 1 of "a", twice: it failed when it failed.
     submit(&later, &NewSweep { owner: "bert".to_owned(), ..sweep("b", [1, 4, 1]) }).await;
@@ -71,7 +69,7 @@ pub(crate) async fn an_error_that_is_no_json_has_no_class<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
-    fail(&store, FailureClass::Physical, "of an older version").await;
+    fail(&store, "of an older version").await;
     assert_eq!(all(&store, FailureFilter::default()).await.len(), 1);
     let physical = FailureFilter { class: Some("physical"), ..FailureFilter::default() };
     assert!(all(&store, physical).await.is_empty());

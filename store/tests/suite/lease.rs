@@ -1,6 +1,6 @@
 //! Leases: who holds a point, until when, and what becomes of it when its worker falls silent.
 
-use drillsweep_store::{FailureClass, NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
+use drillsweep_store::{NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
 
 use crate::bench::{
     Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
@@ -68,9 +68,8 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
         let version = store.sweep_version("s").await.unwrap();
         assert_eq!(store.renew(&late.lease, LEASE_MS, 0.9).await.unwrap(), Renewal::Lost);
         assert!(!finish(&store, &late).await);
-        for class in [FailureClass::Physical, FailureClass::Timeout, FailureClass::Cancelled] {
-            assert!(!store.finish_failed(&late.lease, class, "{}").await.unwrap());
-        }
+        assert!(!store.finish_failed(&late.lease, "{}").await.unwrap());
+        assert!(!store.finish_cancelled(&late.lease, "{}").await.unwrap());
         assert!(!store.release(&late.lease).await.unwrap());
         assert!(!store.crashed(&late.lease, "{}").await.unwrap());
         let blob = store.blobs().put(b"late".to_vec()).await.unwrap();
@@ -232,7 +231,7 @@ pub(crate) async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_don
     let third = claim(&later, "third").await;
     assert_eq!(third.checkpoint, Some(blob));
     // Nor does one that gives the point up for having taken too long: a retry goes on from there.
-    assert!(later.finish_failed(&third.lease, FailureClass::Timeout, "{}").await.unwrap());
+    assert!(later.finish_failed(&third.lease, "{}").await.unwrap());
     assert_eq!(later.retry_sweep("s").await.unwrap(), Some(1));
     let fourth = claim(&later, "fourth").await;
     assert_eq!(fourth.checkpoint, Some(blob));

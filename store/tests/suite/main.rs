@@ -148,6 +148,5 @@ mod retention;
 mod sqlite;
 mod state;
 mod submit;
-mod table;
 mod token;
 mod verification;

@@ -3,8 +3,7 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use drillsweep_store::{
-    AppendOutcome, CachePolicy, FailureClass, NewSweep, StateCounts, StoreError, SubmitOutcome, SweepFilter,
-    WorkState,
+    AppendOutcome, CachePolicy, NewSweep, StateCounts, StoreError, SubmitOutcome, SweepFilter, WorkState,
 };
 
 use crate::bench::{
@@ -147,7 +146,7 @@ pub(crate) async fn a_physical_failure_is_final_until_a_retry_is_asked_for<E: En
     submit(&store, &sweep("a", [1])).await;
     let failed = claim(&store, "w").await;
     let error = r#"{"class":"physical","time":1.25,"node":49}"#;
-    assert!(store.finish_failed(&failed.lease, FailureClass::Physical, error).await.unwrap());
+    assert!(store.finish_failed(&failed.lease, error).await.unwrap());
     assert_eq!(point_record(&store, "a", 1).await.error_json.as_deref(), Some(error));
 
     submit(&store, &sweep("b", [1])).await;

@@ -1,8 +1,8 @@
 //! Runs that verify points: work like any other, told apart from the points.
 
 use drillsweep_store::{
-    Addition, AppendOutcome, CachePolicy, FailureClass, FailureFilter, NewSweep, StateCounts, SubmitOutcome,
-    SweepChanges, WorkState,
+    Addition, AppendOutcome, CachePolicy, FailureFilter, NewSweep, StateCounts, SubmitOutcome, SweepChanges,
+    WorkState,
 };
 
 use crate::bench::{
@@ -92,7 +92,7 @@ pub(crate) async fn runs_are_cancelled_held_hurried_and_retried_with_their_sweep
     assert!(store.change_sweep("s", &urgent).await.unwrap());
     let run = claim(&store, "w").await;
     assert_eq!(run.lease.key, key(11));
-    assert!(store.finish_failed(&run.lease, FailureClass::Physical, "{}").await.unwrap());
+    assert!(store.finish_failed(&run.lease, "{}").await.unwrap());
     let record = sweep_record(&store, "s").await;
     assert_eq!((record.counts.failed, record.verification.failed), (0, 1));
     assert!(record.finished.is_some());

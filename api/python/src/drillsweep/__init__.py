@@ -7,7 +7,8 @@
     table = sweep.wait().table().to_pandas()
     orbit = sweep.point(1).orbit(depth=57.7, time=(40, 60))
 
-All quantities are in SI units; `Table.units` says which.
+All quantities are in SI units; `Table.units` says which, and `quantity` what a column is, and in which units it is shown and read in the
+oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
 """
 
 from drillsweep.client import Client
@@ -28,6 +29,7 @@ from drillsweep.problem import (
     Unauthorized,
     Unavailable,
 )
+from drillsweep.quantity import Quantity, Unit, quantity
 from drillsweep.sweep import Counts, Plan, PlannedPoint, Sweep
 from drillsweep.table import Table
 
@@ -49,10 +51,13 @@ __all__ = [
     "Point",
     "PointError",
     "Problem",
+    "Quantity",
     "Range",
     "RateLimited",
     "Sweep",
     "Table",
     "Unauthorized",
     "Unavailable",
+    "Unit",
+    "quantity",
 ]

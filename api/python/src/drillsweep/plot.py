@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from drillsweep.optional import require
 from drillsweep.point import Point, TimeWindow
+from drillsweep.quantity import Unit, quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_MILLIMETRES = 1e3
 
 
 def orbit(
@@ -42,13 +41,14 @@ def orbit(
     across = table["v"] * np.cos(low_side) - table["u"] * np.sin(low_side)
     axes = axes or _new_axes()
     # Clockwise on the picture: from the bottom to the left.
-    axes.plot(-across * _MILLIMETRES, -down * _MILLIMETRES, linewidth=0.6)
+    shown = _shown("radius")
+    axes.plot(-shown.of(across), -shown.of(down), linewidth=0.6)
     angle = np.linspace(0.0, 2.0 * np.pi, 361)
-    radius = clearance * _MILLIMETRES
+    radius = shown.of(clearance)
     axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="black", linewidth=1.0)
     axes.set_aspect("equal")
-    axes.set_xlabel("across the hole [mm]")
-    axes.set_ylabel("from the low side up [mm]")
+    axes.set_xlabel(f"across the hole [{shown.symbol}]")
+    axes.set_ylabel(f"from the low side up [{shown.symbol}]")
     axes.set_title(f"Orbit of node {number} at {table.attributes['measured_depth']:.2f} m")
     return axes
 
@@ -73,7 +73,8 @@ def spectrum(
     table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
     # As wide as the line that any window makes of a mean.
     is_mean = np.abs(table["frequency"]) < 2.5 * table.attributes["resolution"]
-    amplitude = np.where(is_mean, np.nan, table["amplitude"]) * _MILLIMETRES
+    shown = _shown("amplitude")
+    amplitude = np.where(is_mean, np.nan, shown.of(table["amplitude"]))
     axes = axes or _new_axes()
     axes.plot(table["frequency"], amplitude, linewidth=0.8)
     resolved = table.attributes.get("resolved_hz")
@@ -92,7 +93,7 @@ def spectrum(
         axes.annotate(f"{line['frequency']:+.2f} Hz", (line["frequency"], np.max(amplitude[near])), **place)
     axes.axvline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("frequency [Hz], backward - and forward + whirl")
-    axes.set_ylabel("amplitude [mm]")
+    axes.set_ylabel(f"amplitude [{shown.symbol}]")
     axes.set_title(f"Full spectrum of node {table.attributes['node']} at {table.attributes['measured_depth']:.2f} m")
     return axes
 
@@ -105,24 +106,29 @@ def profile(
 ) -> Axes:
     """A column of the profile over measured depth, downwards, C_f unless told otherwise; one line a point."""
     axes = axes or _new_axes()
-    unit = ""
-    shown = [points] if isinstance(points, Point) else list(points)
+    lines = [points] if isinstance(points, Point) else list(points)
+    shown = _shown(column)
     colours = require("matplotlib", "plot").colormaps["viridis"]
     np = require("numpy", "plot")
-    for number, point in enumerate(shown):
+    for number, point in enumerate(lines):
         table = point.profile()
         # Values belong to elements: steps over the elements' ends.
         depth = np.stack([table["measured_depth_top"], table["measured_depth_bottom"]], axis=1).ravel()
-        colour = colours(0.9 * number / max(len(shown) - 1, 1))
-        axes.plot(table[column].repeat(2), depth, linewidth=0.9, color=colour, label=_label(point.parameters))
-        unit = table.units.get(column, "")
+        colour = colours(0.9 * number / max(len(lines) - 1, 1))
+        axes.plot(shown.of(table[column]).repeat(2), depth, linewidth=0.9, color=colour, label=_label(point.parameters))
     axes.invert_yaxis()
-    name = "C_f" if column == "friction_coefficient" else column.replace("_", " ")
-    axes.set_xlabel(f"{name} [{unit}]" if unit not in ("", "1") else name)
+    known = quantity(column)
+    name = known.label if known else column.replace("_", " ")
+    axes.set_xlabel(f"{name} [{shown.symbol}]" if shown.symbol not in ("", "1") else name)
     axes.set_ylabel("measured depth [m]")
     if len(axes.lines) > 1:
         axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
+
+
+def _shown(column: str) -> Unit:
+    known = quantity(column)
+    return known.shown if known else Unit("", 1.0)
 
 
 def _label(parameters: dict[str, float]) -> str:

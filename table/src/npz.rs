@@ -16,7 +16,7 @@ const ALIGNMENT: usize = 64;
 ///
 /// # Errors
 /// When the archive would be too large for its format.
-pub fn npz(table: &Table) -> Result<Vec<u8>, zip::result::ZipError> {
+pub fn write(table: &Table) -> Result<Vec<u8>, zip::result::ZipError> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     let json = |value: serde_json::Result<String>| value.unwrap_or_default();
@@ -46,6 +46,9 @@ fn array(column: &Column) -> Vec<u8> {
                 npy("<f8", &shape, values.iter().map(number).flat_map(f64::to_le_bytes))
             }
         },
+        Column::Single(values) => {
+            npy("<f8", &shape, values.iter().flat_map(|value| f64::from(*value).to_le_bytes()))
+        }
         Column::Text(values) => {
             let values: Vec<&str> = values.iter().map(|value| value.as_deref().unwrap_or_default()).collect();
             texts(&values, &shape)
@@ -107,9 +110,9 @@ mod tests {
             .with("node", Column::Integer(vec![Some(1), None, Some(3)]))
             .with("regime", Column::Text(vec![Some("Größe".to_owned()), None, Some("a".to_owned())]))
             .attribute("samples", 3);
-        let archive = npz(&table).unwrap();
+        let archive = write(&table).unwrap();
         assert_eq!(file(&archive, "time.npy"), expected);
-        assert_eq!(archive, npz(&table).unwrap());
+        assert_eq!(archive, write(&table).unwrap());
         let regime = file(&archive, "regime.npy");
         assert!(regime.starts_with(b"\x93NUMPY\x01\x00v\x00{'descr': '<U5', "));
         assert_eq!(regime.len(), 128 + 3 * 5 * 4);

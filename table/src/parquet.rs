@@ -1,56 +1,26 @@
-//! Tables of columns as Parquet: byte-stream-split and zstd, in row groups small enough to read a window of a long
-//! history without the rest.
+//! Tables as Parquet: byte-stream-split and zstd, in row groups small enough to read a window of a long history without the rest.
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use ::parquet::basic::{Compression, ConvertedType, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
+use ::parquet::column::reader::ColumnReader;
+use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type};
+use ::parquet::errors::ParquetError;
+use ::parquet::file::metadata::KeyValue;
+use ::parquet::file::properties::WriterProperties;
+use ::parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use ::parquet::schema::types::{ColumnPath, Type};
 use bytes::Bytes;
-use parquet::basic::{Compression, ConvertedType, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
-use parquet::column::reader::ColumnReader;
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type};
-use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
-use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{ColumnPath, Type};
+
+use crate::table::{Column, Table};
 
 /// Rows of a row group.
 const ROW_GROUP: usize = 10_000;
 
 /// Prefix of the metadata keys that hold units.
 const UNIT_PREFIX: &str = "unit.";
-
-/// Named columns of one length.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
-    /// The columns.
-    pub columns: Vec<Column>,
-}
-
-/// One column.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Column {
-    /// Its name.
-    pub name: String,
-    /// Unit of its values, such as `m/s`.
-    pub unit: Option<String>,
-    /// Its values.
-    pub data: ColumnData,
-}
-
-/// Values of a column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ColumnData {
-    /// Numbers of double precision.
-    F64(Vec<f64>),
-    /// Numbers of single precision.
-    F32(Vec<f32>),
-    /// Whole numbers.
-    I64(Vec<i64>),
-    /// Texts.
-    Text(Vec<String>),
-}
 
 /// Why a table cannot be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -76,54 +46,12 @@ pub enum TableError {
     NotUtf8(String),
 }
 
-impl Table {
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.columns.first().map_or(0, |column| column.data.len())
-    }
-
-    /// Adds a column.
-    pub fn push(&mut self, name: impl Into<String>, unit: Option<&str>, data: ColumnData) {
-        self.columns.push(Column { name: name.into(), unit: unit.map(str::to_owned), data });
-    }
-
-    /// The column of a name.
-    pub fn column(&self, name: &str) -> Option<&Column> {
-        self.columns.iter().find(|column| column.name == name)
-    }
-}
-
-impl ColumnData {
-    /// Number of values.
-    pub fn len(&self) -> usize {
-        match self {
-            ColumnData::F64(values) => values.len(),
-            ColumnData::F32(values) => values.len(),
-            ColumnData::I64(values) => values.len(),
-            ColumnData::Text(values) => values.len(),
-        }
-    }
-
-    /// True when there are no values.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    fn physical_type(&self) -> PhysicalType {
-        match self {
-            ColumnData::F64(_) => PhysicalType::DOUBLE,
-            ColumnData::F32(_) => PhysicalType::FLOAT,
-            ColumnData::I64(_) => PhysicalType::INT64,
-            ColumnData::Text(_) => PhysicalType::BYTE_ARRAY,
-        }
-    }
-}
-
-/// A table as Parquet.
+/// A table as Parquet, without its attributes. Every column is required there: a missing number is NaN (whole numbers of which one is
+/// missing become numbers of double precision), a missing text is empty. The same table gives the same bytes.
 ///
 /// # Errors
 /// When the columns differ in length.
-pub fn encode_parquet(table: &Table) -> Result<Vec<u8>, TableError> {
+pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
     let rows = table.rows();
     let mut fields = Vec::with_capacity(table.columns.len());
     let mut properties = WriterProperties::builder()
@@ -131,29 +59,25 @@ pub fn encode_parquet(table: &Table) -> Result<Vec<u8>, TableError> {
         .set_dictionary_enabled(false)
         .set_created_by("drillsweep".to_owned());
     let mut units = Vec::new();
-    for column in &table.columns {
-        if column.data.len() != rows {
-            return Err(TableError::Ragged {
-                name: column.name.clone(),
-                rows: column.data.len(),
-                expected: rows,
-            });
+    for (name, column) in &table.columns {
+        if column.len() != rows {
+            return Err(TableError::Ragged { name: name.clone(), rows: column.len(), expected: rows });
         }
-        let physical = column.data.physical_type();
+        let physical = physical_type(column);
         let converted =
             if physical == PhysicalType::BYTE_ARRAY { ConvertedType::UTF8 } else { ConvertedType::NONE };
         fields.push(Arc::new(
-            Type::primitive_type_builder(&column.name, physical)
+            Type::primitive_type_builder(name, physical)
                 .with_repetition(Repetition::REQUIRED)
                 .with_converted_type(converted)
                 .build()?,
         ));
-        if matches!(column.data, ColumnData::F64(_) | ColumnData::F32(_)) {
-            let path = ColumnPath::new(vec![column.name.clone()]);
+        if matches!(physical, PhysicalType::DOUBLE | PhysicalType::FLOAT) {
+            let path = ColumnPath::new(vec![name.clone()]);
             properties = properties.set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
         }
-        if let Some(unit) = &column.unit {
-            units.push(KeyValue::new(format!("{UNIT_PREFIX}{}", column.name), unit.clone()));
+        if let Some(unit) = table.units.get(name) {
+            units.push(KeyValue::new(format!("{UNIT_PREFIX}{name}"), unit.clone()));
         }
     }
     let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
@@ -175,27 +99,43 @@ pub fn encode_parquet(table: &Table) -> Result<Vec<u8>, TableError> {
     Ok(bytes)
 }
 
+/// The type in which a column is kept.
+fn physical_type(column: &Column) -> PhysicalType {
+    match column {
+        Column::Integer(values) if values.iter().all(Option::is_some) => PhysicalType::INT64,
+        Column::Integer(_) | Column::Number(_) => PhysicalType::DOUBLE,
+        Column::Single(_) => PhysicalType::FLOAT,
+        Column::Text(_) => PhysicalType::BYTE_ARRAY,
+    }
+}
+
 fn write_group(
     group: &mut SerializedRowGroupWriter<'_, &mut Vec<u8>>,
     table: &Table,
     rows: Range<usize>,
 ) -> Result<(), TableError> {
-    for column in &table.columns {
+    for column in table.columns.values() {
         let Some(mut writer) = group.next_column()? else { break };
         let rows = rows.clone();
-        match &column.data {
-            ColumnData::F64(values) => {
+        match column {
+            Column::Number(values) => {
                 writer.typed::<DoubleType>().write_batch(&values[rows], None, None)?;
             }
-            ColumnData::F32(values) => {
+            Column::Single(values) => {
                 writer.typed::<FloatType>().write_batch(&values[rows], None, None)?;
             }
-            ColumnData::I64(values) => {
-                writer.typed::<Int64Type>().write_batch(&values[rows], None, None)?;
+            Column::Integer(values) if physical_type(column) == PhysicalType::INT64 => {
+                let values: Vec<i64> = values[rows].iter().flatten().copied().collect();
+                writer.typed::<Int64Type>().write_batch(&values, None, None)?;
             }
-            ColumnData::Text(values) => {
-                let texts: Vec<ByteArray> =
-                    values[rows].iter().map(|text| ByteArray::from(text.as_str())).collect();
+            Column::Integer(values) => {
+                let number = |value: &Option<i64>| value.map_or(f64::NAN, |value| value as f64);
+                let values: Vec<f64> = values[rows].iter().map(number).collect();
+                writer.typed::<DoubleType>().write_batch(&values, None, None)?;
+            }
+            Column::Text(values) => {
+                let text = |text: &Option<String>| ByteArray::from(text.as_deref().unwrap_or_default());
+                let texts: Vec<ByteArray> = values[rows].iter().map(text).collect();
                 writer.typed::<ByteArrayType>().write_batch(&texts, None, None)?;
             }
         }
@@ -214,15 +154,12 @@ pub fn column_names(bytes: Bytes) -> Result<Vec<String>, TableError> {
     Ok(schema.columns().iter().map(|column| column.name().to_owned()).collect())
 }
 
-/// Reads a Parquet table: some columns or all, some rows or all. Rows beyond the end are left out.
+/// Reads a Parquet table: some columns or all, some rows or all. Rows beyond the end are left out. Units are those that were written,
+/// or where none were those of the vocabulary.
 ///
 /// # Errors
-/// When the bytes are not a table that [`encode_parquet`] writes.
-pub fn decode_parquet(
-    bytes: Bytes,
-    columns: Option<&[&str]>,
-    rows: Option<Range<usize>>,
-) -> Result<Table, TableError> {
+/// When the bytes are not a table that [`write()`] writes.
+pub fn read(bytes: Bytes, columns: Option<&[&str]>, rows: Option<Range<usize>>) -> Result<Table, TableError> {
     let wanted = rows.unwrap_or(0..usize::MAX);
     let reader = SerializedFileReader::new(bytes)?;
     let metadata = reader.metadata().file_metadata();
@@ -237,11 +174,11 @@ pub fn decode_parquet(
         if columns.is_some_and(|columns| !columns.contains(&name)) {
             continue;
         }
-        let mut data = match descriptor.physical_type() {
-            PhysicalType::DOUBLE => ColumnData::F64(Vec::new()),
-            PhysicalType::FLOAT => ColumnData::F32(Vec::new()),
-            PhysicalType::INT64 => ColumnData::I64(Vec::new()),
-            PhysicalType::BYTE_ARRAY => ColumnData::Text(Vec::new()),
+        let mut column = match descriptor.physical_type() {
+            PhysicalType::DOUBLE => Column::Number(Vec::new()),
+            PhysicalType::FLOAT => Column::Single(Vec::new()),
+            PhysicalType::INT64 => Column::Integer(Vec::new()),
+            PhysicalType::BYTE_ARRAY => Column::Text(Vec::new()),
             _ => return Err(TableError::UnknownType(name.to_owned())),
         };
         let mut start = 0;
@@ -251,11 +188,14 @@ pub fn decode_parquet(
             let from = wanted.start.clamp(start, start + group_rows) - start;
             let to = wanted.end.clamp(start, start + group_rows) - start;
             if from < to {
-                read_column(group.as_ref(), index, name, from..to, &mut data)?;
+                read_column(group.as_ref(), index, name, from..to, &mut column)?;
             }
             start += group_rows;
         }
-        table.columns.push(Column { name: name.to_owned(), unit: unit(name), data });
+        table.push(name, column);
+        if let Some(unit) = unit(name) {
+            table.units.insert(name.to_owned(), unit);
+        }
     }
     Ok(table)
 }
@@ -265,7 +205,7 @@ fn read_column(
     index: usize,
     name: &str,
     rows: Range<usize>,
-    data: &mut ColumnData,
+    column: &mut Column,
 ) -> Result<(), TableError> {
     macro_rules! read {
         ($reader:expr, $values:expr, $convert:expr) => {{
@@ -278,19 +218,20 @@ fn read_column(
             }
         }};
     }
-    match (group.get_column_reader(index)?, data) {
-        (ColumnReader::DoubleColumnReader(reader), ColumnData::F64(values)) => {
+    match (group.get_column_reader(index)?, column) {
+        (ColumnReader::DoubleColumnReader(reader), Column::Number(values)) => {
             read!(reader, values, Ok::<f64, TableError>);
         }
-        (ColumnReader::FloatColumnReader(reader), ColumnData::F32(values)) => {
+        (ColumnReader::FloatColumnReader(reader), Column::Single(values)) => {
             read!(reader, values, Ok::<f32, TableError>);
         }
-        (ColumnReader::Int64ColumnReader(reader), ColumnData::I64(values)) => {
-            read!(reader, values, Ok::<i64, TableError>);
+        (ColumnReader::Int64ColumnReader(reader), Column::Integer(values)) => {
+            read!(reader, values, |value| Ok::<_, TableError>(Some(value)));
         }
-        (ColumnReader::ByteArrayColumnReader(reader), ColumnData::Text(values)) => {
-            let text = |bytes: ByteArray| {
-                bytes.as_utf8().map(str::to_owned).map_err(|_| TableError::NotUtf8(name.to_owned()))
+        (ColumnReader::ByteArrayColumnReader(reader), Column::Text(values)) => {
+            let text = |bytes: ByteArray| match bytes.as_utf8() {
+                Ok(text) => Ok(Some(text.to_owned())),
+                Err(_) => Err(TableError::NotUtf8(name.to_owned())),
             };
             read!(reader, values, text);
         }

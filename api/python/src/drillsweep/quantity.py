@@ -1,0 +1,84 @@
+"""What the names of columns and of a scenario's fields stand for: symbols, units, labels."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+_VARIANT = re.compile(r"^(?:spread|ensemble_mean|reference|bias)_(.+)$")
+_NUMBERS = re.compile(r"(?:_\d+)?(?:_w\d+)?$")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit beside the one in which a quantity is served."""
+
+    symbol: str
+    """How it is written, such as `mm`."""
+    size: float
+    """How many of the served unit one of these is: 0.0254 for an inch of a length in metres."""
+
+    def of(self, value: Any) -> Any:
+        """A value, or an array of values, in this unit."""
+        return value / self.size
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a name stands for."""
+
+    name: str
+    """The name of the column without node and spectrum window, or the path of the scenario's field without indices."""
+    label: str
+    """What pictures call it."""
+    unit: str | None
+    """The unit in which it is served (`1` for ratios); None for names and numbers of things."""
+    shown: Unit
+    """The unit in which pictures show it."""
+    field: Unit
+    """The unit in which the oil field reads it, such as gpm, ppg, klbf or psi."""
+    symbol: str = ""
+    """Its symbol in the model's equations, if it has one."""
+    meaning: str = ""
+    """What it is, in a sentence."""
+
+
+def quantity(name: str) -> Quantity | None:
+    """What a column of a table, or a path of a scenario, stands for; None if it is of no known quantity.
+
+    >>> quantity("orbit_radius_rms_49").shown.symbol
+    'mm'
+    """
+    known = _quantities()
+    if "." in name:
+        return known.get(re.sub(r"\[\d+\]", "", name))
+    if name in known:
+        return known[name]
+    variant = _VARIANT.match(name)
+    return known.get(_NUMBERS.sub("", variant[1] if variant else name))
+
+
+@cache
+def _quantities() -> dict[str, Quantity]:
+    entries = json.loads(files("drillsweep").joinpath("quantities.json").read_text(encoding="utf-8"))
+    return {name: _read(name, entry) for name, entry in entries.items()}
+
+
+def _read(name: str, entry: dict[str, Any]) -> Quantity:
+    def unit(which: str) -> Unit:
+        given = entry.get(which, {"unit": entry.get("unit", ""), "size": 1.0})
+        return Unit(given["unit"], given["size"])
+
+    return Quantity(
+        name=name,
+        label=entry["label"],
+        unit=entry.get("unit"),
+        shown=unit("shown"),
+        field=unit("field"),
+        symbol=entry.get("symbol", ""),
+        meaning=entry.get("meaning", ""),
+    )

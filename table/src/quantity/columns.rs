@@ -1,0 +1,365 @@
+//! The quantities in columns of tables.
+
+use super::{Quantity, units};
+
+/// Defines the quantities with what each of them is, and the list of them all. `-` in place of units says that there are none.
+macro_rules! quantities {
+    ($(#[doc = $meaning:literal] $constant:ident: $name:literal, $symbol:literal, $units:tt, $label:literal;)*) => {
+        $(
+            #[doc = $meaning]
+            pub static $constant: Quantity = Quantity {
+                name: $name,
+                symbol: $symbol,
+                units: quantities!(@units $units),
+                label: $label,
+                meaning: $meaning.trim_ascii(),
+            };
+        )*
+
+        /// All of them.
+        pub static ALL: &[&Quantity] = &[$(&$constant),*];
+    };
+    (@units -) => { None };
+    (@units $units:ident) => { Some(&units::$units) };
+}
+
+// Name, symbol, units, label.
+quantities! {
+    // Rows, nodes and elements.
+    /// Number of the point in its sweep, from 1.
+    ORDINAL: "ordinal", "", -, "ordinal";
+    /// Number of the node, 1 at the top.
+    NODE: "node", "", -, "node";
+    /// Number of the element, 1 at the top.
+    ELEMENT: "element", "", -, "element";
+
+    // Time and frequency.
+    /// Simulated time.
+    TIME: "time", "t", TIME, "time";
+    /// Start of the spectrum window, included.
+    FROM: "from", "", TIME, "from";
+    /// End of the spectrum window, not included.
+    TO: "to", "", TIME, "to";
+    /// Frequency; positive is forward whirl, negative backward.
+    FREQUENCY: "frequency", "f", FREQUENCY, "frequency";
+
+    // Position and geometry.
+    /// Distance along the well from the top of the string.
+    MEASURED_DEPTH: "measured_depth", "s", DEPTH, "measured depth";
+    /// Measured depth of the element's upper end.
+    MEASURED_DEPTH_TOP: "measured_depth_top", "", DEPTH, "measured depth top";
+    /// Measured depth of the element's lower end.
+    MEASURED_DEPTH_BOTTOM: "measured_depth_bottom", "", DEPTH, "measured depth bottom";
+    /// Vertical distance below the top of the string.
+    TRUE_VERTICAL_DEPTH: "true_vertical_depth", "", DEPTH, "true vertical depth";
+    /// Where the low side of the hole lies, from u towards v.
+    LOW_SIDE_ANGLE: "low_side_angle", "", ANGLE, "low side angle";
+    /// Outer diameter of the string.
+    OUTER_DIAMETER: "outer_diameter", "D_o", WIDTH, "outer diameter";
+    /// Inner diameter of the string.
+    INNER_DIAMETER: "inner_diameter", "D_i", WIDTH, "inner diameter";
+    /// Distance from the hole's axis at which the node touches the wall.
+    CLEARANCE: "clearance", "j_0", WIDTH, "clearance";
+
+    // Parameters of sweeps that have short names.
+    /// Flow rate of the mud, `mud.flow_rate`.
+    FLOW_RATE: "flow_rate", "Q", FLOW_RATE, "flow rate";
+    /// Density of the mud, `mud.density`.
+    MUD_DENSITY: "mud_density", "rho_f", MUD_DENSITY, "mud density";
+
+    // Displacements from the hole's axis, and their rates.
+    /// Lateral displacement along the first axis of the node's frame.
+    U: "u", "u", WIDTH, "u";
+    /// Lateral displacement along the second axis of the node's frame.
+    V: "v", "v", WIDTH, "v";
+    /// Axial displacement, downhole.
+    W: "w", "w", WIDTH, "w";
+    /// Rotation about the first axis of the node's frame.
+    THETA_X: "theta_x", "theta_x", ANGLE, "theta x";
+    /// Rotation about the second axis of the node's frame.
+    THETA_Y: "theta_y", "theta_y", ANGLE, "theta y";
+    /// Twist, on top of the rotation imposed at the top.
+    THETA_Z: "theta_z", "theta_z", ANGLE, "theta z";
+    /// Rate of u.
+    U_RATE: "u_rate", "", SPEED, "u rate";
+    /// Rate of v.
+    V_RATE: "v_rate", "", SPEED, "v rate";
+    /// Rate of w.
+    W_RATE: "w_rate", "", SPEED, "w rate";
+    /// Rate of the twist, on top of the rotation imposed at the top.
+    THETA_Z_RATE: "theta_z_rate", "", ANGULAR_SPEED, "theta z rate";
+    /// Distance from the hole's axis.
+    RADIUS: "radius", "r", WIDTH, "radius";
+
+    // Equilibrium.
+    /// Normal force of the wall on the node.
+    NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
+    /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
+    EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
+    /// Torque in the string.
+    TORQUE: "torque", "T_0", TORQUE, "torque";
+    /// Mean distance of the element's nodes from the hole's axis over the clearance of its body, at most 1.
+    ECCENTRICITY: "eccentricity", "e", RATIO, "eccentricity";
+    /// Nodes that touch the wall at the equilibrium.
+    STATIC_CONTACTS: "static_contacts", "", -, "static contacts";
+    /// Sum of the normal forces at the equilibrium.
+    STATIC_NORMAL_FORCE_TOTAL: "static_normal_force_total", "", FORCE, "static normal force total";
+    /// Effective tension of the uppermost element.
+    TENSION_TOP: "tension_top", "", FORCE, "tension top";
+    /// Effective tension of the lowest element.
+    TENSION_BIT: "tension_bit", "", FORCE, "tension bit";
+    /// Torque of the uppermost element.
+    TORQUE_TOP: "torque_top", "", TORQUE, "torque top";
+    /// Torque of the lowest element.
+    TORQUE_BIT: "torque_bit", "", TORQUE, "torque bit";
+
+    // Mud.
+    /// Fluid friction coefficient of the string in the annulus.
+    FRICTION_COEFFICIENT: "friction_coefficient", "C_f", RATIO, "friction coefficient C_f";
+    /// Smallest C_f along the string.
+    FRICTION_COEFFICIENT_MIN: "friction_coefficient_min", "C_f", RATIO, "friction coefficient min";
+    /// Largest C_f along the string.
+    FRICTION_COEFFICIENT_MAX: "friction_coefficient_max", "C_f", RATIO, "friction coefficient max";
+    /// Apparent kinematic viscosity of the mud in the annulus.
+    APPARENT_VISCOSITY: "apparent_viscosity", "nu_f", KINEMATIC_VISCOSITY, "apparent viscosity";
+    /// Damping of lateral motion by the rotation, of a length of string.
+    ROTATION_DAMPING: "rotation_damping", "k", DAMPING_PER_LENGTH, "damping k of rotation";
+    /// Smallest k along the string.
+    ROTATION_DAMPING_MIN: "rotation_damping_min", "k", DAMPING_PER_LENGTH, "rotation damping min";
+    /// Largest k along the string.
+    ROTATION_DAMPING_MAX: "rotation_damping_max", "k", DAMPING_PER_LENGTH, "rotation damping max";
+    /// Damping of lateral motion by the axial flow, of a length of string.
+    FRICTION_DAMPING: "friction_damping", "", DAMPING_PER_LENGTH, "friction damping";
+    /// Added mass of the mud outside over the mass of the mud that the string displaces.
+    ADDED_MASS_COEFFICIENT: "added_mass_coefficient", "chi", RATIO, "added mass coefficient";
+    /// Mean speed of the mud in the annulus.
+    ANNULUS_SPEED: "annulus_speed", "U_o", SPEED, "annulus speed";
+    /// Mean speed of the mud in the bore.
+    BORE_SPEED: "bore_speed", "U_i", SPEED, "bore speed";
+    /// Generalised Reynolds number of the annular flow.
+    REYNOLDS_NUMBER: "reynolds_number", "Re", RATIO, "reynolds number";
+    /// Flow regime in the annulus.
+    REGIME: "regime", "", -, "regime";
+    /// Flow regime in the bore.
+    BORE_REGIME: "bore_regime", "", -, "bore regime";
+    /// Pressure lost to friction over a length of annulus.
+    FRICTION_GRADIENT: "friction_gradient", "G_a", PRESSURE_GRADIENT, "friction gradient";
+    /// Pressure lost to friction over a length of bore.
+    BORE_FRICTION_GRADIENT: "bore_friction_gradient", "G_i", PRESSURE_GRADIENT, "bore friction gradient";
+    /// Pressure in the annulus at the middle of the element.
+    ANNULUS_PRESSURE: "annulus_pressure", "p_o", PRESSURE, "annulus pressure";
+    /// Pressure in the bore at the middle of the element.
+    BORE_PRESSURE: "bore_pressure", "p_i", PRESSURE, "bore pressure";
+
+    // Contact with the wall over a run.
+    /// Largest distance from the hole's axis.
+    LARGEST_RADIUS: "largest_radius", "", WIDTH, "largest radius";
+    /// Number of contacts; one that exists at the start counts.
+    CONTACT_COUNT: "contact_count", "", -, "contact count";
+    /// Time in contact with the wall.
+    CONTACT_TIME: "contact_time", "", TIME, "contact time";
+    /// Largest normal force of the wall.
+    LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest normal force";
+    /// How often the node came to stick; in a summary all nodes together.
+    CAPTURE_COUNT: "capture_count", "", -, "capture count";
+    /// Time that the node stuck.
+    STICK_TIME: "stick_time", "", TIME, "stick time";
+
+    // Energy ledger.
+    /// Kinetic energy, added mass included.
+    KINETIC: "kinetic", "", ENERGY, "kinetic";
+    /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
+    STORED: "stored", "", ENERGY, "stored";
+    /// Work of the unbalance up to this time.
+    WORK_UNBALANCE: "work_unbalance", "", ENERGY, "work unbalance";
+    /// Work of the rotation imposed at the top against friction up to this time, as far as it acts through the contacts.
+    WORK_ROTATION: "work_rotation", "", ENERGY, "work rotation";
+    /// Work of the flows (Coriolis and follower forces) and of the follower torque up to this time.
+    WORK_FLOW: "work_flow", "", ENERGY, "work flow";
+    /// Energy dissipated by structural damping up to this time.
+    DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated structure";
+    /// Energy dissipated by the mud up to this time.
+    DISSIPATED_FLUID: "dissipated_fluid", "", ENERGY, "dissipated fluid";
+    /// Energy dissipated by friction at contacts up to this time.
+    DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated friction";
+    /// Energy dissipated by the wall's dampers up to this time.
+    DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated contact";
+    /// Net work of contact and friction forces on the motion up to this time.
+    CONTACT_WORK: "contact_work", "", ENERGY, "contact work";
+    /// What does not balance: the error of the time integration.
+    RESIDUAL: "residual", "", ENERGY, "residual";
+    /// What does not balance in the energy ledger at the end of the run.
+    ENERGY_RESIDUAL: "energy_residual", "", ENERGY, "energy residual";
+    /// The residual over the net work of the contacts.
+    ENERGY_RESIDUAL_RATIO: "energy_residual_ratio", "", RATIO, "energy residual ratio";
+
+    // Spectra.
+    /// Radius of the circle that the line draws.
+    AMPLITUDE: "amplitude", "", WIDTH, "amplitude";
+    /// Twice the amplitude.
+    PEAK_TO_PEAK: "peak_to_peak", "", WIDTH, "peak to peak";
+    /// Amplitude with all samples of the window weighted alike.
+    AMPLITUDE_RECTANGULAR: "amplitude_rectangular", "", WIDTH, "amplitude rectangular";
+    /// Amplitude with the samples weighted by a Hann window.
+    AMPLITUDE_HANN: "amplitude_hann", "", WIDTH, "amplitude hann";
+    /// Frequency of the highest line; negative is backward whirl.
+    LINE_FREQUENCY_HZ: "line_frequency_hz", "", FREQUENCY, "line frequency hz";
+    /// Amplitude of the highest line.
+    LINE_AMPLITUDE: "line_amplitude", "", WIDTH, "line amplitude";
+    /// Root mean square motion about the mean at frequencies up to 20 Hz.
+    BAND_RMS: "band_rms", "", WIDTH, "band rms";
+
+    // Statistics of orbits.
+    /// Distance of the orbit's mean position from the hole's axis.
+    ORBIT_OFFSET: "orbit_offset", "", WIDTH, "orbit offset";
+    /// Mean distance from the hole's axis.
+    ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "orbit mean radius";
+    /// Largest distance from the hole's axis.
+    ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "orbit largest radius";
+    /// Orbit size: root mean square distance from the mean position.
+    ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "orbit radius rms";
+    /// Standard deviation of the distance from the hole's axis.
+    ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "orbit radius deviation";
+    /// Root mean square motion at frequencies above 100 Hz.
+    HIGH_FREQUENCY_RMS: "high_frequency_rms", "", WIDTH, "high frequency rms";
+    /// Runs of the point, the undisturbed one among them.
+    ENSEMBLE_MEMBERS: "ensemble_members", "", -, "ensemble members";
+    /// When histories of neighbouring starts first part.
+    HISTORIES_PART_AT: "histories_part_at", "", TIME, "histories part at";
+
+    // Errors, and what limits a result.
+    /// Frequency up to which the run's steps resolve vibrations.
+    RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "resolved hz";
+    /// Steps of the shortest length that left more than the tolerance.
+    UNRESOLVED_STEPS: "unresolved_steps", "", -, "unresolved steps";
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion.
+    ERROR_ESTIMATE: "error_estimate", "", RATIO, "error estimate";
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes.
+    ERROR_ESTIMATE_DISPLACEMENT: "error_estimate_displacement", "", WIDTH, "error estimate displacement";
+    /// Estimated relative error of orbit statistics by the time steps.
+    TIME_ERROR: "time_error", "", RATIO, "time error";
+    /// Standard deviation of orbit size over the ensemble, relative to its mean.
+    RELATIVE_SPREAD: "relative_spread", "", RATIO, "relative spread";
+    /// Estimated relative error of the static distance from the hole's axis by the mesh.
+    MESH_ERROR_MEAN_RADIUS: "mesh_error_mean_radius", "", RATIO, "mesh error mean radius";
+    /// Estimated error of the static position by the mesh, over the hole's radius.
+    MESH_ERROR_STATIC_POSITION: "mesh_error_static_position", "", RATIO, "mesh error static position";
+    /// Estimated relative error of C_f by the mesh.
+    MESH_ERROR_FRICTION_COEFFICIENT: "mesh_error_friction_coefficient", "", RATIO, "mesh error friction coefficient";
+    /// Frequency of the highest torsional mode that friction feeds.
+    UNDAMPED_TORSION_HZ: "undamped_torsion_hz", "", FREQUENCY, "undamped torsion hz";
+    /// Growth of that mode's amplitude.
+    UNDAMPED_TORSION_GROWTH: "undamped_torsion_growth", "", RATE, "undamped torsion growth";
+    /// Whether small motions about the equilibrium decay.
+    STABLE: "stable", "", -, "stable";
+    /// How small motions about the equilibrium grow.
+    INSTABILITY: "instability", "", -, "instability";
+    /// Growth rate of the mode that grows fastest.
+    INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
+    /// Frequency of the mode that grows fastest.
+    INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
+    /// Where the point, or its reference run, stands.
+    STATE: "state", "", -, "state";
+    /// Why the point failed.
+    ERROR: "error", "", -, "error";
+    /// Simulated time at which the point failed.
+    ERROR_TIME: "error_time", "", TIME, "error time";
+    /// Node at which the point failed.
+    ERROR_NODE: "error_node", "", -, "error node";
+
+    // What it cost.
+    /// Time by the clock.
+    WALL_TIME: "wall_time", "", TIME, "wall time";
+    /// Processor time.
+    CPU_TIME: "cpu_time", "", TIME, "cpu time";
+    /// Processor time that an accuracy takes.
+    COST_CPU_TIME: "cost_cpu_time", "", TIME, "cost cpu time";
+    /// What the line of the study is: reference, method, mesh, effect or total.
+    ROLE: "role", "", -, "role";
+    /// Name of the accuracy or method.
+    NAME: "name", "", -, "name";
+    /// Name of the scenario.
+    SCENARIO: "scenario", "", -, "scenario";
+    /// The effect that is left out.
+    WITHOUT_EFFECT: "without_effect", "", -, "without effect";
+    /// Time integration method.
+    INTEGRATOR: "integrator", "", -, "integrator";
+    /// Time step; the longest one where steps adapt.
+    STEP: "step", "h", TIME, "step";
+    /// Step of the RK4 run that speeds are compared with.
+    RK4_STEP: "rk4_step", "", TIME, "rk4 step";
+    /// Number of time steps.
+    STEPS: "steps", "", -, "steps";
+    /// Parts that a recording interval is cut into.
+    STEP_SUBDIVISIONS: "step_subdivisions", "", -, "step subdivisions";
+    /// Contact sweeps of a solve.
+    CONTACT_SWEEPS: "contact_sweeps", "", -, "contact sweeps";
+    /// Number of elements.
+    ELEMENTS: "elements", "", -, "elements";
+    /// Factor on the scenario's element lengths.
+    MESH_FACTOR: "mesh_factor", "", -, "mesh factor";
+    /// Relative error that adapts the step.
+    TOLERANCE: "tolerance", "", RATIO, "tolerance";
+    /// Processor time over simulated time.
+    CPU_PER_SIMULATED_SECOND: "cpu_per_simulated_second", "", RATIO, "cpu per simulated second";
+    /// Processor time of RK4 with its usual step over this one's.
+    SPEED_OVER_RK4: "speed_over_rk4", "", RATIO, "speed over rk4";
+    /// Orbit size of the reference.
+    REFERENCE_ORBIT_SIZE: "reference_orbit_size", "", WIDTH, "reference orbit size";
+    /// Bias of orbit size, worst node.
+    ORBIT_SIZE_BIAS: "orbit_size_bias", "", RATIO, "orbit size bias";
+    /// Half the width of the bias' interval of 95 %.
+    ORBIT_SIZE_HALF_WIDTH: "orbit_size_half_width", "", RATIO, "orbit size half width";
+    /// Relative standard deviation of orbit size over the ensemble.
+    ORBIT_SIZE_SPREAD: "orbit_size_spread", "", RATIO, "orbit size spread";
+    /// Bias of the standard deviation of the radius, worst node.
+    RADIUS_DEVIATION_BIAS: "radius_deviation_bias", "", RATIO, "radius deviation bias";
+    /// Half the width of the bias' interval of 95 %.
+    RADIUS_DEVIATION_HALF_WIDTH: "radius_deviation_half_width", "", RATIO, "radius deviation half width";
+    /// Relative standard deviation over the ensemble.
+    RADIUS_DEVIATION_SPREAD: "radius_deviation_spread", "", RATIO, "radius deviation spread";
+    /// Bias of the mean radius, worst node.
+    MEAN_RADIUS_BIAS: "mean_radius_bias", "", RATIO, "mean radius bias";
+    /// Half the width of the bias' interval of 95 %.
+    MEAN_RADIUS_HALF_WIDTH: "mean_radius_half_width", "", RATIO, "mean radius half width";
+    /// Relative standard deviation over the ensemble.
+    MEAN_RADIUS_SPREAD: "mean_radius_spread", "", RATIO, "mean radius spread";
+    /// Bias of the mean sum of all normal forces.
+    CONTACT_FORCE_BIAS: "contact_force_bias", "", RATIO, "contact force bias";
+    /// Half the width of the bias' interval of 95 %.
+    CONTACT_FORCE_HALF_WIDTH: "contact_force_half_width", "", RATIO, "contact force half width";
+    /// Relative standard deviation over the ensemble.
+    CONTACT_FORCE_SPREAD: "contact_force_spread", "", RATIO, "contact force spread";
+    /// Bias of the standard deviation of the torsional speed, worst node.
+    TORSIONAL_SPEED_BIAS: "torsional_speed_bias", "", RATIO, "torsional speed bias";
+    /// Half the width of the bias' interval of 95 %.
+    TORSIONAL_SPEED_HALF_WIDTH: "torsional_speed_half_width", "", RATIO, "torsional speed half width";
+    /// Relative standard deviation over the ensemble.
+    TORSIONAL_SPEED_SPREAD: "torsional_speed_spread", "", RATIO, "torsional speed spread";
+    /// Largest error of a line's frequency.
+    LINE_FREQUENCY_ERROR_HZ: "line_frequency_error_hz", "", FREQUENCY, "line frequency error hz";
+    /// Largest relative error of a line's amplitude.
+    LINE_AMPLITUDE_ERROR: "line_amplitude_error", "", RATIO, "line amplitude error";
+    /// Lines of the reference that are missing.
+    MISSING_LINES: "missing_lines", "", -, "missing lines";
+    /// Lines that the reference does not have.
+    SPURIOUS_LINES: "spurious_lines", "", -, "spurious lines";
+    /// Relative error of the history while histories stay together.
+    TRAJECTORY_ERROR: "trajectory_error", "", RATIO, "trajectory error";
+    /// Error of the static position over the hole's radius.
+    STATIC_POSITION_ERROR: "static_position_error", "", RATIO, "static position error";
+    /// Relative error of C_f.
+    FRICTION_COEFFICIENT_ERROR: "friction_coefficient_error", "", RATIO, "friction coefficient error";
+    /// Energy residual over the net work of the contacts.
+    ENERGY_ERROR: "energy_error", "", RATIO, "energy error";
+    /// Error that the run itself estimates.
+    ESTIMATED_ERROR: "estimated_error", "", RATIO, "estimated error";
+    /// Relative error of orbit size by the mesh.
+    MESH_ERROR: "mesh_error", "", RATIO, "mesh error";
+    /// Relative error of orbit size by mesh and time steps together.
+    WHOLE_ERROR: "whole_error", "", RATIO, "whole error";
+    /// Whether the accuracy's promise is kept.
+    PROMISE: "promise", "", -, "promise";
+    /// Why the run failed.
+    FAILURE: "failure", "", -, "failure";
+}

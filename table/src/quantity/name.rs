@@ -1,0 +1,198 @@
+//! Names of columns: put together and taken apart.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::LazyLock;
+
+use super::{Quantity, Units, all, columns, units};
+
+/// A column's name, or a scenario's path, taken apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Name<'n> {
+    /// What it is of.
+    pub quantity: &'static Quantity,
+    /// Which of the columns of this quantity, where it has several: `orbit_size_2_percent` of `cost_cpu_time`.
+    pub detail: Option<&'n str>,
+    /// What became of the quantity.
+    pub variant: Variant,
+    /// Number of the node that it belongs to, 1 at the top.
+    pub node: Option<usize>,
+    /// Number of the scenario's spectrum window that it belongs to, from 1.
+    pub window: Option<usize>,
+}
+
+/// What became of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variant {
+    /// Nothing: the value itself.
+    Value,
+    /// The mean over the members of an ensemble.
+    EnsembleMean,
+    /// The standard deviation over the members of an ensemble.
+    Spread,
+    /// The value of the reference run.
+    Reference,
+    /// The value less that of the reference: relative, but for frequencies.
+    Bias,
+}
+
+impl Variant {
+    /// All, the value itself first.
+    pub const ALL: [Variant; 5] =
+        [Variant::Value, Variant::EnsembleMean, Variant::Spread, Variant::Reference, Variant::Bias];
+
+    /// What stands before the quantity's name.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Variant::Value => "",
+            Variant::EnsembleMean => "ensemble_mean_",
+            Variant::Spread => "spread_",
+            Variant::Reference => "reference_",
+            Variant::Bias => "bias_",
+        }
+    }
+
+    /// The name of the column that has this of the one called `name`.
+    pub fn of(self, name: &str) -> String {
+        format!("{}{name}", self.prefix())
+    }
+
+    /// The name that a column's own was made from, if it is of this variant.
+    pub fn strip(self, name: &str) -> Option<&str> {
+        name.strip_prefix(self.prefix())
+    }
+}
+
+static BY_NAME: LazyLock<HashMap<&'static str, &'static Quantity>> =
+    LazyLock::new(|| all().map(|quantity| (quantity.name, quantity)).collect());
+
+impl<'n> Name<'n> {
+    /// Takes a name apart; none where it is of no quantity of the vocabulary.
+    pub fn parse(name: &'n str) -> Option<Self> {
+        let alone =
+            |quantity| Name { quantity, detail: None, variant: Variant::Value, node: None, window: None };
+        if let Some(quantity) = BY_NAME.get(name) {
+            return Some(alone(quantity));
+        }
+        if name.contains('.') {
+            return BY_NAME.get(without_indices(name).as_str()).map(|quantity| alone(quantity));
+        }
+        if let Some((quantity, detail)) = of_family(name) {
+            return Some(Name { detail: Some(detail), ..alone(quantity) });
+        }
+        let of_variant = |variant: Variant| Some((variant, variant.strip(name)?));
+        let (variant, rest) =
+            Variant::ALL.into_iter().skip(1).find_map(of_variant).unwrap_or((Variant::Value, name));
+        let (rest, window) = without_number(rest, "_w");
+        let (rest, node) = without_number(rest, "_");
+        BY_NAME.get(rest).map(|quantity| Name { variant, node, window, ..alone(quantity) })
+    }
+
+    /// The units of the column. Biases are ratios, but for those of frequencies.
+    pub fn units(&self) -> Option<&'static Units> {
+        let own = self.quantity.units?;
+        let is_ratio = self.variant == Variant::Bias && own != &units::FREQUENCY;
+        Some(if is_ratio { &units::RATIO } else { own })
+    }
+
+    /// The unit in which the column is kept and served (`1` for ratios).
+    pub fn unit(&self) -> Option<&'static str> {
+        self.units().map(|units| units.kept)
+    }
+}
+
+/// What pictures call the column.
+impl fmt::Display for Name<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}{}", self.variant.prefix().replace('_', " "), self.quantity.label)?;
+        if let Some(detail) = self.detail {
+            write!(formatter, " {}", detail.replace('_', " "))?;
+        }
+        if let Some(node) = self.node {
+            write!(formatter, " {node}")?;
+        }
+        match self.window {
+            Some(window) => write!(formatter, " w{window}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The quantity of which a sweep's table has a column for each accuracy that was asked for, and which of them.
+fn of_family(name: &str) -> Option<(&'static Quantity, &str)> {
+    let detail = name.strip_prefix(columns::COST_CPU_TIME.name)?.strip_prefix('_')?;
+    Some((&columns::COST_CPU_TIME, detail))
+}
+
+/// A name without the number at its end, and the number.
+fn without_number<'n>(name: &'n str, separator: &str) -> (&'n str, Option<usize>) {
+    let parts = name.rsplit_once(separator).filter(|(_, number)| number.bytes().all(|b| b.is_ascii_digit()));
+    match parts.and_then(|(rest, number)| Some((rest, number.parse().ok()?))) {
+        Some((rest, number)) => (rest, Some(number)),
+        None => (name, None),
+    }
+}
+
+/// A scenario's path without the indices of its lists: `string.sections.count` of `string.sections[1].count`.
+fn without_indices(path: &str) -> String {
+    let mut inside = false;
+    let is_kept = |character: &char| {
+        let is_index = inside || *character == '[';
+        inside = is_index && *character != ']';
+        !is_index
+    };
+    path.chars().filter(is_kept).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Quantity, columns, unit};
+    use super::*;
+
+    #[test]
+    fn names_are_taken_apart_as_they_are_put_together() {
+        let quantities: [&Quantity; 3] =
+            [&columns::LINE_AMPLITUDE, &columns::THETA_Z_RATE, &columns::ORBIT_RADIUS_RMS];
+        for quantity in quantities {
+            for variant in Variant::ALL {
+                for (name, node, window) in [
+                    (quantity.name.to_owned(), None, None),
+                    (quantity.at_node(282), Some(282), None),
+                    (quantity.in_window(49, 2), Some(49), Some(2)),
+                ] {
+                    let expected = Name { quantity, detail: None, variant, node, window };
+                    assert_eq!(Name::parse(&variant.of(&name)), Some(expected), "{name}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn units_do_not_depend_on_node_window_and_index() {
+        assert_eq!(unit("u_49"), Some("m"));
+        assert_eq!(unit("theta_z_rate_282"), Some("rad/s"));
+        assert_eq!(unit("line_frequency_hz_49_w1"), Some("Hz"));
+        assert_eq!(unit("spread_orbit_radius_rms_282"), Some("m"));
+        assert_eq!(unit("ensemble_mean_line_frequency_hz_49_w2"), Some("Hz"));
+        assert_eq!(unit("reference_orbit_mean_radius_49"), Some("m"));
+        assert_eq!(unit("bias_orbit_mean_radius_49"), Some("1"));
+        assert_eq!(unit("bias_line_frequency_hz_49_w1"), Some("Hz"));
+        assert_eq!(unit("cost_cpu_time_orbit_size_0_3_percent"), Some("s"));
+        assert_eq!(unit("operation.rotation_speed_rpm"), Some("rpm"));
+        assert_eq!(unit("string.sections[1].tool_joint.length"), Some("m"));
+        assert_eq!(unit("string.sections[1].count"), None);
+        for unknown in ["49", "_49", "u_", "u_49x", "u_99999999999999999999999", "mud", "regime"] {
+            assert_eq!(unit(unknown), None, "{unknown}");
+        }
+    }
+
+    #[test]
+    fn labels_say_which_column() {
+        let label = |name| Name::parse(name).unwrap().to_string();
+        assert_eq!(label("friction_coefficient"), "friction coefficient C_f");
+        assert_eq!(label("spread_orbit_radius_rms_49"), "spread orbit radius rms 49");
+        assert_eq!(label("line_amplitude_49_w1"), "line amplitude 49 w1");
+        assert_eq!(label("string.sections[1].length"), "section length");
+        assert_eq!(label("cost_cpu_time_orbit_size_2_percent"), "cost cpu time orbit size 2 percent");
+    }
+}

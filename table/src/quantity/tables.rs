@@ -1,0 +1,128 @@
+//! The columns of each table that a run leaves, and of the views that are cut from them.
+
+use super::Quantity;
+use super::columns::*;
+
+/// One table: its name on the wire and its columns in order.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// Its name, such as `profile`.
+    pub name: &'static str,
+    /// Columns that there are one of.
+    pub columns: &'static [&'static Quantity],
+    /// Columns that there are one of for each node, with its number at the end of the name.
+    pub by_node: &'static [&'static Quantity],
+}
+
+/// Geometry, forces and hydraulics of every element.
+pub static PROFILE: Layout = Layout {
+    name: "profile",
+    columns: &[
+        &ELEMENT,
+        &MEASURED_DEPTH_TOP,
+        &MEASURED_DEPTH_BOTTOM,
+        &OUTER_DIAMETER,
+        &INNER_DIAMETER,
+        &EFFECTIVE_TENSION,
+        &TORQUE,
+        &ECCENTRICITY,
+        &FRICTION_COEFFICIENT,
+        &APPARENT_VISCOSITY,
+        &ROTATION_DAMPING,
+        &FRICTION_DAMPING,
+        &ADDED_MASS_COEFFICIENT,
+        &ANNULUS_SPEED,
+        &BORE_SPEED,
+        &REYNOLDS_NUMBER,
+        &REGIME,
+        &BORE_REGIME,
+        &FRICTION_GRADIENT,
+        &BORE_FRICTION_GRADIENT,
+        &ANNULUS_PRESSURE,
+        &BORE_PRESSURE,
+    ],
+    by_node: &[],
+};
+
+/// The equilibrium, node by node.
+pub static STATICS: Layout = Layout {
+    name: "statics",
+    columns: &[
+        &NODE,
+        &MEASURED_DEPTH,
+        &TRUE_VERTICAL_DEPTH,
+        &LOW_SIDE_ANGLE,
+        &U,
+        &V,
+        &W,
+        &THETA_X,
+        &THETA_Y,
+        &THETA_Z,
+        &RADIUS,
+        &CLEARANCE,
+        &NORMAL_FORCE,
+    ],
+    by_node: &[],
+};
+
+/// The recorded motion.
+pub static HISTORY: Layout = Layout {
+    name: "history",
+    columns: &[&TIME],
+    by_node: &[&U, &V, &W, &THETA_Z, &U_RATE, &V_RATE, &W_RATE, &THETA_Z_RATE],
+};
+
+/// Full spectra that are kept in place of the motion: a row a frequency, for each recorded node and window in turn.
+pub static SPECTRA: Layout = Layout {
+    name: "spectra",
+    columns: &[&NODE, &FROM, &TO, &FREQUENCY, &AMPLITUDE_RECTANGULAR, &AMPLITUDE_HANN],
+    by_node: &[],
+};
+
+/// Contacts with the wall, node by node.
+pub static CONTACTS: Layout = Layout {
+    name: "contacts",
+    columns: &[
+        &NODE,
+        &MEASURED_DEPTH,
+        &CLEARANCE,
+        &LARGEST_RADIUS,
+        &CONTACT_COUNT,
+        &CONTACT_TIME,
+        &LARGEST_NORMAL_FORCE,
+        &CAPTURE_COUNT,
+        &STICK_TIME,
+    ],
+    by_node: &[],
+};
+
+/// The energy ledger over time.
+pub static ENERGY: Layout = Layout {
+    name: "energy",
+    columns: &[
+        &TIME,
+        &KINETIC,
+        &STORED,
+        &WORK_UNBALANCE,
+        &WORK_ROTATION,
+        &WORK_FLOW,
+        &DISSIPATED_STRUCTURE,
+        &DISSIPATED_FLUID,
+        &DISSIPATED_FRICTION,
+        &DISSIPATED_CONTACT,
+        &CONTACT_WORK,
+        &RESIDUAL,
+    ],
+    by_node: &[],
+};
+
+/// The path of one node across the hole.
+pub static ORBIT: Layout = Layout { name: "orbit", columns: &[&TIME, &U, &V, &RADIUS], by_node: &[] };
+
+/// The full spectrum of one node's orbit.
+pub static SPECTRUM: Layout =
+    Layout { name: "spectrum", columns: &[&FREQUENCY, &AMPLITUDE, &PEAK_TO_PEAK], by_node: &[] };
+
+/// All of them.
+pub static ALL: [&Layout; 8] =
+    [&PROFILE, &STATICS, &HISTORY, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM];

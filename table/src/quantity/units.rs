@@ -1,0 +1,172 @@
+//! Kinds of quantities by the units in which they are kept, shown and read.
+
+/// A unit beside the one in which a quantity is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// How it is written, such as `mm`.
+    pub symbol: &'static str,
+    /// How many of the unit in which the quantity is kept one of these is: 0.0254 for an inch of a length in metres.
+    pub size: f64,
+}
+
+impl Unit {
+    /// A value in this unit.
+    pub fn of(&self, value: f64) -> f64 {
+        value / self.size
+    }
+}
+
+/// The units of one kind of quantity.
+///
+/// Two kinds may have one dimension: depths are read in metres and feet, diameters and displacements in millimetres and inches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// The dimension, in words.
+    pub dimension: &'static str,
+    /// The unit in which values are kept, and served: SI, unless the quantity's name says otherwise (`_rpm`, `_deg`). `1` for ratios.
+    pub kept: &'static str,
+    /// The unit in which pictures show it.
+    pub shown: Unit,
+    /// The unit in which the oil field reads it.
+    pub field: Unit,
+}
+
+/// International foot \[m\], exact.
+const FOOT: f64 = 0.3048;
+/// Inch \[m\], exact.
+const INCH: f64 = 0.0254;
+/// US gallon \[m3\], 231 cubic inches, exact.
+const GALLON: f64 = 0.003_785_411_784;
+/// Avoirdupois pound \[kg\], exact.
+const POUND: f64 = 0.453_592_37;
+/// Pound-force \[N\]: a pound under standard gravity of 9.80665 m/s2, exact.
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
+/// Degree \[rad\].
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// A hundred square feet \[m2\], in which yield stresses of mud are read.
+const HUNDRED_SQUARE_FEET: f64 = 100.0 * FOOT * FOOT;
+
+/// A kind that is shown in the unit in which it is kept.
+const fn units(dimension: &'static str, kept: &'static str, field: (&'static str, f64)) -> Units {
+    shown_in(dimension, kept, (kept, 1.0), field)
+}
+
+const fn shown_in(
+    dimension: &'static str,
+    kept: &'static str,
+    shown: (&'static str, f64),
+    field: (&'static str, f64),
+) -> Units {
+    Units {
+        dimension,
+        kept,
+        shown: Unit { symbol: shown.0, size: shown.1 },
+        field: Unit { symbol: field.0, size: field.1 },
+    }
+}
+
+/// Ratios, and numbers without a unit.
+pub static RATIO: Units = units("ratio", "1", ("1", 1.0));
+/// Times.
+pub static TIME: Units = units("time", "s", ("s", 1.0));
+/// Frequencies.
+pub static FREQUENCY: Units = units("frequency", "Hz", ("Hz", 1.0));
+/// Growth and decay of vibrations.
+pub static RATE: Units = units("rate", "1/s", ("1/s", 1.0));
+/// Lengths along the well and the string.
+pub static DEPTH: Units = units("length", "m", ("ft", FOOT));
+/// Lengths across the hole: diameters, clearances, displacements.
+pub static WIDTH: Units = shown_in("length", "m", ("mm", 1e-3), ("in", INCH));
+/// Wavenumbers and sharpnesses.
+pub static PER_LENGTH: Units = units("reciprocal length", "1/m", ("1/in", 1.0 / INCH));
+/// Speeds.
+pub static SPEED: Units = units("speed", "m/s", ("ft/s", FOOT));
+/// Angles.
+pub static ANGLE: Units = units("angle", "rad", ("deg", DEGREE));
+/// Angles that are kept in degrees, as their names say.
+pub static ANGLE_IN_DEGREES: Units = units("angle", "deg", ("deg", 1.0));
+/// Angular speeds.
+pub static ANGULAR_SPEED: Units = units("angular speed", "rad/s", ("rpm", 6.0 * DEGREE));
+/// Speeds of rotation that are kept in revolutions per minute, as their names say.
+pub static SPEED_OF_ROTATION: Units = units("angular speed", "rpm", ("rpm", 1.0));
+/// Masses.
+pub static MASS: Units = units("mass", "kg", ("lb", POUND));
+/// Densities of muds.
+pub static MUD_DENSITY: Units = units("density", "kg/m3", ("ppg", POUND / GALLON));
+/// Densities of solids.
+pub static DENSITY: Units = units("density", "kg/m3", ("lb/ft3", POUND / (FOOT * FOOT * FOOT)));
+/// Flow rates.
+pub static FLOW_RATE: Units = units("volume flow rate", "m3/s", ("gpm", GALLON / 60.0));
+/// Forces.
+pub static FORCE: Units = shown_in("force", "N", ("kN", 1e3), ("klbf", 1e3 * POUND_FORCE));
+/// Torques.
+pub static TORQUE: Units = shown_in("torque", "N m", ("kN m", 1e3), ("ft lbf", FOOT * POUND_FORCE));
+/// Energies.
+pub static ENERGY: Units = units("energy", "J", ("ft lbf", FOOT * POUND_FORCE));
+/// Pressures.
+pub static PRESSURE: Units = shown_in("pressure", "Pa", ("MPa", 1e6), ("psi", POUND_FORCE / (INCH * INCH)));
+/// Moduli of solids.
+pub static MODULUS: Units =
+    shown_in("pressure", "Pa", ("GPa", 1e9), ("Mpsi", 1e6 * POUND_FORCE / (INCH * INCH)));
+/// Pressures lost over a length.
+pub static PRESSURE_GRADIENT: Units =
+    units("pressure gradient", "Pa/m", ("psi/ft", POUND_FORCE / (INCH * INCH * FOOT)));
+/// Yield stresses of muds.
+pub static YIELD_STRESS: Units = units("stress", "Pa", ("lbf/100 ft2", POUND_FORCE / HUNDRED_SQUARE_FEET));
+/// Consistencies of muds: stress over shear rate to the power of the flow index n.
+pub static CONSISTENCY: Units =
+    units("consistency", "Pa s^n", ("lbf s^n/100 ft2", POUND_FORCE / HUNDRED_SQUARE_FEET));
+/// Kinematic viscosities.
+pub static KINEMATIC_VISCOSITY: Units = units("kinematic viscosity", "m2/s", ("cSt", 1e-6));
+/// Stiffnesses.
+pub static STIFFNESS: Units = units("stiffness", "N/m", ("lbf/in", POUND_FORCE / INCH));
+/// Stiffnesses of a length of string.
+pub static STIFFNESS_PER_LENGTH: Units =
+    units("stiffness per length", "N/m2", ("lbf/in2", POUND_FORCE / (INCH * INCH)));
+/// Damping constants.
+pub static DAMPING: Units = units("damping", "N s/m", ("lbf s/in", POUND_FORCE / INCH));
+/// Damping constants of a length of string.
+pub static DAMPING_PER_LENGTH: Units =
+    units("damping per length", "N s/m2", ("lbf s/in2", POUND_FORCE / (INCH * INCH)));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn field_units_are_as_published() {
+        // NIST Special Publication 811 (2008), appendix B.8, to all digits printed there.
+        for (units, symbol, published, digits) in [
+            (&DEPTH, "ft", 0.3048, 15),
+            (&WIDTH, "in", 0.0254, 15),
+            (&FLOW_RATE, "gpm", 6.309_020e-5, 7),
+            (&MUD_DENSITY, "ppg", 119.826_4, 7),
+            (&DENSITY, "lb/ft3", 16.018_46, 7),
+            (&FORCE, "klbf", 4_448.221_615_260_5, 15),
+            (&TORQUE, "ft lbf", 1.355_818, 7),
+            (&ENERGY, "ft lbf", 1.355_818, 7),
+            (&PRESSURE, "psi", 6894.757, 7),
+            (&MASS, "lb", 0.453_592_37, 15),
+            (&SPEED, "ft/s", 0.3048, 15),
+            (&ANGLE, "deg", 0.017_453_29, 7),
+            (&ANGULAR_SPEED, "rpm", 0.104_719_8, 7),
+            (&STIFFNESS, "lbf/in", 175.126_8, 7),
+            (&KINEMATIC_VISCOSITY, "cSt", 1e-6, 15),
+        ] {
+            assert_eq!(units.field.symbol, symbol);
+            let off = (units.field.size / published - 1.0).abs();
+            assert!(off < 0.5 * 10_f64.powi(2 - digits), "{symbol}: {} off by {off:e}", units.field.size);
+        }
+    }
+
+    #[test]
+    fn a_value_reads_as_engineers_expect() {
+        let near = |value: f64, expected: f64| assert!((value / expected - 1.0).abs() < 1e-3, "{value}");
+        near(FLOW_RATE.field.of(0.04), 634.0);
+        near(MUD_DENSITY.field.of(1200.0), 10.014);
+        near(FORCE.field.of(-100e3), -22.48);
+        near(WIDTH.field.of(0.2159), 8.5);
+        near(YIELD_STRESS.field.of(5.0), 10.443);
+        near(WIDTH.shown.of(0.2159), 215.9);
+    }
+}

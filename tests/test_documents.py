@@ -59,5 +59,11 @@ def test_the_scenario_reference_is_that_of_the_schema() -> None:
     assert chapter.read_text() == script["reference"](), "python docs/scenario_reference.py writes it anew"
 
 
+def test_the_chapter_of_columns_is_that_of_the_vocabulary() -> None:
+    chapter = REPOSITORY / "docs" / "quantities.md"
+    script = runpy.run_path(str(chapter.parent / "quantity_reference.py"))
+    assert chapter.read_text() == script["reference"](), "python docs/quantity_reference.py writes it anew"
+
+
 def test_the_readme_stays_short() -> None:
     assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 130

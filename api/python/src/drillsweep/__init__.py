@@ -7,8 +7,8 @@
     table = sweep.wait().table().to_pandas()
     orbit = sweep.point(1).orbit(depth=57.7, time=(40, 60))
 
-All quantities are in SI units; `Table.units` says which, and `quantity` what a column is, and in which units it is shown and read in the
-oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
+All quantities are in SI units; `Table.units` says which, and `quantity` what a column is, and in which units it is
+shown and read in the oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
 """
 
 from drillsweep.client import Client

@@ -12,7 +12,7 @@ use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Sqlite, Transaction};
 
 use crate::blob::BlobStore;
 use crate::error::{Result, StoreError};
-use crate::sql;
+use crate::{migration, sql};
 
 /// How long a writer waits for another one.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
@@ -128,7 +128,7 @@ impl Store {
             .before_acquire(|connection, _| Box::pin(async move { Ok(!connection.is_in_transaction()) }))
             .connect_with(options)
             .await?;
-        sqlx::migrate!("../migrations/sqlite").run(&pool).await?;
+        migration::migrations().run(&pool).await?;
         drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;
         let database_path = config.database_path.clone();

@@ -1,10 +1,11 @@
 //! What was given up, over all sweeps.
 
-use sqlx::FromRow;
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteRow;
 
 use crate::connection::Store;
 use crate::error::Result;
-use crate::point::{PointRecord, PointRow};
+use crate::point::PointRecord;
 use crate::sql;
 
 /// A point that was given up.
@@ -47,16 +48,16 @@ impl FailureRecord {
     pub fn place(&self) -> FailurePlace {
         FailurePlace { at: self.at, sweep_id: self.sweep_id.clone(), ordinal: self.point.ordinal }
     }
-}
 
-#[derive(FromRow)]
-struct Row {
-    sweep_id: String,
-    sweep_name: Option<String>,
-    owner: String,
-    changed: i64,
-    #[sqlx(flatten)]
-    point: PointRow,
+    fn read(row: &SqliteRow) -> Result<Self> {
+        Ok(Self {
+            sweep_id: row.try_get("sweep_id")?,
+            sweep_name: row.try_get("sweep_name")?,
+            owner: row.try_get("owner")?,
+            at: row.try_get("changed")?,
+            point: PointRecord::read(row)?,
+        })
+    }
 }
 
 impl Store {
@@ -73,7 +74,7 @@ impl Store {
     ) -> Result<Vec<FailureRecord>> {
         let start = FailurePlace { at: i64::MAX, sweep_id: String::new(), ordinal: 0 };
         let after = after.unwrap_or(&start);
-        let rows: Vec<Row> = sqlx::query_as(sql::failure::LIST)
+        let rows = sqlx::query(sql::failure::LIST)
             .bind(after.at)
             .bind(&after.sweep_id)
             .bind(after.ordinal)
@@ -82,16 +83,6 @@ impl Store {
             .bind(limit)
             .fetch_all(&self.pool)
             .await?;
-        rows.into_iter()
-            .map(|row| {
-                Ok(FailureRecord {
-                    sweep_id: row.sweep_id,
-                    sweep_name: row.sweep_name,
-                    owner: row.owner,
-                    at: row.changed,
-                    point: row.point.record()?,
-                })
-            })
-            .collect()
+        rows.iter().map(FailureRecord::read).collect()
     }
 }

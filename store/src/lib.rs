@@ -12,6 +12,7 @@ mod error;
 mod event;
 mod failure;
 mod machine;
+mod migration;
 mod point;
 mod probe;
 mod queue;

@@ -1,7 +1,8 @@
 //! Points of a sweep and what came of them.
 
 use serde_json::Value;
-use sqlx::FromRow;
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteRow;
 
 use crate::connection::Store;
 use crate::error::Result;
@@ -58,7 +59,7 @@ pub struct TableRecord {
 }
 
 /// A stored array or table of a result.
-#[derive(Debug, Clone, PartialEq, Eq, FromRow)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Artifact {
     /// Name within the result.
     pub name: String,
@@ -72,21 +73,6 @@ pub struct Artifact {
     pub row_count: i64,
     /// When its blob was given up \[ms since the epoch\].
     pub expired: Option<i64>,
-}
-
-#[derive(FromRow)]
-pub(crate) struct PointRow {
-    ordinal: i64,
-    parameters: String,
-    key: Vec<u8>,
-    base: Option<String>,
-    changes: Option<String>,
-    state: String,
-    progress: f64,
-    starts: i64,
-    error: Option<String>,
-    summary: Option<String>,
-    provenance: Option<String>,
 }
 
 impl Store {
@@ -103,14 +89,14 @@ impl Store {
     ) -> Result<Vec<PointRecord>> {
         let names = states.iter().map(|state| state.as_str());
         let wanted = (!states.is_empty()).then(|| names.collect::<Value>().to_string());
-        let rows: Vec<PointRow> = sqlx::query_as(sql::point::LIST)
+        let rows = sqlx::query(sql::point::LIST)
             .bind(sweep_id)
             .bind(after)
             .bind(wanted)
             .bind(limit)
             .fetch_all(&self.pool)
             .await?;
-        rows.into_iter().map(PointRow::record).collect()
+        rows.iter().map(PointRecord::read).collect()
     }
 
     /// One point with its result, if it has one; none if there is no such point.
@@ -118,9 +104,9 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
-        let row: Option<PointRow> =
-            sqlx::query_as(sql::point::ONE).bind(sweep_id).bind(ordinal).fetch_optional(&self.pool).await?;
-        row.map(PointRow::record).transpose()
+        let row =
+            sqlx::query(sql::point::ONE).bind(sweep_id).bind(ordinal).fetch_optional(&self.pool).await?;
+        row.as_ref().map(PointRecord::read).transpose()
     }
 
     /// One row a point, for the sweep's table, in order.
@@ -153,21 +139,22 @@ impl Store {
         after: i64,
         limit: i64,
     ) -> Result<Vec<(i64, Vec<Artifact>)>> {
-        #[derive(FromRow)]
-        struct Row {
-            ordinal: i64,
-            #[sqlx(flatten)]
-            artifact: Artifact,
-        }
-        let rows: Vec<Row> = sqlx::query_as(sql::point::WITH_ARTIFACTS)
+        let rows = sqlx::query(sql::point::WITH_ARTIFACTS)
             .bind(sweep_id)
             .bind(after)
             .bind(limit)
             .fetch_all(&self.pool)
             .await?;
-        let of_point =
-            |rows: &[Row]| (rows[0].ordinal, rows.iter().map(|row| row.artifact.clone()).collect());
-        Ok(rows.chunk_by(|a, b| a.ordinal == b.ordinal).map(of_point).collect())
+        let mut points: Vec<(i64, Vec<Artifact>)> = Vec::new();
+        for row in &rows {
+            let ordinal = row.try_get("ordinal")?;
+            let artifact = Artifact::read(row)?;
+            match points.last_mut() {
+                Some((last, artifacts)) if *last == ordinal => artifacts.push(artifact),
+                _ => points.push((ordinal, vec![artifact])),
+            }
+        }
+        Ok(points)
     }
 
     /// Artifacts of a result, by name; none before it is there.
@@ -175,26 +162,41 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
-        Ok(sqlx::query_as(sql::point::ARTIFACTS).bind(key.as_slice()).fetch_all(&self.pool).await?)
+        let rows = sqlx::query(sql::point::ARTIFACTS).bind(key.as_slice()).fetch_all(&self.pool).await?;
+        rows.iter().map(Artifact::read).collect()
     }
 }
 
-impl PointRow {
-    pub(crate) fn record(self) -> Result<PointRecord> {
-        Ok(PointRecord {
-            ordinal: self.ordinal,
-            parameters_json: self.parameters,
-            work_key: work_key(&self.key)?,
-            scenario: self
-                .base
-                .zip(self.changes)
+impl PointRecord {
+    pub(crate) fn read(row: &SqliteRow) -> Result<Self> {
+        let base: Option<String> = row.try_get("base")?;
+        let changes: Option<String> = row.try_get("changes")?;
+        Ok(Self {
+            ordinal: row.try_get("ordinal")?,
+            parameters_json: row.try_get("parameters")?,
+            work_key: work_key(row.try_get("key")?)?,
+            scenario: base
+                .zip(changes)
                 .map(|(base_json, changes_json)| ScenarioText { base_json, changes_json }),
-            state: WorkState::parse(&self.state)?,
-            progress: self.progress,
-            attempts: self.starts,
-            error_json: self.error,
-            summary_json: self.summary,
-            provenance_json: self.provenance,
+            state: WorkState::parse(row.try_get("state")?)?,
+            progress: row.try_get("progress")?,
+            attempts: row.try_get("starts")?,
+            error_json: row.try_get("error")?,
+            summary_json: row.try_get("summary")?,
+            provenance_json: row.try_get("provenance")?,
+        })
+    }
+}
+
+impl Artifact {
+    fn read(row: &SqliteRow) -> Result<Self> {
+        Ok(Self {
+            name: row.try_get("name")?,
+            media_type: row.try_get("media_type")?,
+            blob: row.try_get("blob")?,
+            bytes: row.try_get("bytes")?,
+            row_count: row.try_get("row_count")?,
+            expired: row.try_get("expired")?,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Sweeps: reading, changing, pausing, cancelling, retrying.
 
-use sqlx::{FromRow, Sqlite, Transaction};
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row as _, Sqlite, Transaction};
 
 use crate::connection::Store;
 use crate::error::Result;
@@ -58,45 +59,14 @@ pub struct SweepFilter<'a> {
     pub tag: Option<&'a str>,
 }
 
-#[derive(FromRow)]
-struct SweepRow {
-    id: String,
-    name: Option<String>,
-    owner: String,
-    request: String,
-    priority: i64,
-    version: i64,
-    cancelled: i64,
-    paused: i64,
-    pinned: i64,
-    expires: Option<i64>,
-    tags: String,
-    created: i64,
-    finished: Option<i64>,
-    points: i64,
-    points_queued: i64,
-    points_running: i64,
-    points_done: i64,
-    points_failed: i64,
-    points_cancelled: i64,
-    verifications: i64,
-    verifications_queued: i64,
-    verifications_running: i64,
-    verifications_done: i64,
-    verifications_failed: i64,
-    verifications_cancelled: i64,
-    running_progress: f64,
-}
-
 impl Store {
     /// A sweep with its counts; none if there is no such sweep.
     ///
     /// # Errors
     /// When the database fails.
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
-        let row: Option<SweepRow> =
-            sqlx::query_as(sql::sweep::ONE).bind(id).fetch_optional(&self.pool).await?;
-        Ok(row.map(SweepRow::record))
+        let row = sqlx::query(sql::sweep::ONE).bind(id).fetch_optional(&self.pool).await?;
+        row.as_ref().map(SweepRecord::read).transpose()
     }
 
     /// Sweeps, newest first, those that the filter lets through, before the sweep `before`.
@@ -109,7 +79,7 @@ impl Store {
         before: Option<&str>,
         limit: i64,
     ) -> Result<Vec<SweepRecord>> {
-        let rows: Vec<SweepRow> = sqlx::query_as(sql::sweep::LIST)
+        let rows = sqlx::query(sql::sweep::LIST)
             .bind(filter.owner)
             .bind(before)
             .bind(limit)
@@ -118,7 +88,7 @@ impl Store {
             .bind(filter.tag)
             .fetch_all(&self.pool)
             .await?;
-        Ok(rows.into_iter().map(SweepRow::record).collect())
+        rows.iter().map(SweepRecord::read).collect()
     }
 
     /// A number that rises with every change of the sweep's points; none if there is no such sweep.
@@ -240,41 +210,42 @@ async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()
     Ok(())
 }
 
-impl SweepRow {
-    fn record(self) -> SweepRecord {
+impl SweepRecord {
+    fn read(row: &SqliteRow) -> Result<Self> {
         let counts = StateCounts {
-            total: self.points,
-            queued: self.points_queued,
-            running: self.points_running,
-            done: self.points_done,
-            failed: self.points_failed,
-            cancelled: self.points_cancelled,
+            total: row.try_get("points")?,
+            queued: row.try_get("points_queued")?,
+            running: row.try_get("points_running")?,
+            done: row.try_get("points_done")?,
+            failed: row.try_get("points_failed")?,
+            cancelled: row.try_get("points_cancelled")?,
         };
         let verification = StateCounts {
-            total: self.verifications,
-            queued: self.verifications_queued,
-            running: self.verifications_running,
-            done: self.verifications_done,
-            failed: self.verifications_failed,
-            cancelled: self.verifications_cancelled,
+            total: row.try_get("verifications")?,
+            queued: row.try_get("verifications_queued")?,
+            running: row.try_get("verifications_running")?,
+            done: row.try_get("verifications_done")?,
+            failed: row.try_get("verifications_failed")?,
+            cancelled: row.try_get("verifications_cancelled")?,
         };
-        SweepRecord {
-            id: self.id,
-            name: self.name,
-            owner: self.owner,
-            request_json: self.request,
-            priority: self.priority,
-            version: self.version,
-            is_cancelled: self.cancelled != 0,
-            is_paused: self.paused != 0,
-            is_pinned: self.pinned != 0,
-            expires: self.expires,
-            tags_json: self.tags,
-            created: self.created,
-            finished: self.finished,
+        let running_progress: f64 = row.try_get("running_progress")?;
+        Ok(Self {
+            id: row.try_get("id")?,
+            name: row.try_get("name")?,
+            owner: row.try_get("owner")?,
+            request_json: row.try_get("request")?,
+            priority: row.try_get("priority")?,
+            version: row.try_get("version")?,
+            is_cancelled: row.try_get("cancelled")?,
+            is_paused: row.try_get("paused")?,
+            is_pinned: row.try_get("pinned")?,
+            expires: row.try_get("expires")?,
+            tags_json: row.try_get("tags")?,
+            created: row.try_get("created")?,
+            finished: row.try_get("finished")?,
             counts,
             verification,
-            progress: (counts.final_ones() + verification.final_ones()) as f64 + self.running_progress,
-        }
+            progress: (counts.final_ones() + verification.final_ones()) as f64 + running_progress,
+        })
     }
 }

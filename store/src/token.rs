@@ -1,6 +1,7 @@
 //! Tokens: who may talk to the service, and for what.
 
-use sqlx::FromRow;
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteRow;
 
 use crate::connection::Store;
 use crate::error::{Result, StoreError};
@@ -72,18 +73,6 @@ pub enum TokensPresent {
     OnlyVoid,
     /// At least one is valid.
     Valid,
-}
-
-#[derive(FromRow)]
-struct TokenRow {
-    id: String,
-    owner: String,
-    name: Option<String>,
-    scope: String,
-    created: i64,
-    expires: Option<i64>,
-    revoked: Option<i64>,
-    last_used: Option<i64>,
 }
 
 impl TokenScope {
@@ -169,8 +158,8 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>> {
-        let rows: Vec<TokenRow> = sqlx::query_as(sql::token::LIST).fetch_all(&self.pool).await?;
-        rows.into_iter().map(TokenRow::record).collect()
+        let rows = sqlx::query(sql::token::LIST).fetch_all(&self.pool).await?;
+        rows.iter().map(TokenRecord::read).collect()
     }
 
     /// Makes a token void, at once and for good. False if there is no such token.
@@ -187,11 +176,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn valid_token(&self, secret: &TokenSecret) -> Result<Option<TokenRecord>> {
-        let row: Option<TokenRow> = sqlx::query_as(sql::token::VALID)
+        let row = sqlx::query(sql::token::VALID)
             .bind(secret.hash().as_bytes().as_slice())
             .fetch_optional(&self.pool)
             .await?;
-        row.map(TokenRow::record).transpose()
+        row.as_ref().map(TokenRecord::read).transpose()
     }
 
     /// Notes that a token was used, unless that was noted within the hour.
@@ -221,17 +210,17 @@ impl Store {
     }
 }
 
-impl TokenRow {
-    fn record(self) -> Result<TokenRecord> {
-        Ok(TokenRecord {
-            scope: TokenScope::parse(&self.scope)?,
-            id: self.id,
-            owner: self.owner,
-            name: self.name,
-            created: self.created,
-            expires: self.expires,
-            revoked: self.revoked,
-            last_used: self.last_used,
+impl TokenRecord {
+    fn read(row: &SqliteRow) -> Result<Self> {
+        Ok(Self {
+            id: row.try_get("id")?,
+            owner: row.try_get("owner")?,
+            name: row.try_get("name")?,
+            scope: TokenScope::parse(row.try_get("scope")?)?,
+            created: row.try_get("created")?,
+            expires: row.try_get("expires")?,
+            revoked: row.try_get("revoked")?,
+            last_used: row.try_get("last_used")?,
         })
     }
 }

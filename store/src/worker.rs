@@ -1,13 +1,14 @@
 //! The register of workers.
 
-use sqlx::FromRow;
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteRow;
 
 use crate::connection::Store;
 use crate::error::Result;
 use crate::sql;
 
 /// A worker process as it registered itself.
-#[derive(Debug, Clone, PartialEq, FromRow)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct WorkerRecord {
     /// Identifier, made by the worker.
     pub id: String,
@@ -73,6 +74,21 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
-        Ok(sqlx::query_as(sql::worker::LIST).bind(within_ms).fetch_all(&self.pool).await?)
+        let rows = sqlx::query(sql::worker::LIST).bind(within_ms).fetch_all(&self.pool).await?;
+        rows.iter().map(WorkerRecord::read).collect()
+    }
+}
+
+impl WorkerRecord {
+    fn read(row: &SqliteRow) -> Result<Self> {
+        Ok(Self {
+            id: row.try_get("id")?,
+            host: row.try_get("host")?,
+            process: row.try_get("process")?,
+            version: row.try_get("version")?,
+            physics_version: row.try_get("physics_version")?,
+            started: row.try_get("started")?,
+            last_seen: row.try_get("last_seen")?,
+        })
     }
 }

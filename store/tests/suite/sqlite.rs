@@ -3,7 +3,7 @@
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
-use drillsweep_store::{Role, StoreConfig, WorkState};
+use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use tempfile::TempDir;
 
@@ -128,6 +128,22 @@ async fn the_schema_has_the_states_stages_and_transitions_of_work() {
                 .await;
             assert_eq!(changed.is_ok(), from == to || from.may_become(to), "{key}");
         }
+    }
+}
+
+#[tokio::test]
+async fn a_database_with_another_schema_is_refused() {
+    for change in [
+        "UPDATE _sqlx_migrations SET checksum = zeroblob(48)",
+        "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)
+         VALUES (999, 'of a later build', true, zeroblob(48), 0)",
+    ] {
+        let engine = Sqlite::new();
+        engine.open().await.close().await;
+        engine.open().await.close().await;
+        sqlx::query(change).execute(&database(&engine).await).await.unwrap();
+        let opened = Store::open(&engine.config(Role::Worker, 0)).await;
+        assert!(matches!(opened, Err(StoreError::Migration(_))), "{change}");
     }
 }
 

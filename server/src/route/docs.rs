@@ -1,17 +1,25 @@
 //! The API's document as pages for people, by Swagger UI. The pages come with the program, so that they need no other network.
 
-use std::sync::{Arc, LazyLock};
+use std::io::{Cursor, Read as _};
+use std::sync::LazyLock;
 
 use axum::http::{Uri, header};
 use axum::response::{IntoResponse, Redirect, Response};
 use drillsweep_api::ProblemKind;
-use utoipa_swagger_ui::Config;
+use utoipa_swagger_ui_vendored::SWAGGER_UI_VENDORED;
+use zip::ZipArchive;
+use zip::result::ZipResult;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 
-/// What the pages show.
-static CONFIG: LazyLock<Arc<Config<'static>>> = LazyLock::new(|| Arc::new(Config::from("/openapi.json")));
+/// A release of Swagger UI: all in one folder, the pages in its folder `dist`.
+static RELEASE: LazyLock<ZipArchive<Cursor<&[u8]>>> = LazyLock::new(|| {
+    ZipArchive::new(Cursor::new(SWAGGER_UI_VENDORED)).expect("the built-in archive is well-formed")
+});
+
+/// The file that says what the pages show, and its text in place of the release's, which shows an example.
+const INITIALIZER: (&str, &str) = ("swagger-initializer.js", include_str!("swagger-initializer.js"));
 
 /// To the first page, whose other files are beside it.
 pub(crate) async fn start() -> Redirect {
@@ -20,11 +28,32 @@ pub(crate) async fn start() -> Redirect {
 
 /// One file of the pages.
 pub(crate) async fn file(uri: Uri, Path(name): Path<String>) -> Result<Response> {
-    match utoipa_swagger_ui::serve(&name, CONFIG.clone()) {
-        Ok(Some(file)) => {
-            Ok(([(header::CONTENT_TYPE, file.content_type)], file.bytes.into_owned()).into_response())
-        }
-        Ok(None) => Err(Error::new(ProblemKind::NoSuchRoute, format!("there is nothing at {}", uri.path()))),
-        Err(error) => Err(Error::internal(&error)),
+    let bytes = if name == INITIALIZER.0 {
+        Some(INITIALIZER.1.into())
+    } else {
+        page(&name).map_err(|error| Error::internal(&error))?
+    };
+    let missing = || Error::new(ProblemKind::NoSuchRoute, format!("there is nothing at {}", uri.path()));
+    Ok(([(header::CONTENT_TYPE, content_type(&name))], bytes.ok_or_else(missing)?).into_response())
+}
+
+/// A file of the release's pages; none if there is no such file.
+fn page(name: &str) -> ZipResult<Option<Vec<u8>>> {
+    let end = format!("/dist/{name}");
+    let is_page =
+        |path: &[u8]| path.strip_suffix(end.as_bytes()).is_some_and(|release| !release.contains(&b'/'));
+    let Some(index) = RELEASE.file_names_raw().position(is_page) else { return Ok(None) };
+    let mut bytes = Vec::new();
+    RELEASE.clone().by_index(index)?.read_to_end(&mut bytes)?;
+    Ok(Some(bytes))
+}
+
+fn content_type(name: &str) -> &'static str {
+    match name.rsplit('.').next() {
+        Some("html") => "text/html",
+        Some("css") => "text/css",
+        Some("js") => "text/javascript",
+        Some("png") => "image/png",
+        _ => "application/octet-stream",
     }
 }

@@ -23,9 +23,10 @@ mod watch;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
+use tracing_subscriber::Layer as _;
+use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
-use tracing_subscriber::{EnvFilter, Layer as _};
 
 /// Parametric sweeps of nonlinear drillstring dynamics.
 #[derive(Parser)]
@@ -123,10 +124,18 @@ fn main() -> anyhow::Result<()> {
     run()
 }
 
+/// What `DRILLSWEEP_LOG` lets through: levels, of all targets or by target (`warn,drillsweep_server=debug`); `info` where it says
+/// nothing that can be read.
+fn log_filter() -> Targets {
+    let text = std::env::var("DRILLSWEEP_LOG").unwrap_or_default();
+    let directives: Vec<&str> = text.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
+    let parsed = if directives.is_empty() { None } else { directives.join(",").parse().ok() };
+    parsed.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
+}
+
 fn run() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
-    let filter = EnvFilter::try_from_env("DRILLSWEEP_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
-    let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).with_filter(filter);
+    let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).with_filter(log_filter());
     let registry = tracing_subscriber::registry().with(log);
     #[cfg(feature = "opentelemetry")]
     let telemetry = telemetry::Telemetry::new(arguments.command.service())?;

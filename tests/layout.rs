@@ -9,7 +9,8 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// Who may use whom, among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
-    ("drillsweep-sim", &[]),
+    ("drillsweep-fft", &[]),
+    ("drillsweep-sim", &["drillsweep-fft"]),
     ("drillsweep-table", &[]),
     ("drillsweep-api", &["drillsweep-sim", "drillsweep-table"]),
     ("drillsweep-chart", &["drillsweep-api", "drillsweep-sim", "drillsweep-table"]),
@@ -39,6 +40,7 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),
     ("resvg", &["drillsweep-chart"]),
+    ("rustfft", &["drillsweep-fft"]),
     ("skrifa", &["drillsweep-chart"]),
     ("notosans", &["drillsweep-chart"]),
 ];

@@ -2,8 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::window::Window;
@@ -72,9 +71,7 @@ pub fn full_spectrum(u: &[f64], v: &[f64], rate_hz: f64, window: Window) -> Full
         .enumerate()
         .map(|(n, (u, v))| Complex::new(*u, *v) * window.weight(n, count))
         .collect();
-    if count > 0 {
-        FftPlanner::new().plan_fft_forward(count).process(&mut bins);
-    }
+    drillsweep_fft::forward(&mut bins);
     // The second half of the bins are the negative frequencies.
     let negative = count / 2;
     bins.rotate_right(negative);

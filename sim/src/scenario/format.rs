@@ -13,11 +13,10 @@ impl Scenario {
     /// Reads a scenario from TOML.
     ///
     /// # Errors
-    /// The first place where the text is not TOML or not a scenario; unknown fields are refused.
+    /// The first place where the text is not TOML, or the first by its fields' names where it is not a scenario; unknown fields
+    /// are refused.
     pub fn from_toml(text: &str) -> Result<Self, Problem> {
-        let deserializer = toml::Deserializer::parse(text).map_err(|error| not_toml(&error))?;
-        serde_path_to_error::deserialize(deserializer)
-            .map_err(|error| Problem::from_serde(error.path().to_string(), error.inner().message()))
+        from_table(table(text)?)
     }
 
     /// Reads a scenario from JSON.
@@ -43,9 +42,15 @@ impl Scenario {
     }
 }
 
-/// A text that is not TOML at all.
-pub(super) fn not_toml(error: &toml::de::Error) -> Problem {
-    Problem::new("", "", error.to_string().trim_end())
+/// A TOML document as a tree, or why the text is not TOML at all.
+pub(super) fn table(text: &str) -> Result<toml::Table, Problem> {
+    toml::from_str(text).map_err(|error: toml::de::Error| Problem::new("", "", error.to_string().trim_end()))
+}
+
+/// A type out of a parsed TOML document: code for reading each type from the text itself would be several times as much.
+pub(super) fn from_table<T: DeserializeOwned>(table: toml::Table) -> Result<T, Problem> {
+    serde_path_to_error::deserialize(toml::Value::Table(table))
+        .map_err(|error| Problem::from_serde(error.path().to_string(), error.inner().message()))
 }
 
 /// A type out of a parsed JSON document.

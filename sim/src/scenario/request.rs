@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::format::{from_value, json_problem, not_toml};
+use super::format::{from_table, from_value, json_problem, table};
 use super::{PRESETS, Problem, Problems, Scenario, preset};
 
 /// A preset or a full scenario, and what to change in it:
@@ -50,12 +50,11 @@ impl ScenarioRequest {
     /// # Errors
     /// The first place where the text is not TOML or neither of the two.
     pub fn from_toml(text: &str) -> Result<Self, Problem> {
-        let document: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error))?;
+        let document = table(text)?;
         if is_request(|key| document.contains_key(key)) {
-            return serde_path_to_error::deserialize(document)
-                .map_err(|error| Problem::from_serde(error.path().to_string(), error.inner().message()));
+            return from_table(document);
         }
-        Ok(Self { scenario: Some(Scenario::from_toml(text)?), ..Self::default() })
+        Ok(Self { scenario: Some(from_table(document)?), ..Self::default() })
     }
 
     /// The scenario asked for. It is not validated yet.

@@ -106,6 +106,7 @@ fn simulation_knows_no_clock_files_threads_network_or_async() {
 /// The modules of the simulation from the ground up: each may use those before it.
 const LAYERS: &[&str] = &[
     "control",
+    "freedom",
     "linalg",
     "signal",
     "scenario",

@@ -12,6 +12,7 @@ pub mod beam;
 pub mod contact;
 pub mod control;
 pub mod effect;
+pub mod freedom;
 pub mod linalg;
 pub mod model;
 pub mod modes;

@@ -2,6 +2,7 @@
 
 use crate::beam::ElementMatrix;
 use crate::effect::{Account, ElementInMotion, MotionTerms, room};
+use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
 use crate::scenario::Effect;
@@ -12,10 +13,10 @@ use crate::statics::Equilibrium;
 /// Held degrees of freedom have empty rows and columns in every matrix; what they push with at their equilibrium
 /// values is part of the load.
 #[derive(Debug, Clone)]
-pub struct DynamicSystem<const D: usize = 6> {
-    /// Which of a node's six degrees of freedom these are, in rising order. A system starts with all six;
+pub struct DynamicSystem<const D: usize = DOFS> {
+    /// Which of a node's degrees of freedom these are. A system starts with all;
     /// [`DynamicSystem::reduced_to`] leaves out those that are held at every node.
-    pub dofs: [usize; D],
+    pub freedoms: Freedoms<D>,
     /// Mass: structure and added mass of the mud.
     pub mass: BlockTridiagonal<D>,
     /// Everything that multiplies velocities: Rayleigh damping, gyroscopic, mud damping, Coriolis.
@@ -94,7 +95,7 @@ impl Model {
             clear_held(matrix, &held);
         }
         DynamicSystem {
-            dofs: std::array::from_fn(|dof| dof),
+            freedoms: Freedoms::ALL,
             mass,
             damping,
             stiffness,
@@ -125,7 +126,7 @@ impl Model {
             .collect()
     }
 
-    fn held_in_motion(&self) -> Vec<[bool; 6]> {
+    fn held_in_motion(&self) -> Vec<[bool; DOFS]> {
         let off = Effect::ALL.iter().filter(|&&effect| !self.effects.is_active(effect));
         let still: Vec<usize> = off.filter_map(|&effect| room(effect).moves()).collect();
         (0..self.node_count())
@@ -145,24 +146,19 @@ impl<const D: usize> DynamicSystem<D> {
     pub fn damping_of(&self, account: Account) -> &BlockTridiagonal<D> {
         &self.damping_of[account as usize]
     }
-
-    /// Whether the twist is among the degrees of freedom; it is the last one then.
-    pub fn has_twist(&self) -> bool {
-        self.dofs.last() == Some(&5)
-    }
 }
 
 impl DynamicSystem {
-    /// Degrees of freedom, of six, that move at some node, in rising order.
+    /// Degrees of freedom that move at some node, in their order.
     pub fn moving(&self) -> Vec<usize> {
-        (0..6).filter(|&dof| self.held.iter().any(|held| !held[dof])).collect()
+        (0..DOFS).filter(|&dof| self.held.iter().any(|held| !held[dof])).collect()
     }
 
-    /// The same system without the degrees of freedom that are held at every node: `dofs` are the others.
-    pub fn reduced_to<const D: usize>(&self, dofs: [usize; D]) -> DynamicSystem<D> {
+    /// The same system without the degrees of freedom that are held at every node: `freedoms` are the others.
+    pub fn reduced_to<const D: usize>(&self, freedoms: Freedoms<D>) -> DynamicSystem<D> {
         let reduced = |matrix: &BlockTridiagonal| {
             let of = |blocks: &[Block]| -> Vec<Block<D>> {
-                blocks.iter().map(|b| Block::from_fn(|i, j| b[(dofs[i], dofs[j])])).collect()
+                blocks.iter().map(|b| Block::from_fn(|i, j| b[freedoms.in_all((i, j))])).collect()
             };
             BlockTridiagonal {
                 lower: of(&matrix.lower),
@@ -171,15 +167,15 @@ impl DynamicSystem {
             }
         };
         DynamicSystem {
-            dofs,
+            freedoms,
             mass: reduced(&self.mass),
             damping: reduced(&self.damping),
             stiffness: reduced(&self.stiffness),
             damping_of: self.damping_of.each_ref().map(reduced),
-            load: self.load.iter().map(|load| dofs.map(|dof| load[dof])).collect(),
+            load: self.load.iter().map(|load| freedoms.of(load)).collect(),
             unbalance: self.unbalance.clone(),
             rotation_speed: self.rotation_speed,
-            held: self.held.iter().map(|held| dofs.map(|dof| held[dof])).collect(),
+            held: self.held.iter().map(|held| freedoms.of(held)).collect(),
         }
     }
 }
@@ -187,8 +183,8 @@ impl DynamicSystem {
 /// Moves the constant forces of held degrees of freedom, at their equilibrium values, to the load.
 fn move_held_to_load(
     stiffness: &BlockTridiagonal,
-    held: &[[bool; 6]],
-    displacement: &[[f64; 6]],
+    held: &[[bool; DOFS]],
+    displacement: &[[f64; DOFS]],
     load: &mut NodalVector,
 ) {
     let mut values = displacement.to_vec();
@@ -197,10 +193,10 @@ fn move_held_to_load(
             *value = 0.0;
         }
     }
-    let mut forces = vec![[0.0; 6]; held.len()];
+    let mut forces = vec![[0.0; DOFS]; held.len()];
     stiffness.multiply_into(&values, &mut forces);
     for ((load, force), held) in load.iter_mut().zip(&forces).zip(held) {
-        for dof in 0..6 {
+        for dof in 0..DOFS {
             load[dof] = if held[dof] { 0.0 } else { load[dof] - force[dof] };
         }
     }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{ElementMatrix, ElementVector};
+use crate::freedom::{DOFS, THETA_X, THETA_Y};
 use crate::well::NodeFrame;
 
 /// The straight line between two nodes, with its own frame and the way back to the nodes' frames.
@@ -25,7 +26,7 @@ impl Chord {
         let e1 = (mean - e3 * mean.dot(&e3)).normalize();
         let axes = [e1, e3.cross(&e1), e3];
         let mut carry = ElementMatrix::zeros();
-        for (offset, frame) in [(0, upper), (6, lower)] {
+        for (offset, frame) in [(0, upper), (DOFS, lower)] {
             let translation = components(&axes, frame);
             let mut rotation = translation;
             // A straight pipe that turns about its own tangent does not bend: nodal twist stays out of the
@@ -33,7 +34,7 @@ impl Chord {
             rotation[(0, 2)] = 0.0;
             rotation[(1, 2)] = 0.0;
             carry.fixed_view_mut::<3, 3>(offset, offset).copy_from(&translation);
-            carry.fixed_view_mut::<3, 3>(offset + 3, offset + 3).copy_from(&rotation);
+            carry.fixed_view_mut::<3, 3>(offset + THETA_X, offset + THETA_X).copy_from(&rotation);
         }
         Self { length, axes, carry }
     }
@@ -58,10 +59,10 @@ impl Chord {
     /// straight pipe into the curved hole.
     pub fn tangent_rotations(&self, upper: &NodeFrame, lower: &NodeFrame) -> ElementVector {
         let mut theta = ElementVector::zeros();
-        for (offset, frame) in [(0, upper), (6, lower)] {
+        for (offset, frame) in [(0, upper), (DOFS, lower)] {
             let [x, y, _] = self.components(&frame.e3);
-            theta[offset + 4] = x;
-            theta[offset + 3] = -y;
+            theta[offset + THETA_Y] = x;
+            theta[offset + THETA_X] = -y;
         }
         theta
     }

@@ -1,6 +1,7 @@
 //! Element matrices in the chord frame.
 
 use super::{BeamSection, ElementMatrix, ElementVector, Shape};
+use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V, W};
 
 /// Four-point Gauss-Legendre rule on \[0, 1\]: (place, weight), exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [
@@ -11,9 +12,9 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 /// Degrees of freedom of the plane (u, theta_y) and their signs.
-const PLANE_U: [(usize, f64); 4] = [(0, 1.0), (4, 1.0), (6, 1.0), (10, 1.0)];
+const PLANE_U: [(usize, f64); 4] = [(U, 1.0), (THETA_Y, 1.0), (DOFS + U, 1.0), (DOFS + THETA_Y, 1.0)];
 /// Degrees of freedom of the plane (v, theta_x): a positive slope of v is a negative theta_x.
-const PLANE_V: [(usize, f64); 4] = [(1, 1.0), (3, -1.0), (7, 1.0), (9, -1.0)];
+const PLANE_V: [(usize, f64); 4] = [(V, 1.0), (THETA_X, -1.0), (DOFS + V, 1.0), (DOFS + THETA_X, -1.0)];
 
 /// One straight element: a section and a length. Matrices are in the chord frame and, where a factor (tension,
 /// torque, mass per length) is named, for that factor equal to one.
@@ -65,12 +66,12 @@ impl BeamElement {
                 * s.bending_stiffness()
                 + (outer(&gx, &gx) + outer(&gy, &gy)) * shear
         });
-        for (dof, stiffness) in [(2, s.axial_stiffness()), (5, s.torsional_stiffness())] {
+        for (dof, stiffness) in [(W, s.axial_stiffness()), (THETA_Z, s.torsional_stiffness())] {
             let c = stiffness / self.length;
             k[(dof, dof)] += c;
-            k[(dof + 6, dof + 6)] += c;
-            k[(dof, dof + 6)] -= c;
-            k[(dof + 6, dof)] -= c;
+            k[(dof + DOFS, dof + DOFS)] += c;
+            k[(dof, dof + DOFS)] -= c;
+            k[(dof + DOFS, dof)] -= c;
         }
         k
     }
@@ -81,12 +82,12 @@ impl BeamElement {
         let mut m = self.lateral_mass() * (s.density * s.area)
             + self.integrate(|r| outer(&r.theta_x, &r.theta_x) + outer(&r.theta_y, &r.theta_y))
                 * (s.density * s.second_moment);
-        for (dof, inertia) in [(2, s.density * s.area), (5, s.density * s.polar_moment())] {
+        for (dof, inertia) in [(W, s.density * s.area), (THETA_Z, s.density * s.polar_moment())] {
             let c = inertia * self.length / 6.0;
             m[(dof, dof)] += 2.0 * c;
-            m[(dof + 6, dof + 6)] += 2.0 * c;
-            m[(dof, dof + 6)] += c;
-            m[(dof + 6, dof)] += c;
+            m[(dof + DOFS, dof + DOFS)] += 2.0 * c;
+            m[(dof, dof + DOFS)] += c;
+            m[(dof + DOFS, dof)] += c;
         }
         m
     }
@@ -132,19 +133,19 @@ impl BeamElement {
             let r = self.rows(xi);
             f += (r.u * load[0] + r.v * load[1]) * (weight * self.length);
         }
-        f[2] += 0.5 * load[2] * self.length;
-        f[8] += 0.5 * load[2] * self.length;
+        f[W] += 0.5 * load[2] * self.length;
+        f[DOFS + W] += 0.5 * load[2] * self.length;
         f
     }
 
     /// Row that gives the axial force E S w' from the 12 nodal values \[N/m\].
     pub fn tension_row(&self) -> ElementVector {
-        difference_row(2, self.section.axial_stiffness() / self.length)
+        difference_row(W, self.section.axial_stiffness() / self.length)
     }
 
     /// Row that gives the torque G I_p theta_z' from the 12 nodal values \[N m/rad\].
     pub fn torque_row(&self) -> ElementVector {
-        difference_row(5, self.section.torsional_stiffness() / self.length)
+        difference_row(THETA_Z, self.section.torsional_stiffness() / self.length)
     }
 
     fn integrate(&self, integrand: impl Fn(&Rows) -> ElementMatrix) -> ElementMatrix {
@@ -185,7 +186,7 @@ fn scatter(plane: &[(usize, f64); 4], values: &[f64; 4], sign: f64) -> ElementVe
 fn difference_row(dof: usize, factor: f64) -> ElementVector {
     let mut row = ElementVector::zeros();
     row[dof] = -factor;
-    row[dof + 6] = factor;
+    row[dof + DOFS] = factor;
     row
 }
 
@@ -238,7 +239,7 @@ mod tests {
         for dof in 0..3 {
             let mut shift = ElementVector::zeros();
             shift[dof] = 1.0;
-            shift[dof + 6] = 1.0;
+            shift[dof + DOFS] = 1.0;
             let mass = shift.dot(&(m * shift));
             assert!((mass - s.density * s.area * l).abs() < 1e-12 * mass);
         }

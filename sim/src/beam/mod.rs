@@ -14,8 +14,10 @@ pub use element::BeamElement;
 pub use section::BeamSection;
 pub use shape::Shape;
 
+use crate::freedom::DOFS;
+
 /// A 12 x 12 element matrix.
-pub type ElementMatrix = nalgebra::SMatrix<f64, 12, 12>;
+pub type ElementMatrix = nalgebra::SMatrix<f64, { 2 * DOFS }, { 2 * DOFS }>;
 
 /// A 12-vector of one element.
-pub type ElementVector = nalgebra::SVector<f64, 12>;
+pub type ElementVector = nalgebra::SVector<f64, { 2 * DOFS }>;

@@ -2,8 +2,9 @@
 
 use super::scene::{no, yes};
 use super::{Call, Room, Scene};
+use crate::freedom::W;
 
-pub(super) const ROOM: Room = Room { moves: Some(2), ..Room::new(called_for) };
+pub(super) const ROOM: Room = Room { moves: Some(W), ..Room::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     if scene.is_straight() {

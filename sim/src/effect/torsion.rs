@@ -2,8 +2,9 @@
 
 use super::scene::{no, yes};
 use super::{Call, Room, Scene};
+use crate::freedom::THETA_Z;
 
-pub(super) const ROOM: Room = Room { moves: Some(5), ..Room::new(called_for) };
+pub(super) const ROOM: Room = Room { moves: Some(THETA_Z), ..Room::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     match (scene.active.friction_torque, scene.is_straight()) {

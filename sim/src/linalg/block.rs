@@ -2,8 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-/// Degrees of freedom of a node, and rows of a block where nothing else is said.
-pub const DOFS: usize = 6;
+use crate::freedom::DOFS;
 
 /// A D x D matrix, D from 2 to 6, stored by columns, so that a product sums whole columns.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,10 @@
 //! Block elimination from both ends to the middle.
 
-use super::block::{Block, DOFS};
+use super::block::Block;
 use super::field::NodalField;
 use super::split::SplitBlock;
 use super::tridiagonal::BlockTridiagonal;
+use crate::freedom::DOFS;
 
 /// A factored [`BlockTridiagonal`], ready to solve.
 ///

@@ -2,9 +2,9 @@
 
 use std::ops::{Index, IndexMut};
 
-use super::block::DOFS;
 use super::four::{Four, FourMask};
 use super::lane::{Lane, Mask};
+use crate::freedom::DOFS;
 
 const LANES: usize = Four::LANES;
 

@@ -33,7 +33,8 @@ mod tridiagonal;
 #[cfg(test)]
 mod tests;
 
-pub use block::{Block, DOFS};
+pub use crate::freedom::DOFS;
+pub use block::Block;
 pub use factor::{Factor, SingularBlock};
 pub use field::{Neighbourhood, NodalField, after};
 pub use four::{Four, FourMask};

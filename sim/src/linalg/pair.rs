@@ -2,11 +2,12 @@
 
 use std::marker::PhantomData;
 
-use super::block::{Block, DOFS};
+use super::block::Block;
 use super::field::{Neighbourhood, NodalField, after, before};
 use super::four::Four;
 use super::lane::Lane;
 use super::tridiagonal::{BlockTridiagonal, can_couple};
+use crate::freedom::{BENDING_ROTATIONS, DOFS};
 
 const LANES: usize = Four::LANES;
 
@@ -211,7 +212,7 @@ impl<const D: usize> Storage<D> for Symmetric {
 /// Entries of a block that are kept.
 #[inline(always)]
 const fn block_count<const D: usize>(last_couples: bool) -> usize {
-    if last_couples { D * D } else { D * D - 2 * (D - 3) }
+    if last_couples { D * D } else { D * D - 2 * (D - 1 - BENDING_ROTATIONS) }
 }
 
 /// One entry of four blocks from `first` on; zeros where there is no block.

@@ -1,10 +1,11 @@
 //! The skew part of a block-tridiagonal matrix.
 
-use super::block::{Block, DOFS};
+use super::block::Block;
 use super::field::{Neighbourhood, NodalField, after};
 use super::four::Four;
 use super::lane::Lane;
 use super::tridiagonal::BlockTridiagonal;
+use crate::freedom::{BENDING_ROTATIONS, DOFS};
 
 const LANES: usize = Four::LANES;
 
@@ -196,7 +197,7 @@ const fn is_kept<const D: usize>(
         return false;
     }
     // The last degree of freedom is the twist, or the second rotation of a string that does not twist.
-    let displacements = if last_couples { D - 2 } else { D - 3 };
+    let displacements = D - BENDING_ROTATIONS - !last_couples as usize;
     let (of_i, of_j) = (i < displacements, j < displacements);
     !only_bending || of_i != of_j || (same_node && !of_i)
 }

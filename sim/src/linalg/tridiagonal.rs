@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::block::{Block, DOFS, Sum};
+use super::block::{Block, Sum};
 use super::factor::SingularBlock;
+use crate::freedom::{BENDING_ROTATIONS, DOFS};
 
 /// A square matrix of n x n blocks, zero but on three diagonals.
 #[derive(Debug, Clone, PartialEq)]
@@ -146,5 +147,5 @@ impl<const D: usize> BlockTridiagonal<D> {
 #[inline(always)]
 pub const fn can_couple<const D: usize>(row: usize, column: usize, last_couples: bool) -> bool {
     let (lower, higher) = if row < column { (row, column) } else { (column, row) };
-    last_couples || higher + 1 < D || lower + 3 >= D
+    last_couples || higher + 1 < D || lower + 1 + BENDING_ROTATIONS >= D
 }

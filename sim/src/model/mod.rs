@@ -11,13 +11,14 @@ use std::f64::consts::PI;
 
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
 use crate::contact::Wall;
+use crate::freedom::{DOFS, THETA_Z, U, V, W};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::scenario::{ActiveEffects, Scenario, TopCondition};
 use crate::string::{MeshError, MeshNode, StringMesh};
 use crate::well::{NodeFrame, WellError, WellPath};
 
 /// Nodal values from the top: (u, v, w, theta_x, theta_y, theta_z) of every node, or those of them that a run solves for.
-pub type NodalVector<const D: usize = 6> = Vec<[f64; D]>;
+pub type NodalVector<const D: usize = DOFS> = Vec<[f64; D]>;
 
 /// The string in its well.
 #[derive(Debug, Clone)]
@@ -103,17 +104,17 @@ impl Model {
     }
 
     /// Degrees of freedom of node `node` that the top's boundary condition holds at zero.
-    pub fn held_by_top(&self, node: usize) -> [bool; 6] {
+    pub fn held_by_top(&self, node: usize) -> [bool; DOFS] {
         match (node, self.scenario.operation.top) {
-            (0, TopCondition::Clamped) => [true; 6],
-            (0, TopCondition::Pinned) => [true, true, true, false, false, true],
-            _ => [false; 6],
+            (0, TopCondition::Clamped) => [true; DOFS],
+            (0, TopCondition::Pinned) => std::array::from_fn(|dof| [U, V, W, THETA_Z].contains(&dof)),
+            _ => [false; DOFS],
         }
     }
 
     /// Constant nodal loads, with the mud's drag \[N/m\] on every element (empty where there is none).
     pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
-        let mut load = vec![[0.0; 6]; self.node_count()];
+        let mut load = vec![[0.0; DOFS]; self.node_count()];
         for (e, element) in self.elements.iter().enumerate() {
             let mut f = element.load;
             if let Some(&drag) = drag.get(e) {
@@ -122,43 +123,43 @@ impl Model {
             add_element_vector(&mut load, e, &f);
         }
         if let Some(bit) = load.last_mut() {
-            bit[2] += self.scenario.operation.weight_on_bit;
-            bit[5] += self.scenario.operation.torque_on_bit;
+            bit[W] += self.scenario.operation.weight_on_bit;
+            bit[THETA_Z] += self.scenario.operation.torque_on_bit;
         }
         load
     }
 
     /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of
     /// its body: 0 concentric, 1 touching (docs/model/mud.md, Eccentricity).
-    pub fn eccentricity(&self, element: usize, displacement: &[[f64; 6]]) -> f64 {
-        let radius = |node: usize| displacement[node][0].hypot(displacement[node][1]);
+    pub fn eccentricity(&self, element: usize, displacement: &[[f64; DOFS]]) -> f64 {
+        let radius = |node: usize| displacement[node][U].hypot(displacement[node][V]);
         let clearance = 0.5 * (self.scenario.well.hole_diameter - self.mesh.elements[element].outer_diameter);
         (0.5 * (radius(element) + radius(element + 1)) / clearance).min(1.0)
     }
 }
 
 /// The 12 nodal values of element `element`.
-pub fn element_values(displacement: &[[f64; 6]], element: usize) -> ElementVector {
-    ElementVector::from_fn(|i, _| displacement[element + i / 6][i % 6])
+pub fn element_values(displacement: &[[f64; DOFS]], element: usize) -> ElementVector {
+    ElementVector::from_fn(|i, _| displacement[element + i / DOFS][i % DOFS])
 }
 
 /// Adds an element vector to the two nodes of element `element`.
-pub fn add_element_vector(target: &mut [[f64; 6]], element: usize, f: &ElementVector) {
-    for i in 0..12 {
-        target[element + i / 6][i % 6] += f[i];
+pub fn add_element_vector(target: &mut [[f64; DOFS]], element: usize, f: &ElementVector) {
+    for i in 0..2 * DOFS {
+        target[element + i / DOFS][i % DOFS] += f[i];
     }
 }
 
 /// Adds an element matrix to the blocks of element `element`.
 pub fn add_element_matrix(target: &mut BlockTridiagonal, element: usize, m: &ElementMatrix) {
     for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let block = Block::from_fn(|i, j| m[(6 * row + i, 6 * column + j)]);
+        let block = Block::from_fn(|i, j| m[(DOFS * row + i, DOFS * column + j)]);
         target.add_block(element + row, element + column, &block);
     }
 }
 
 /// Empties the rows and columns of held degrees of freedom.
-pub(crate) fn clear_held(matrix: &mut BlockTridiagonal, held: &[[bool; 6]]) {
+pub(crate) fn clear_held(matrix: &mut BlockTridiagonal, held: &[[bool; DOFS]]) {
     let n = held.len();
     for row in 0..n {
         let neighbours = [row.checked_sub(1), Some(row), Some(row + 1).filter(|&next| next < n)];

@@ -11,6 +11,7 @@ pub use overload::Overload;
 
 use crate::contact::{StaticContactForce, Wall, static_contact};
 use crate::effect::mud_drag;
+use crate::freedom::{DOFS, U, V};
 use crate::linalg::SingularBlock;
 use crate::model::{GRAVITY, Model, NodalVector, element_values};
 use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
@@ -123,7 +124,7 @@ impl Equilibrium {
     /// # Errors
     /// When Newton's method or the iteration with the hydraulics does not converge.
     pub fn find(model: &Model) -> Result<Self, StaticsError> {
-        Self::find_from(model, vec![[0.0; 6]; model.node_count()], &NewtonSettings::default())
+        Self::find_from(model, vec![[0.0; DOFS]; model.node_count()], &NewtonSettings::default())
     }
 
     /// The equilibrium searched from given displacements.
@@ -171,7 +172,7 @@ impl Equilibrium {
     pub(crate) fn unloaded(model: &Model) -> Self {
         let (nodes, elements) = (model.node_count(), model.elements.len());
         Self {
-            displacement: vec![[0.0; 6]; nodes],
+            displacement: vec![[0.0; DOFS]; nodes],
             tension: vec![0.0; elements],
             torque: vec![0.0; elements],
             normal_force: vec![0.0; nodes],
@@ -216,7 +217,7 @@ impl Equilibrium {
 /// shorter steps held by a stiffer spring.
 fn with_fallbacks(
     model: &Model,
-    load: &[[f64; 6]],
+    load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
     settings: &NewtonSettings,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
@@ -253,7 +254,7 @@ fn with_fallbacks(
 /// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.
 fn against_a_hardening_wall(
     model: &Model,
-    load: &[[f64; 6]],
+    load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
     let own = &model.scenario.contact;
@@ -269,11 +270,11 @@ fn against_a_hardening_wall(
 fn contact_at(
     wall: &Wall,
     node: usize,
-    displacement: &[f64; 6],
+    displacement: &[f64; DOFS],
     rotation_speed: f64,
 ) -> Option<StaticContactForce> {
     let site = wall.sites()[node].as_ref()?;
-    let contact = static_contact(wall.law(), site, displacement[0], displacement[1], rotation_speed);
+    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
 }
 

@@ -3,6 +3,7 @@
 use super::{StaticsError, contact_at};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::contact::Wall;
+use crate::freedom::{DOFS, THETA_Z, U, V};
 use crate::linalg::{Block, BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
 
@@ -44,7 +45,7 @@ pub(super) struct NewtonOutcome {
 pub(super) fn solve(
     model: &Model,
     wall: &Wall,
-    load: &[[f64; 6]],
+    load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
     settings: &NewtonSettings,
 ) -> Result<NewtonOutcome, StaticsError> {
@@ -55,12 +56,12 @@ pub(super) fn solve(
     let scale_of_load = largest(load);
     for iteration in 1..=settings.iteration_limit {
         for (block, length) in tangent.diagonal.iter_mut().zip(&tributary) {
-            block[(0, 0)] += shift * length;
-            block[(1, 1)] += shift * length;
+            block[(U, U)] += shift * length;
+            block[(V, V)] += shift * length;
         }
         let mut step = residual;
         Factor::new(&tangent)?.solve_in_place(&mut step);
-        let lateral = step.iter().fold(0.0_f64, |m, s| m.max(s[0].hypot(s[1])));
+        let lateral = step.iter().fold(0.0_f64, |m, s| m.max(s[U].hypot(s[V])));
         let scale = (settings.largest_step / lateral).min(1.0);
         let mut longest: f64 = 0.0;
         for (node, step) in displacement.iter_mut().zip(&step) {
@@ -103,8 +104,8 @@ pub(super) fn solve(
 fn linearise(
     model: &Model,
     wall: &Wall,
-    load: &[[f64; 6]],
-    displacement: &[[f64; 6]],
+    load: &[[f64; DOFS]],
+    displacement: &[[f64; DOFS]],
 ) -> (NodalVector, BlockTridiagonal) {
     let n = model.node_count();
     let mut residual = load.to_vec();
@@ -132,13 +133,15 @@ fn linearise(
             continue;
         };
         let forces = [contact.force_u, contact.force_v, contact.torque_z];
-        for (row, (force, gradient)) in [0, 1, 5].into_iter().zip(forces.into_iter().zip(&contact.tangent)) {
+        for (row, (force, gradient)) in
+            [U, V, THETA_Z].into_iter().zip(forces.into_iter().zip(&contact.tangent))
+        {
             residual[node][row] += force;
-            tangent.diagonal[node][(row, 0)] -= gradient[0];
-            tangent.diagonal[node][(row, 1)] -= gradient[1];
+            tangent.diagonal[node][(row, U)] -= gradient[0];
+            tangent.diagonal[node][(row, V)] -= gradient[1];
         }
     }
-    let held: Vec<[bool; 6]> = (0..n).map(|node| model.held_by_top(node)).collect();
+    let held: Vec<[bool; DOFS]> = (0..n).map(|node| model.held_by_top(node)).collect();
     crate::model::clear_held(&mut tangent, &held);
     for (node, held) in held.iter().enumerate() {
         for (dof, _) in held.iter().enumerate().filter(|(_, held)| **held) {
@@ -160,10 +163,10 @@ fn tributary_lengths(model: &Model) -> Vec<f64> {
     lengths
 }
 
-fn force(node: &[f64; 6]) -> f64 {
+fn force(node: &[f64; DOFS]) -> f64 {
     node.iter().fold(0.0, |m, f| m.max(f.abs()))
 }
 
-fn largest(residual: &[[f64; 6]]) -> f64 {
+fn largest(residual: &[[f64; DOFS]]) -> f64 {
     residual.iter().fold(0.0, |m, node| if m.is_nan() { m } else { m.max(force(node)) })
 }

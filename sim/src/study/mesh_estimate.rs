@@ -7,6 +7,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::freedom::{U, V};
 use crate::model::Model;
 use crate::scenario::{NodeChoice, Scenario, WallLaw};
 use crate::statics::Equilibrium;
@@ -143,7 +144,7 @@ impl Rest {
         let nodes = model.mesh.nodes.iter().zip(&equilibrium.displacement);
         let elements = model.mesh.elements.iter().zip(&equilibrium.flows);
         Self {
-            position: nodes.map(|(node, x)| (node.measured_depth, [x[0], x[1]])).collect(),
+            position: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),
             friction: elements
                 .map(|(element, flow)| (element.top + element.length, flow.friction_coefficient))
                 .collect(),

@@ -1,5 +1,6 @@
 //! Where members of an ensemble start.
 
+use crate::freedom::{DOFS, U, V};
 use crate::model::{Model, NodalVector};
 
 /// Largest lateral displacement by which a member is disturbed at its start \[m\].
@@ -12,7 +13,7 @@ const HALF_WAVES: usize = 6;
 /// sum of sines along the string with a largest value of [`DISTURBANCE`]. It vanishes at both ends.
 pub fn disturbance(model: &Model, member: u32) -> NodalVector {
     let nodes = &model.mesh.nodes;
-    let mut shape = vec![[0.0; 6]; nodes.len()];
+    let mut shape = vec![[0.0; DOFS]; nodes.len()];
     if member == 0 {
         return shape;
     }
@@ -22,11 +23,11 @@ pub fn disturbance(model: &Model, member: u32) -> NodalVector {
         let (along_u, along_v) = (random.next(), random.next());
         for (value, node) in shape.iter_mut().zip(nodes) {
             let sine = (std::f64::consts::PI * half_wave as f64 * node.measured_depth / length).sin();
-            value[0] += along_u * sine;
-            value[1] += along_v * sine;
+            value[U] += along_u * sine;
+            value[V] += along_v * sine;
         }
     }
-    let largest = shape.iter().fold(0.0_f64, |most, value| most.max(value[0].abs()).max(value[1].abs()));
+    let largest = shape.iter().fold(0.0_f64, |most, value| most.max(value[U].abs()).max(value[V].abs()));
     for value in shape.iter_mut().flatten() {
         *value *= DISTURBANCE / largest;
     }
@@ -60,7 +61,7 @@ mod tests {
         for shape in [&one, &two] {
             let largest = shape.as_flattened().iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             assert!((largest - DISTURBANCE).abs() < 1e-18);
-            assert_eq!(shape[0], [0.0; 6], "the top is held");
+            assert_eq!(shape[0], [0.0; DOFS], "the top is held");
         }
         assert_ne!(one, two);
         assert_eq!(one, disturbance(&model, 1));

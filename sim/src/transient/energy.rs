@@ -11,6 +11,7 @@ use super::forces::ContactForces;
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
 use crate::contact::{ContactNode, Wall};
 use crate::effect::Account;
+use crate::freedom::{Freedoms, U, V};
 use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
@@ -104,8 +105,7 @@ pub(super) struct Ledger<const D: usize> {
     /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
     forms: Forms<3, D>,
     wall: Wall,
-    /// Whether the last degree of freedom is the twist.
-    has_twist: bool,
+    freedoms: Freedoms<D>,
     rotation_speed: f64,
     work: Work,
     initial_stored: f64,
@@ -125,7 +125,7 @@ impl<const D: usize> Ledger<D> {
             load: system.load.clone(),
             forms: Forms::new(LEDGER.map(|account| system.damping_of(account)), &system.stiffness),
             wall: model.wall.clone(),
-            has_twist: system.has_twist(),
+            freedoms: system.freedoms,
             rotation_speed: system.rotation_speed,
             work: Work::default(),
             initial_stored: 0.0,
@@ -175,7 +175,7 @@ impl<const D: usize> Ledger<D> {
     ) -> Work {
         let mut power = Work {
             unbalance: unbalance
-                .map(|(node, force)| velocity[(node, 0)] * force[0] + velocity[(node, 1)] * force[1])
+                .map(|(node, force)| velocity[(node, U)] * force[U] + velocity[(node, V)] * force[V])
                 .sum(),
             ..Work::default()
         };
@@ -183,11 +183,11 @@ impl<const D: usize> Ledger<D> {
         let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
         for (i, group) in contact.touching() {
             let (x, rates) = (&displacement.groups()[i], &velocity.groups()[i]);
-            let (u, v, u_rate, v_rate) = (x[0], x[1], rates[0], rates[1]);
+            let (u, v, u_rate, v_rate) = (x[U], x[V], rates[U], rates[V]);
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
             let normal = -(group.normal_force / group.radius * u_rate.mul_add(u, v_rate * v));
-            let twist_power = if self.has_twist { rates[D - 1] * group.torque } else { zero };
-            let whole = u_rate.mul_add(group.force[0], v_rate.mul_add(group.force[1], twist_power));
+            let twist_power = self.freedoms.twist().map_or(zero, |twist| rates[twist] * group.torque);
+            let whole = u_rate.mul_add(group.force[U], v_rate.mul_add(group.force[V], twist_power));
             normal_power = normal_power + normal;
             friction_power = friction_power + (whole - normal);
             torque = torque + group.torque;
@@ -293,7 +293,7 @@ impl<const D: usize> Ledger<D> {
     /// Energy stored in the wall's springs.
     fn stored_by_wall(&self, x: &[[f64; D]]) -> f64 {
         let stored = |(node, site): (usize, &ContactNode<f64>)| {
-            let penetration = x[node][0].hypot(x[node][1]) - site.clearance;
+            let penetration = x[node][U].hypot(x[node][V]) - site.clearance;
             site.stiffness_share * self.wall.law().potential_energy(penetration)
         };
         self.wall.touchable().map(stored).sum()

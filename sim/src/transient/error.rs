@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::freedom::LATERAL;
 use crate::linalg::{Four, Lane, NodalField};
 use crate::scenario::Integrator;
 
@@ -53,7 +54,7 @@ impl ErrorSum {
     /// Adds a step whose displacement errors of a group of nodes are `error(group, dof)` \[m\].
     #[inline(always)]
     pub(super) fn add_groups(&mut self, groups: usize, error: impl Fn(usize, usize) -> Four) {
-        let mut sums = [Four::splat(0.0); 2];
+        let mut sums = [Four::splat(0.0); LATERAL];
         for group in 0..groups {
             for (dof, sum) in sums.iter_mut().enumerate() {
                 let error = error(group, dof);
@@ -69,7 +70,7 @@ impl ErrorSum {
         displacement: &NodalField<D>,
         start: &NodalField<D>,
     ) {
-        let mut sums = [Four::splat(0.0); 2];
+        let mut sums = [Four::splat(0.0); LATERAL];
         for (x, x0) in displacement.groups().iter().zip(start.groups()) {
             for (dof, sum) in sums.iter_mut().enumerate() {
                 let moved = x[dof] - x0[dof];

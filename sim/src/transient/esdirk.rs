@@ -7,6 +7,7 @@ use super::forces::{ContactForces, Forces};
 use super::grid::Grid;
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
+use crate::freedom::{Freedoms, LATERAL};
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
@@ -190,7 +191,7 @@ impl<const D: usize> Esdirk<D> {
     /// Sum of the squares of the lateral displacements' local errors \[m2\], as the embedded method of order 3 gives them.
     fn displacement_error(&self, h: f64, state: &State<D>) -> f64 {
         let error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
-        let mut sums = [Four::splat(0.0); 2];
+        let mut sums = [Four::splat(0.0); LATERAL];
         for group in 0..state.velocity.groups().len() {
             for (dof, sum) in sums.iter_mut().enumerate() {
                 let error = error(group, dof);
@@ -271,8 +272,8 @@ impl<const D: usize> Esdirk<D> {
                 }
                 velocity_offset[i][dof] = -c * x_base;
                 acceleration_offset[i][dof] = c * (velocity_offset[i][dof] - v_base);
-                // The predictor is for the contacts alone, which ask for the lateral motion and the twist.
-                if dof < 2 || dof + 1 == D {
+                // The predictor is for the contacts alone.
+                if Freedoms::<D>::concerns_contact(dof) {
                     v[i][dof] = diagonal.mul_add(last[i][dof], v_base);
                     x[i][dof] = diagonal.mul_add(v[i][dof], x_base);
                 }

@@ -3,6 +3,7 @@
 use crate::contact::{
     ContactForce, ContactNode, ContactParameters, LateralMotion, Yielding, dynamic_contact, implicit_contact,
 };
+use crate::freedom::{Freedoms, U, V};
 use crate::linalg::{Block, Four, Lane, Mask, NodalField};
 use crate::model::Model;
 use crate::motion::{DynamicSystem, UnbalanceForce};
@@ -144,8 +145,7 @@ pub(super) struct Forces<const D: usize> {
     /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
     sites: Vec<ContactNode<Four>>,
     contact: bool,
-    /// Whether the last degree of freedom is the twist.
-    has_twist: bool,
+    freedoms: Freedoms<D>,
 }
 
 impl<const D: usize> Forces<D> {
@@ -169,15 +169,15 @@ impl<const D: usize> Forces<D> {
             parameters: model.wall.law().in_lanes(),
             sites: sites.collect(),
             contact: model.effects.contact,
-            has_twist: system.has_twist(),
+            freedoms: system.freedoms,
         }
     }
 
     /// Adds the unbalance at `time` \[s\] to nodal forces.
     pub(super) fn add_unbalance(&self, time: f64, nodal: &mut NodalField<D>) {
         for (node, force) in self.unbalance_at(time) {
-            nodal[(node, 0)] += force[0];
-            nodal[(node, 1)] += force[1];
+            nodal[(node, U)] += force[U];
+            nodal[(node, V)] += force[V];
         }
     }
 
@@ -201,8 +201,8 @@ impl<const D: usize> Forces<D> {
                         .map_or(0.0, |block| value(block, site.contact_radius.lane(lane)))
                 }))
             };
-            let lateral = |block: &Block<D>| 0.5 * (block[(0, 0)] + block[(1, 1)]);
-            let twist = |block: &Block<D>| if self.has_twist { block[(D - 1, D - 1)] } else { 0.0 };
+            let lateral = |block: &Block<D>| 0.5 * (block[(U, U)] + block[(V, V)]);
+            let twist = |block: &Block<D>| self.freedoms.twist().map_or(0.0, |twist| block[(twist, twist)]);
             GroupCompliance {
                 lateral: of_lanes(&|block, _| lateral(block)),
                 surface: of_lanes(&|block, radius| lateral(block) + radius * radius * twist(block)),
@@ -303,7 +303,7 @@ impl<const D: usize> Forces<D> {
         for (group, _) in contact.touching() {
             let (x, before) = (&x.groups()[group], &before.groups()[group]);
             let change: [Four; D] = std::array::from_fn(|dof| x[dof] - before[dof]);
-            let lateral = change[0].abs().max(change[1].abs());
+            let lateral = change[U].abs().max(change[V].abs());
             most[0] = lateral.max(most[0]);
             let faster = change.map(|change| change * Four::splat(speed));
             let rates = std::array::from_fn(|dof| rates(group, dof));
@@ -324,12 +324,13 @@ impl<const D: usize> Forces<D> {
         change: &[Four; D],
     ) -> Four {
         let (site, zero) = (&self.sites[group], Four::splat(0.0));
-        let radius_squared = x[0].mul_add(x[0], x[1] * x[1]);
+        let (along_u, along_v) = (x[U], x[V]);
+        let radius_squared = along_u.mul_add(along_u, along_v * along_v);
         let touches = radius_squared.greater_than(site.clearance * site.clearance);
         let per_radius = Four::splat(1.0) / Four::select(touches, radius_squared, Four::splat(1.0)).sqrt();
         let surface_speed = |rates: &[Four; D], rotation_speed: Four| {
-            let twist = if self.has_twist { rotation_speed + rates[D - 1] } else { rotation_speed };
-            twist.mul_add(site.contact_radius, (x[0] * rates[1] - x[1] * rates[0]) * per_radius)
+            let twist = self.freedoms.twist().map_or(rotation_speed, |twist| rotation_speed + rates[twist]);
+            twist.mul_add(site.contact_radius, (along_u * rates[V] - along_v * rates[U]) * per_radius)
         };
         let slope = self.parameters.friction_slope(surface_speed(v, Four::splat(self.rotation_speed)));
         Four::select(touches, (slope * surface_speed(change, zero)).abs(), zero)
@@ -346,7 +347,7 @@ impl<const D: usize> Forces<D> {
         out: &mut GroupContact,
         forces: &mut [Four; D],
     ) {
-        let (site, u, v) = (&self.sites[group], x[0], x[1]);
+        let (site, u, v) = (&self.sites[group], x[U], x[V]);
         let radius_squared = u.mul_add(u, v * v);
         // Most groups are far from the wall: their rates are not even looked at.
         if !radius_squared.greater_than(site.clearance * site.clearance).any() {
@@ -358,9 +359,9 @@ impl<const D: usize> Forces<D> {
         let motion = LateralMotion {
             u,
             v,
-            u_rate: rates(group, 0),
-            v_rate: rates(group, 1),
-            theta_z_rate: if self.has_twist { rates(group, D - 1) } else { Four::splat(0.0) },
+            u_rate: rates(group, U),
+            v_rate: rates(group, V),
+            theta_z_rate: self.freedoms.twist().map_or(Four::splat(0.0), |twist| rates(group, twist)),
         };
         let contact = law(group, &motion, out);
         let touches = contact.penetration.greater_than(Four::splat(0.0));
@@ -374,10 +375,10 @@ impl<const D: usize> Forces<D> {
             sliding_speed: contact.sliding_speed,
             radius,
         };
-        forces[0] = forces[0] + contact.force_u;
-        forces[1] = forces[1] + contact.force_v;
-        if self.has_twist {
-            forces[D - 1] = forces[D - 1] + contact.torque_z;
+        forces[U] = forces[U] + contact.force_u;
+        forces[V] = forces[V] + contact.force_v;
+        if let Some(twist) = self.freedoms.twist() {
+            forces[twist] = forces[twist] + contact.torque_z;
         }
     }
 }

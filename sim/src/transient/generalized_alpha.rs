@@ -3,6 +3,7 @@
 use super::forces::{ContactForces, Forces};
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
+use crate::freedom::Freedoms;
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
@@ -128,8 +129,8 @@ impl<const D: usize> GeneralizedAlpha<D> {
                 let sum = |[of_x, of_v, of_a]: [Four; 3]| of_a.mul_add(a0, of_v.mul_add(v0, of_x * x0));
                 acceleration_offset[i][dof] = sum(c.acceleration);
                 velocity_offset[i][dof] = sum(c.velocity);
-                // The predictor is for the contacts alone, which ask for the lateral motion and the twist.
-                if dof < 2 || dof + 1 == D {
+                // The predictor is for the contacts alone.
+                if Freedoms::<D>::concerns_contact(dof) {
                     x[i][dof] = c.step_to_level.mul_add(c.half_step.mul_add(a0, v0), x0);
                     v[i][dof] = c.step_to_level.mul_add(a0, v0);
                 }

@@ -9,6 +9,7 @@
 //! have to settle is what nodes do to each other.
 
 use super::forces::{Compliance, ContactForces, Forces, SweepChange};
+use crate::freedom::LATERAL;
 use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric};
 use crate::model::NodalVector;
 use crate::motion::DynamicSystem;
@@ -265,7 +266,7 @@ pub(super) fn multiply_add<const D: usize>(
 
 /// The largest difference of a lateral displacement \[m\].
 pub(super) fn largest_change<const D: usize>(new: &NodalField<D>, old: &NodalField<D>) -> f64 {
-    let mut largest = [Four::splat(0.0); 2];
+    let mut largest = [Four::splat(0.0); LATERAL];
     for (new, old) in new.groups().iter().zip(old.groups()) {
         for (dof, largest) in largest.iter_mut().enumerate() {
             *largest = (new[dof] - old[dof]).abs().max(*largest);

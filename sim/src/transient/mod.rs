@@ -34,6 +34,7 @@ pub use records::{ContactStatistics, NodeHistory};
 use serde::{Deserialize, Serialize};
 
 use crate::control::Control;
+use crate::freedom::Freedoms;
 use crate::model::Model;
 use crate::modes::UndampedTorsion;
 use crate::scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
@@ -125,9 +126,13 @@ impl<'m> Transient<'m> {
         let resolving_step = resolving_step(model, equilibrium);
         let start = Start { rest, normal_force: &equilibrium.normal_force, resolving_step };
         Ok(Self(match *system.moving() {
-            [a, b, c, d] => Solved::Four(Box::new(Run::new(model, &system, [a, b, c, d], start)?)),
-            [a, b, c, d, e] => Solved::Five(Box::new(Run::new(model, &system, [a, b, c, d, e], start)?)),
-            _ => Solved::Six(Box::new(Run::new(model, &system, system.dofs, start)?)),
+            [a, b, c, d] => {
+                Solved::Four(Box::new(Run::new(model, &system, Freedoms::new([a, b, c, d]), start)?))
+            }
+            [a, b, c, d, e] => {
+                Solved::Five(Box::new(Run::new(model, &system, Freedoms::new([a, b, c, d, e]), start)?))
+            }
+            _ => Solved::Six(Box::new(Run::new(model, &system, Freedoms::ALL, start)?)),
         }))
     }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::forces::NodeContact;
+use crate::freedom::{DOFS, THETA_Z, U, V, W};
 
 /// Motion of one node at the recording rate; sample k is at k / rate. Displacements \[m, rad\] in the node's frame,
 /// counted from the centre line; theta_z is the twist on top of the rotation.
@@ -52,16 +53,16 @@ impl NodeHistory {
         }
     }
 
-    /// Adds a sample of all six degrees of freedom.
-    pub(super) fn push(&mut self, x: &[f64; 6], v: &[f64; 6]) {
-        self.u.push(x[0]);
-        self.v.push(x[1]);
-        self.w.push(x[2]);
-        self.theta_z.push(x[5]);
-        self.u_rate.push(v[0]);
-        self.v_rate.push(v[1]);
-        self.w_rate.push(v[2]);
-        self.theta_z_rate.push(v[5]);
+    /// Adds a sample of all degrees of freedom.
+    pub(super) fn push(&mut self, x: &[f64; DOFS], v: &[f64; DOFS]) {
+        self.u.push(x[U]);
+        self.v.push(x[V]);
+        self.w.push(x[W]);
+        self.theta_z.push(x[THETA_Z]);
+        self.u_rate.push(v[U]);
+        self.v_rate.push(v[V]);
+        self.w_rate.push(v[W]);
+        self.theta_z_rate.push(v[THETA_Z]);
     }
 }
 

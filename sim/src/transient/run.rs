@@ -19,6 +19,7 @@ use super::records::{ContactStatistics, NodeHistory};
 use super::rk4::{self, Rk4};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
+use crate::freedom::{DOFS, Freedoms, U, V};
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
@@ -120,11 +121,11 @@ enum Stepper<const D: usize> {
 }
 
 impl<'m, const D: usize> Run<'m, D> {
-    /// A run of the degrees of freedom `dofs` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
+    /// A run of the degrees of freedom `freedoms` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
     pub(super) fn new(
         model: &'m Model,
         system: &DynamicSystem,
-        dofs: [usize; D],
+        freedoms: Freedoms<D>,
         Start { rest, normal_force, resolving_step }: Start<'_>,
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
@@ -134,9 +135,9 @@ impl<'m, const D: usize> Run<'m, D> {
             Integrator::Rk4 => stability::rk4_limit(model, system)?,
             _ => f64::INFINITY,
         };
-        let system = system.reduced_to(dofs);
+        let system = system.reduced_to(freedoms);
         let forces = Forces::new(model, &system);
-        let initial: NodalVector<D> = rest.iter().map(|rest| dofs.map(|dof| rest[dof])).collect();
+        let initial: NodalVector<D> = rest.iter().map(|rest| freedoms.of(rest)).collect();
         let start = NodalField::from_nodes(&initial);
         let initial = &initial;
         let ledger = Ledger::new(model, &system, initial);
@@ -317,7 +318,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let Progress { contacts, state, .. } = &mut self.progress;
         let (x, sticking_speed) = (&state.displacement, self.model.scenario.contact.friction_reference_speed);
         self.contact.each_node(contacts.len(), |node, contact| {
-            contacts[node].observe([x[(node, 0)], x[(node, 1)]], &contact, sticking_speed, durations);
+            contacts[node].observe([x[(node, U)], x[(node, V)]], &contact, sticking_speed, durations);
         });
     }
 
@@ -342,7 +343,7 @@ impl<'m, const D: usize> Run<'m, D> {
             for history in histories {
                 push(
                     history,
-                    &self.system.dofs,
+                    self.system.freedoms,
                     &self.rest,
                     &state.displacement.node(history.node),
                     &state.velocity.node(history.node),
@@ -374,7 +375,7 @@ impl<'m, const D: usize> Run<'m, D> {
                     }
                     _ => (end[0], end[1]),
                 };
-                push(history, &self.system.dofs, &self.rest, &x, &v);
+                push(history, self.system.freedoms, &self.rest, &x, &v);
             }
         }
     }
@@ -467,11 +468,11 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         let (x, v) = (&state.displacement, &state.velocity);
         for node in 0..x.nodes() {
-            let speed_squared = v[(node, 0)] * v[(node, 0)] + v[(node, 1)] * v[(node, 1)];
+            let speed_squared = v[(node, U)] * v[(node, U)] + v[(node, V)] * v[(node, V)];
             if speed_squared > highest_speed {
                 (fastest, highest_speed) = (node, speed_squared);
             }
-            let radius_squared = x[(node, 0)] * x[(node, 0)] + x[(node, 1)] * x[(node, 1)];
+            let radius_squared = x[(node, U)] * x[(node, U)] + x[(node, V)] * x[(node, V)];
             if radius_squared > bound * bound {
                 let radius = radius_squared.sqrt();
                 return Err(self.diverged(node, DivergenceReason::OutsideHole { radius, hole_radius }));
@@ -526,20 +527,14 @@ fn ledger_rows(samples: u64, every: u64) -> usize {
     (samples / every) as usize + 2
 }
 
-/// Adds a sample to a history: the degrees of freedom `dofs` as they move, the others at rest.
+/// Adds a sample to a history: the degrees of freedom `freedoms` as they move, the others at rest.
 fn push<const D: usize>(
     history: &mut NodeHistory,
-    dofs: &[usize; D],
+    freedoms: Freedoms<D>,
     rest: &NodalVector,
     x: &[f64; D],
     v: &[f64; D],
 ) {
-    let all = |values: &[f64; D], held: [f64; 6]| {
-        dofs.iter().zip(values).fold(held, |mut all, (&dof, value)| {
-            all[dof] = *value;
-            all
-        })
-    };
     let at_rest = rest[history.node];
-    history.push(&all(x, at_rest), &all(v, [0.0; 6]));
+    history.push(&freedoms.among(x, at_rest), &freedoms.among(v, [0.0; DOFS]));
 }

@@ -5,6 +5,7 @@ use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
 use crate::contact::ContactNode;
 use crate::effect::Account;
+use crate::freedom::{DOFS, LATERAL, THETA_Z, U, V};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::Model;
 use crate::motion::DynamicSystem;
@@ -113,45 +114,47 @@ fn sweep_factor(
             let lateral = stiffness * node.stiffness_share + damping * node.damping_share + friction;
             let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
             [
-                (lateral, own(0.5 * (inverse[(0, 0)] + inverse[(1, 1)]))),
-                (friction * radius * radius, own(inverse[(5, 5)])),
+                (lateral, own(0.5 * (inverse[(U, U)] + inverse[(V, V)]))),
+                (friction * radius * radius, own(inverse[(THETA_Z, THETA_Z)])),
             ]
         })
         .collect();
     let solver = Factor::new(&matrix)?;
-    let mut x: Vec<[f64; 6]> =
-        (0..model.node_count())
-            .map(|node| {
-                if node % 2 == 0 { [1.0, 0.7, 0.0, 0.0, 0.0, 5.0] } else { [-0.9, -0.6, 0.0, 0.0, 0.0, 4.0] }
-            })
-            .collect();
+    let mut x: Vec<[f64; DOFS]> = (0..model.node_count())
+        .map(|node| {
+            if node % 2 == 0 {
+                lateral_and_twist([1.0, 0.7], 5.0)
+            } else {
+                lateral_and_twist([-0.9, -0.6], 4.0)
+            }
+        })
+        .collect();
     let mut forces = x.clone();
     let (mut factor, mut node) = (0.0, 0);
     for _ in 0..SWEEP_ITERATIONS {
         let pushed = |(slope, own): (f64, f64), x: f64| slope / slope.mul_add(own, 1.0) * x;
         for (((force, x), &[lateral, twist]), held) in forces.iter_mut().zip(&x).zip(&sites).zip(&system.held)
         {
-            *force = [pushed(lateral, x[0]), pushed(lateral, x[1]), 0.0, 0.0, 0.0, pushed(twist, x[5])];
+            *force =
+                lateral_and_twist([pushed(lateral, x[U]), pushed(lateral, x[V])], pushed(twist, x[THETA_Z]));
             for (value, _) in force.iter_mut().zip(held).filter(|(_, held)| **held) {
                 *value = 0.0;
             }
         }
         // The held top node never touches.
-        forces[0] = [0.0; 6];
+        forces[0] = [0.0; DOFS];
         x.clone_from_slice(&forces);
         solver.solve_in_place(&mut x);
         for ((x, force), &[(_, lateral), (_, twist)]) in x.iter_mut().zip(&forces).zip(&sites) {
-            *x = [
-                x[0] - lateral * force[0],
-                x[1] - lateral * force[1],
-                0.0,
-                0.0,
-                0.0,
-                x[5] - twist * force[5],
-            ];
+            *x = lateral_and_twist(
+                [x[U] - lateral * force[U], x[V] - lateral * force[V]],
+                x[THETA_Z] - twist * force[THETA_Z],
+            );
         }
         // Twist counts by the way of the surface.
-        let size = |(x, node): (&[f64; 6], &MeshNode)| x[0].hypot(x[1]).max(node.contact_radius * x[5].abs());
+        let size = |(x, node): (&[f64; DOFS], &MeshNode)| {
+            x[U].hypot(x[V]).max(node.contact_radius * x[THETA_Z].abs())
+        };
         (node, factor) = x
             .iter()
             .zip(&model.mesh.nodes)
@@ -164,6 +167,13 @@ fn sweep_factor(
         x.as_flattened_mut().iter_mut().for_each(|value| *value /= factor);
     }
     Ok((factor, node))
+}
+
+/// What contact concerns of a node; zero where it does not.
+fn lateral_and_twist([u, v]: [f64; LATERAL], twist: f64) -> [f64; DOFS] {
+    let mut values = [0.0; DOFS];
+    (values[U], values[V], values[THETA_Z]) = (u, v, twist);
+    values
 }
 
 /// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and from the fastest decay
@@ -186,9 +196,9 @@ fn largest_ratio(
 ) -> Result<f64, SingularBlock> {
     let mass = mass_factor(system)?;
     let n = model.node_count();
-    let mut x: Vec<[f64; 6]> =
+    let mut x: Vec<[f64; DOFS]> =
         (0..n).map(|i| std::array::from_fn(|dof| if (i + dof) % 2 == 0 { 1.0 } else { -0.9 })).collect();
-    let mut product = vec![[0.0; 6]; n];
+    let mut product = vec![[0.0; DOFS]; n];
     let mut largest = 0.0;
     for _ in 0..POWER_ITERATIONS {
         for (x, held) in x.iter_mut().zip(&system.held) {
@@ -198,8 +208,8 @@ fn largest_ratio(
         }
         matrix.multiply_into(&x, &mut product);
         for (node, site) in model.wall.touchable() {
-            product[node][0] += closed(site) * x[node][0];
-            product[node][1] += closed(site) * x[node][1];
+            product[node][U] += closed(site) * x[node][U];
+            product[node][V] += closed(site) * x[node][V];
         }
         largest = dot(&x, &product) / mass_norm(&system.mass, &x);
         mass.solve_in_place(&mut product);
@@ -214,12 +224,12 @@ fn largest_ratio(
     Ok(largest)
 }
 
-fn mass_norm(mass: &BlockTridiagonal, x: &[[f64; 6]]) -> f64 {
-    let mut product = vec![[0.0; 6]; x.len()];
+fn mass_norm(mass: &BlockTridiagonal, x: &[[f64; DOFS]]) -> f64 {
+    let mut product = vec![[0.0; DOFS]; x.len()];
     mass.multiply_into(x, &mut product);
     dot(x, &product)
 }
 
-fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+fn dot(a: &[[f64; DOFS]], b: &[[f64; DOFS]]) -> f64 {
     a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| a * b).sum()
 }

@@ -1,6 +1,7 @@
 //! What is kept of a run: what users read of it, node by node.
 
 use super::Quantity;
+use crate::freedom::{U, V};
 use crate::model::Model;
 use crate::scenario::{TimeStepping, TimeWindow};
 use crate::signal::{FullSpectrum, Window, full_spectrum, orbit_statistics, sample_range};
@@ -88,7 +89,7 @@ impl Measure {
             energy: TransientSummary::new(model, records).energy_residual_ratio,
             error_estimate: records.error.relative,
             hole_radius: 0.5 * scenario.well.hole_diameter,
-            position: nodes.map(|(node, x)| (node.measured_depth, [x[0], x[1]])).collect(),
+            position: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),
             friction: elements
                 .map(|(element, flow)| (element.top + element.length, flow.friction_coefficient))
                 .collect(),

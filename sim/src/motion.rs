@@ -1,7 +1,9 @@
 //! The linear part of the equations of motion about an equilibrium: M a + C v + K x = F (equation (37)).
 
 use crate::beam::ElementMatrix;
-use crate::effect::{Account, ElementInMotion, MotionTerms, room};
+use crate::effect::{
+    Account, DAMPING, ElementInMotion, MotionTerms, UnbalanceForce, place_of_damping, room, unbalance,
+};
 use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
@@ -23,8 +25,8 @@ pub struct DynamicSystem<const D: usize = DOFS> {
     pub damping: BlockTridiagonal<D>,
     /// Everything that multiplies displacements.
     pub stiffness: BlockTridiagonal<D>,
-    /// The parts of `damping` by the account of the energy ledger that their work belongs to, in the order of [`Account::ALL`].
-    damping_of: [BlockTridiagonal<D>; Account::ALL.len()],
+    /// The parts of `damping` by the account of the energy ledger that their work belongs to, in the order of [`DAMPING`].
+    damping_of: [BlockTridiagonal<D>; DAMPING.len()],
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
     pub load: NodalVector<D>,
@@ -36,23 +38,12 @@ pub struct DynamicSystem<const D: usize = DOFS> {
     pub held: Vec<[bool; D]>,
 }
 
-/// A force of constant size that turns with the string.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UnbalanceForce {
-    /// Node, from 0.
-    pub node: usize,
-    /// m_u d Omega^2 \[N\].
-    pub amplitude: f64,
-    /// Phase alpha_u \[rad\].
-    pub phase: f64,
-}
-
 impl Model {
     /// Assembles the equations of motion about an equilibrium.
     pub fn dynamic_system(&self, equilibrium: &Equilibrium) -> DynamicSystem {
         let n = self.node_count();
         let [mut mass, mut stiffness, mut damping] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
-        let mut damping_of: [_; Account::ALL.len()] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
+        let mut damping_of: [_; DAMPING.len()] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
         for (e, element) in self.elements.iter().enumerate() {
             let (tension, torque) = (equilibrium.tension[e], equilibrium.torque[e]);
             let to_nodes = |m: &ElementMatrix| element.chord.matrix_to_nodes(m);
@@ -101,29 +92,14 @@ impl Model {
             stiffness,
             damping_of,
             load,
-            unbalance: self.unbalance_forces(),
+            unbalance: if self.effects.unbalance {
+                unbalance::forces(&self.mesh.nodes, self.rotation_speed)
+            } else {
+                Vec::new()
+            },
             rotation_speed: self.rotation_speed,
             held,
         }
-    }
-
-    fn unbalance_forces(&self) -> Vec<UnbalanceForce> {
-        if !self.effects.unbalance {
-            return Vec::new();
-        }
-        let omega2 = self.rotation_speed * self.rotation_speed;
-        self.mesh
-            .nodes
-            .iter()
-            .enumerate()
-            .flat_map(|(node, data)| {
-                data.unbalance.iter().map(move |mass| UnbalanceForce {
-                    node,
-                    amplitude: mass.moment * omega2,
-                    phase: mass.phase,
-                })
-            })
-            .collect()
     }
 
     fn held_in_motion(&self) -> Vec<[bool; DOFS]> {
@@ -143,8 +119,8 @@ impl Model {
 
 impl<const D: usize> DynamicSystem<D> {
     /// The part of `damping` whose work belongs to an account of the energy ledger.
-    pub fn damping_of(&self, account: Account) -> &BlockTridiagonal<D> {
-        &self.damping_of[account as usize]
+    pub fn damping_of(&self, account: &Account) -> &BlockTridiagonal<D> {
+        &self.damping_of[place_of_damping(Some(account))]
     }
 }
 

@@ -124,8 +124,26 @@ fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
         }
         let last = records.energy.last().unwrap();
         // Without friction the unbalance is what drives; the residual is the method's own error.
-        assert!(last.residual.abs() < 0.02 * last.work_unbalance.abs().max(last.kinetic), "{last:?}");
+        assert!(last.residual.abs() < 0.02 * last["work_unbalance"].abs().max(last.kinetic), "{last:?}");
     }
+}
+
+#[test]
+fn sliding_dissipates_at_all_times_only_where_friction_also_turns_the_string() {
+    // Friction drives a rotor backwards along its wall.
+    let dissipated = |torque: Switch| {
+        let mut scenario = preset("hard/dry-friction-whirl").unwrap();
+        scenario.effects.set(Effect::FrictionTorque, torque);
+        let (records, _) = run(&scenario);
+        let last = records.energy.last().unwrap();
+        assert!(last.residual.abs() < 0.02 * last.turned_over(), "{last:?}");
+        records.energy.iter().map(|row| row["dissipated_friction"]).collect::<Vec<_>>()
+    };
+    let both = dissipated(Switch::On);
+    assert!(both.is_sorted() && *both.last().unwrap() > 0.0, "{both:?}");
+    // The force alone does work on the whirl that no drive gives.
+    let force_alone = dissipated(Switch::Off);
+    assert!(*force_alone.last().unwrap() < 0.0, "{force_alone:?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::spread;
 use drillsweep_sim::study::errors::OtherMember;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{NodeHistory, Records};
+use drillsweep_sim::transient::{EnergyRow, NodeHistory, Records};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{self, Variant, tables};
 use drillsweep_table::{Column, Quantity, Table};
@@ -276,20 +276,10 @@ fn contacts(model: &Model, records: &Records) -> Table {
 }
 
 fn energy(records: &Records) -> Table {
-    let rows = &records.energy;
     let mut table = Table::default();
-    numbers(&mut table, &TIME, rows.iter().map(|row| row.time));
-    numbers(&mut table, &KINETIC, rows.iter().map(|row| row.kinetic));
-    numbers(&mut table, &STORED, rows.iter().map(|row| row.stored));
-    numbers(&mut table, &WORK_UNBALANCE, rows.iter().map(|row| row.work_unbalance));
-    numbers(&mut table, &WORK_ROTATION, rows.iter().map(|row| row.work_rotation));
-    numbers(&mut table, &WORK_FLOW, rows.iter().map(|row| row.work_flow));
-    numbers(&mut table, &DISSIPATED_STRUCTURE, rows.iter().map(|row| row.dissipated_structure));
-    numbers(&mut table, &DISSIPATED_FLUID, rows.iter().map(|row| row.dissipated_fluid));
-    numbers(&mut table, &DISSIPATED_FRICTION, rows.iter().map(|row| row.dissipated_friction));
-    numbers(&mut table, &DISSIPATED_CONTACT, rows.iter().map(|row| row.dissipated_contact));
-    numbers(&mut table, &CONTACT_WORK, rows.iter().map(|row| row.contact_work));
-    numbers(&mut table, &RESIDUAL, rows.iter().map(|row| row.residual));
+    for column in EnergyRow::COLUMNS {
+        table.push(column, Column::Number(records.energy.iter().map(|row| row[column]).collect()));
+    }
     table
 }
 

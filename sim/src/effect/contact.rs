@@ -1,10 +1,33 @@
-//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::contact`].
+//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::contact`], which the time step asks for
+//! four nodes side by side.
 
 use super::scene::yes;
-use super::{Call, Room, Scene};
+use super::{Account, Call, Room, Scene};
+use crate::freedom::LATERAL;
+use crate::linalg::Lane;
 
 pub(super) const ROOM: Room = Room::new(called_for);
 
+/// Energy dissipated by the contacts' dampers: what the wall takes from the motion along its normals and does not store.
+pub(super) const DISSIPATED: Account =
+    Account::taken("dissipated_contact", |booked| -booked.nodal.normal_contact - booked.wall);
+
+/// Work of the wall's normal and friction forces on the motion: what the ledger's residual is compared with.
+pub(crate) const WORK: Account =
+    Account::beside("contact_work", |booked| booked.nodal.normal_contact + booked.nodal.friction);
+
 fn called_for(_: &Scene<'_>) -> Call {
     yes("the string may reach the wall; while it does not, only the distance is looked at")
+}
+
+/// Power \[W\] of a normal force \[N\] on a node's motion, along the radius at the distance \[m\] from the axis that it was evaluated
+/// at.
+#[inline(always)]
+pub(crate) fn power<L: Lane>(
+    normal_force: L,
+    distance: L,
+    [u, v]: [L; LATERAL],
+    [u_rate, v_rate]: [L; LATERAL],
+) -> L {
+    -(normal_force / distance * u_rate.mul_add(u, v_rate * v))
 }

@@ -6,6 +6,11 @@ use super::{Account, ElementInMotion, MotionTerms, Room};
 pub(super) const ROOM: Room =
     Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(has_flow) };
 
+/// Work done by the flows: of the Coriolis terms, whose symmetric part is where the section changes and at the end, and of the follower
+/// forces in the stiffness, which are those of the [flow](super::flow_stiffness) at its end and of the
+/// [torque](super::torque_stiffening).
+pub(super) const WORK: Account = Account::given("work_flow", |booked| booked.matrices + booked.follower);
+
 /// To first order the Coriolis term c changes w by c k / (2 m w).
 fn frequency_change(wave: &LateralWave) -> f64 {
     wave.flow.map_or(f64::INFINITY, |flow| {
@@ -16,5 +21,5 @@ fn frequency_change(wave: &LateralWave) -> f64 {
 fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     let Some(momentum) = element.momentum else { return };
     let matrix = element.chord.matrix_to_nodes(&element.beam.coriolis()) * momentum.coriolis;
-    terms.add_damping(Account::Flow, matrix);
+    terms.add_damping(Some(&WORK), matrix);
 }

@@ -5,7 +5,11 @@ use super::{Account, ElementInMotion, MotionTerms, Room};
 
 pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(has_mud) };
 
+/// Energy dissipated by the mud: int v^T (mud damping) v dt.
+pub(super) const DISSIPATED: Account = Account::taken("dissipated_fluid", |booked| booked.matrices);
+
 fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     let Some(flow) = element.flow else { return };
-    terms.add_damping(Account::Mud, element.lateral_mass * (flow.friction_damping + flow.rotation_damping));
+    let matrix = element.lateral_mass * (flow.friction_damping + flow.rotation_damping);
+    terms.add_damping(Some(&DISSIPATED), matrix);
 }

@@ -1,7 +1,7 @@
 //! Gyroscopic coupling of the lateral rotations: without it forward and backward whirl have the same frequency.
 
 use super::scene::{LateralWave, no, yes};
-use super::{Account, Call, ElementInMotion, MotionTerms, Room, Scene};
+use super::{Call, ElementInMotion, MotionTerms, Room, Scene};
 
 pub(super) const ROOM: Room =
     Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(called_for) };
@@ -17,5 +17,6 @@ fn frequency_change(wave: &LateralWave) -> f64 {
 
 fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     let matrix = element.beam.gyroscopic(element.rotation_speed);
-    terms.add_damping(Account::NoWork, element.chord.matrix_to_nodes(&matrix));
+    // Skew, so that it does no work.
+    terms.add_damping(None, element.chord.matrix_to_nodes(&matrix));
 }

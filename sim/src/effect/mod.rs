@@ -2,38 +2,72 @@
 //!
 //! A `Room` holds what is an effect's own: whether a scene calls for it and why, what it adds to an element at rest and in motion,
 //! which degree of freedom it lets move, and by how much it is estimated to change frequencies. The element, the equations of motion and
-//! the decisions go over the rooms of the effects that are on; the energy ledger goes by the [`Account`]s under which they add their
-//! damping. What pushes single nodes stands where it is evaluated: the law of wall and friction in [`crate::contact`], which the time step
-//! asks for four nodes side by side, the unbalance in [`crate::motion`].
+//! the decisions go over the rooms of the effects that are on. Beside it stand the effect's nodal forces with their power, and the
+//! [`Account`] of the energy ledger that tells of its work; the ledger goes over [`ACCOUNTS`]. Only the law of wall and friction stands
+//! elsewhere, in [`crate::contact`], which the time step asks for four nodes side by side.
 
+mod account;
 mod axial_motion;
 mod axial_stiffening;
 mod buoyancy;
-mod contact;
+pub(crate) mod contact;
 mod decide;
 mod flow_stiffness;
 mod fluid_added_mass;
 mod fluid_coriolis;
 mod fluid_damping;
-mod friction;
-mod friction_torque;
+pub(crate) mod friction;
+pub(crate) mod friction_torque;
 mod gyroscopic;
 pub(crate) mod mud_drag;
 mod scene;
-mod structural_damping;
+pub(crate) mod structural_damping;
 mod terms;
 mod torque_stiffening;
 mod torsion;
 mod transient;
-mod unbalance;
+pub(crate) mod unbalance;
 mod well_bending;
 
+pub use account::{Account, Booked, NodalWork, Side};
 pub use decide::EffectDecision;
 pub use scene::{Call, Scene};
-pub use terms::{Account, ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
+pub use terms::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
+pub use unbalance::UnbalanceForce;
 
 use crate::scenario::Effect;
 use scene::LateralWave;
+
+/// The accounts of the energy ledger, in the order of its columns.
+pub const ACCOUNTS: [&Account; 8] = [
+    &unbalance::WORK,
+    &friction_torque::ROTATION,
+    &fluid_coriolis::WORK,
+    &structural_damping::DISSIPATED,
+    &fluid_damping::DISSIPATED,
+    &friction::DISSIPATED,
+    &contact::DISSIPATED,
+    &contact::WORK,
+];
+
+/// The accounts of the matrices that multiply velocities, in the order in which these are summed up; `None` is that of skew ones, which do
+/// no work.
+pub const DAMPING: [Option<&Account>; 4] = [
+    Some(&structural_damping::DISSIPATED),
+    None,
+    Some(&fluid_damping::DISSIPATED),
+    Some(&fluid_coriolis::WORK),
+];
+
+/// Where in [`DAMPING`] an account stands.
+///
+/// # Panics
+/// When it does not: an effect that adds such a matrix has its account there.
+pub(crate) fn place_of_damping(account: Option<&Account>) -> usize {
+    let name = account.map(|account| account.name);
+    let place = DAMPING.iter().position(|other| other.map(|other| other.name) == name);
+    place.unwrap_or_else(|| panic!("the account {name:?} is not among those of damping"))
+}
 
 /// What an effect brings.
 #[derive(Clone, Copy)]
@@ -97,5 +131,35 @@ pub(crate) const fn room(effect: Effect) -> Room {
         Effect::Torsion => torsion::ROOM,
         Effect::AxialMotion => axial_motion::ROOM,
         Effect::Transient => transient::ROOM,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_account_has_a_name_of_its_own_and_one_place_in_the_ledger() {
+        for (i, account) in ACCOUNTS.iter().enumerate() {
+            assert_eq!(
+                ACCOUNTS.iter().position(|other| other.name == account.name),
+                Some(i),
+                "{}",
+                account.name
+            );
+        }
+        for account in DAMPING.into_iter().flatten() {
+            assert!(
+                ACCOUNTS.iter().any(|other| other.name == account.name),
+                "{} has no column",
+                account.name
+            );
+            assert_ne!(
+                account.side,
+                Side::Beside,
+                "{}: what is booked there is not in the balance",
+                account.name
+            );
+        }
     }
 }

@@ -5,6 +5,9 @@ use super::{Account, Call, ElementInMotion, MotionTerms, Room, Scene};
 
 pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(called_for) };
 
+/// Energy dissipated by Rayleigh damping: int v^T C v dt.
+pub(crate) const DISSIPATED: Account = Account::taken("dissipated_structure", |booked| booked.matrices);
+
 fn called_for(scene: &Scene<'_>) -> Call {
     let damping = &scene.scenario.damping;
     if damping.mass_proportional != 0.0 || damping.stiffness_proportional != 0.0 {
@@ -20,5 +23,5 @@ fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     if law.stiffness_proportional != 0.0 {
         matrix += element.structural_stiffness * law.stiffness_proportional;
     }
-    terms.add_damping(Account::Structure, matrix);
+    terms.add_damping(Some(&DISSIPATED), matrix);
 }

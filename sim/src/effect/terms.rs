@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::{Account, DAMPING, place_of_damping};
 use crate::beam::{BeamElement, Chord, ElementMatrix, ElementVector};
 use crate::mud::{ElementFlow, FlowMomentum};
 use crate::scenario::{Mud, RayleighDamping};
@@ -78,37 +79,19 @@ pub struct ElementInMotion<'a> {
     pub flow: Option<&'a ElementFlow>,
 }
 
-/// Where the ledger enters the work of matrices that multiply velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Account {
-    /// Dissipated by the structure.
-    Structure,
-    /// Does no work: the matrix is skew.
-    NoWork,
-    /// Dissipated by the mud.
-    Mud,
-    /// Exchanged with the flows.
-    Flow,
-}
-
-impl Account {
-    /// All accounts, in the order in which matrices are summed up.
-    pub const ALL: [Account; 4] = [Account::Structure, Account::NoWork, Account::Mud, Account::Flow];
-}
-
 /// What effects add to the motion of an element, over nodal values.
 #[derive(Debug, Clone, Default)]
 pub struct MotionTerms {
     /// Mass besides the structure's.
     pub mass: Option<ElementMatrix>,
-    /// What multiplies velocities, by account.
-    pub damping: [Option<ElementMatrix>; Account::ALL.len()],
+    /// What multiplies velocities, by the account of its work, in the order of [`DAMPING`].
+    pub damping: [Option<ElementMatrix>; DAMPING.len()],
 }
 
 impl MotionTerms {
-    /// Adds a matrix that multiplies velocities.
-    pub(super) fn add_damping(&mut self, account: Account, matrix: ElementMatrix) {
-        let sum = &mut self.damping[account as usize];
+    /// Adds a matrix that multiplies velocities, with the account of its work; a skew one does none.
+    pub(super) fn add_damping(&mut self, account: Option<&Account>, matrix: ElementMatrix) {
+        let sum = &mut self.damping[place_of_damping(account)];
         *sum = Some(sum.map_or(matrix, |sum| sum + matrix));
     }
 }

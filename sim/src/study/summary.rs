@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::effect::contact;
 use crate::model::Model;
 use crate::scenario::TimeWindow;
 use crate::signal::{FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
@@ -185,6 +186,7 @@ impl TransientSummary {
             }
         }
         let last = records.energy.last().copied().unwrap_or_default();
+        let contact_work = last.of(&contact::WORK);
         Self {
             orbits,
             spectra,
@@ -200,8 +202,7 @@ impl TransientSummary {
             energy_residual: last.residual,
             energy_residual_of_bound: (records.energy_bound > 0.0)
                 .then(|| last.residual.abs() / records.energy_bound),
-            energy_residual_ratio: (last.contact_work != 0.0)
-                .then(|| last.residual.abs() / last.contact_work.abs()),
+            energy_residual_ratio: (contact_work != 0.0).then(|| last.residual.abs() / contact_work.abs()),
         }
     }
 }

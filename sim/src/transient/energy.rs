@@ -5,13 +5,17 @@
 //! evaluated at step ends instead gives even the wrong sign once contacts chatter. What is left between the
 //! change of energy and the sum of all work is the integration's own error.
 
+use std::ops::Index;
+
 use serde::{Deserialize, Serialize};
 
 use super::forces::ContactForces;
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
 use crate::contact::{ContactNode, Wall};
-use crate::effect::Account;
-use crate::freedom::{Freedoms, U, V};
+use crate::effect::{
+    ACCOUNTS, Account, Booked, DAMPING, NodalWork, Side, contact, friction, friction_torque, unbalance,
+};
+use crate::freedom::{Freedoms, LATERAL, U, V};
 use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
@@ -19,30 +23,29 @@ use crate::motion::DynamicSystem;
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Work {
-    unbalance: f64,
-    normal_contact: f64,
-    friction: f64,
-    rotation: f64,
-    structure: f64,
-    mud: f64,
-    flow: f64,
-    follower_torque: f64,
+    nodal: NodalWork,
+    /// Of the matrices that multiply velocities, in the sense of their accounts' sides, in the order of [`DAMPING`].
+    damping: [f64; WORKING],
+    follower: f64,
 }
 
-impl Work {
-    pub(super) fn add(&mut self, scale: f64, other: &Work) {
-        self.unbalance += scale * other.unbalance;
-        self.normal_contact += scale * other.normal_contact;
-        self.friction += scale * other.friction;
-        self.rotation += scale * other.rotation;
-        self.structure += scale * other.structure;
-        self.mud += scale * other.mud;
-        self.flow += scale * other.flow;
-        self.follower_torque += scale * other.follower_torque;
+/// Number of accounts of damping: those of [`DAMPING`] that do work.
+const WORKING: usize = {
+    let (mut count, mut place) = (0, 0);
+    while place < DAMPING.len() {
+        count += DAMPING[place].is_some() as usize;
+        place += 1;
     }
+    count
+};
+
+/// The accounts of damping.
+fn working() -> impl Iterator<Item = &'static Account> {
+    DAMPING.into_iter().flatten()
 }
 
-/// One row of the ledger; all values \[J\] since the start of the transient.
+/// One row of the ledger; all values but the time \[J\] since the start of the transient. Its columns are asked for by
+/// [name](EnergyRow::COLUMNS).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyRow {
     /// Simulated time \[s\].
@@ -51,28 +54,11 @@ pub struct EnergyRow {
     pub kinetic: f64,
     /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
     pub stored: f64,
-    /// Work done by the unbalance.
-    pub work_unbalance: f64,
-    /// Work done by the imposed rotation against friction, as far as it acts through the contacts.
-    pub work_rotation: f64,
-    /// Work done by the flows (Coriolis and follower forces) and by the follower torque.
-    pub work_flow: f64,
-    /// Energy dissipated by Rayleigh damping.
-    pub dissipated_structure: f64,
-    /// Energy dissipated by the mud.
-    pub dissipated_fluid: f64,
-    /// Energy dissipated by sliding.
-    pub dissipated_friction: f64,
-    /// Energy dissipated by the contacts' dampers.
-    pub dissipated_contact: f64,
-    /// Net work of contact and friction forces on the motion: what the residual is compared with.
-    pub contact_work: f64,
+    /// What the accounts come to, in the order of [`ACCOUNTS`].
+    accounts: [f64; ACCOUNTS.len()],
     /// Change of energy less all work: the integration's own error.
     pub residual: f64,
 }
-
-/// Accounts of the matrices whose work the ledger sums up.
-const LEDGER: [Account; 3] = [Account::Structure, Account::Mud, Account::Flow];
 
 /// Share of the energy turned over that a run may leave over. A tenth is a coarse run's; half of it and more was seen only in runs
 /// whose contact forces no longer fit their motion.
@@ -81,18 +67,60 @@ const LARGEST_RESIDUAL: f64 = 0.5;
 /// Rounding of the ledger's large, cancelling terms relative to their size.
 const ROUNDING: f64 = 1e-10;
 
+/// Columns before those of the accounts.
+const STATE: [&str; 3] = ["time", "kinetic", "stored"];
+
 impl EnergyRow {
+    /// The names of the columns, in their order: time, kinetic and stored energy, the accounts, and the residual.
+    pub const COLUMNS: [&'static str; STATE.len() + ACCOUNTS.len() + 1] = {
+        let mut columns = ["residual"; STATE.len() + ACCOUNTS.len() + 1];
+        let mut place = 0;
+        while place < columns.len() - 1 {
+            columns[place] =
+                if place < STATE.len() { STATE[place] } else { ACCOUNTS[place - STATE.len()].name };
+            place += 1;
+        }
+        columns
+    };
+
+    /// What an account comes to \[J\].
+    pub(crate) fn of(&self, account: &Account) -> f64 {
+        self[account.name]
+    }
+
     /// Energy that the vibration has turned over \[J\]: what it holds and all work done on it, without what the drive passes straight
     /// on to steady sliding.
     pub fn turned_over(&self) -> f64 {
-        self.kinetic
-            + self.stored.abs()
-            + self.work_unbalance.abs()
-            + self.work_flow.abs()
-            + self.dissipated_structure
-            + self.dissipated_fluid
-            + self.dissipated_contact.abs()
-            + (self.work_rotation - self.dissipated_friction).abs()
+        let (mut turned_over, mut passed_on) = (self.kinetic + self.stored.abs(), 0.0);
+        for (account, value) in ACCOUNTS.into_iter().zip(self.accounts) {
+            if account.is_passed_on {
+                passed_on = account.side.add(passed_on, value);
+            } else if account.side != Side::Beside {
+                turned_over += value.abs();
+            }
+        }
+        turned_over + passed_on.abs()
+    }
+}
+
+impl Index<&str> for EnergyRow {
+    type Output = f64;
+
+    /// The value of a column.
+    ///
+    /// # Panics
+    /// When there is none of that name.
+    fn index(&self, column: &str) -> &f64 {
+        match column {
+            "time" => &self.time,
+            "kinetic" => &self.kinetic,
+            "stored" => &self.stored,
+            "residual" => &self.residual,
+            name => match ACCOUNTS.iter().position(|account| account.name == name) {
+                Some(place) => &self.accounts[place],
+                None => panic!("the ledger has no column {name:?}"),
+            },
+        }
     }
 }
 
@@ -102,8 +130,8 @@ pub(super) struct Ledger<const D: usize> {
     mass: BlockTridiagonal<D>,
     stiffness: BlockTridiagonal<D>,
     load: NodalVector<D>,
-    /// Symmetric: structural damping, mud damping, Coriolis. Skew: follower torque.
-    forms: Forms<3, D>,
+    /// Symmetric: of the accounts of damping. Skew: what in the stiffness has no potential.
+    forms: Forms<WORKING, D>,
     wall: Wall,
     freedoms: Freedoms<D>,
     rotation_speed: f64,
@@ -119,11 +147,13 @@ pub(super) struct Ledger<const D: usize> {
 
 impl<const D: usize> Ledger<D> {
     pub(super) fn new(model: &Model, system: &DynamicSystem<D>, initial: &[[f64; D]]) -> Self {
+        let mut damping = working().map(|account| system.damping_of(account));
+        let damping = std::array::from_fn(|_| damping.next().expect("as many as are counted"));
         let mut ledger = Self {
             mass: system.mass.clone(),
             stiffness: symmetric_part(&system.stiffness),
             load: system.load.clone(),
-            forms: Forms::new(LEDGER.map(|account| system.damping_of(account)), &system.stiffness),
+            forms: Forms::new(damping, &system.stiffness),
             wall: model.wall.clone(),
             freedoms: system.freedoms,
             rotation_speed: system.rotation_speed,
@@ -148,16 +178,16 @@ impl<const D: usize> Ledger<D> {
         velocity: &mut NodalField<D>,
         displacement: &mut NodalField<D>,
         contact: &ContactForces,
-        unbalance: impl Iterator<Item = (usize, [f64; 2])>,
+        unbalance: impl Iterator<Item = (usize, [f64; LATERAL])>,
     ) {
         let power = self.power(velocity, displacement, contact, unbalance);
-        self.work.add(weight, &power);
+        self.work.nodal.add(weight, &power.nodal);
         self.forms.gather(weight, velocity, displacement);
     }
 
     /// Books what a stage's power of contact and unbalance comes to in `weight` seconds.
     pub(super) fn book_power(&mut self, weight: f64, power: &Work) {
-        self.work.add(weight, power);
+        self.work.nodal.add(weight, &power.nodal);
     }
 
     /// Books what the matrices do along stages: the seconds that each counts, its velocities and displacements.
@@ -171,41 +201,41 @@ impl<const D: usize> Ledger<D> {
         velocity: &NodalField<D>,
         displacement: &NodalField<D>,
         contact: &ContactForces,
-        unbalance: impl Iterator<Item = (usize, [f64; 2])>,
+        unbalance: impl Iterator<Item = (usize, [f64; LATERAL])>,
     ) -> Work {
-        let mut power = Work {
-            unbalance: unbalance
-                .map(|(node, force)| velocity[(node, U)] * force[U] + velocity[(node, V)] * force[V])
-                .sum(),
-            ..Work::default()
-        };
         let zero = Four::splat(0.0);
         let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
         for (i, group) in contact.touching() {
             let (x, rates) = (&displacement.groups()[i], &velocity.groups()[i]);
-            let (u, v, u_rate, v_rate) = (x[U], x[V], rates[U], rates[V]);
+            let (u_rate, v_rate) = (rates[U], rates[V]);
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
-            let normal = -(group.normal_force / group.radius * u_rate.mul_add(u, v_rate * v));
+            let normal = contact::power(group.normal_force, group.radius, [x[U], x[V]], [u_rate, v_rate]);
             let twist_power = self.freedoms.twist().map_or(zero, |twist| rates[twist] * group.torque);
             let whole = u_rate.mul_add(group.force[U], v_rate.mul_add(group.force[V], twist_power));
             normal_power = normal_power + normal;
-            friction_power = friction_power + (whole - normal);
+            friction_power = friction_power + friction::power(whole, normal);
             torque = torque + group.torque;
         }
-        power.normal_contact = normal_power.sum();
-        power.friction = friction_power.sum();
-        // The frame turns with Omega: the drive works against the friction torque there.
-        power.rotation = -torque.sum() * self.rotation_speed;
-        power
+        let nodal = NodalWork {
+            unbalance: unbalance::power(unbalance, velocity),
+            normal_contact: normal_power.sum(),
+            friction: friction_power.sum(),
+            rotation: friction_torque::power_of_rotation(torque.sum(), self.rotation_speed),
+        };
+        Work { nodal, ..Work::default() }
     }
 
     /// Adds the work of the stages gathered so far.
     fn settle(&mut self) {
-        let Integrals { symmetric: [structure, mud, coriolis], skew: follower } = self.forms.take();
-        self.work.structure += structure;
-        self.work.mud += mud;
-        self.work.flow -= coriolis;
-        self.work.follower_torque -= follower;
+        // Both forms are what the matrices take from the motion.
+        let Integrals { symmetric, skew } = self.forms.take();
+        for ((work, account), taken) in self.work.damping.iter_mut().zip(working()).zip(symmetric) {
+            *work = match account.side {
+                Side::Taken => *work + taken,
+                Side::Given | Side::Beside => *work - taken,
+            };
+        }
+        self.work.follower -= skew;
     }
 
     /// The books as they stand, to come back to if the steps that follow are rejected.
@@ -235,30 +265,18 @@ impl<const D: usize> Ledger<D> {
         let structure = self.stored(&x) - self.initial_stored;
         let wall = self.stored_by_wall(&x) - self.initial_wall;
         self.motion = [x, v];
-        let work = &self.work;
-        let dissipated_contact = -work.normal_contact - wall;
-        let dissipated_friction = work.rotation - work.friction;
-        let work_flow = work.flow + work.follower_torque;
+        let accounts = ACCOUNTS.map(|account| {
+            let mut damping = working().zip(self.work.damping);
+            let own = damping.find(|(other, _)| other.name == account.name);
+            let Work { nodal, follower, .. } = self.work;
+            (account.value)(&Booked { nodal, matrices: own.map_or(0.0, |(_, work)| work), follower, wall })
+        });
         let gained = kinetic + structure + wall;
-        let balance = work.unbalance + work.rotation + work_flow
-            - work.structure
-            - work.mud
-            - dissipated_friction
-            - dissipated_contact;
-        EnergyRow {
-            time,
-            kinetic,
-            stored: structure + wall,
-            work_unbalance: work.unbalance,
-            work_rotation: work.rotation,
-            work_flow,
-            dissipated_structure: work.structure,
-            dissipated_fluid: work.mud,
-            dissipated_friction,
-            dissipated_contact,
-            contact_work: work.normal_contact + work.friction,
-            residual: gained - balance,
-        }
+        let balance = ACCOUNTS
+            .into_iter()
+            .zip(accounts)
+            .fold(0.0, |sum, (account, value)| account.side.add(sum, value));
+        EnergyRow { time, kinetic, stored: structure + wall, accounts, residual: gained - balance }
     }
 
     /// What a row may leave over \[J\].
@@ -310,4 +328,36 @@ fn dot_node<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 
 fn dot<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot_node(a, b)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_explain_every_column_in_its_order() {
+        let chapter = include_str!("../../../docs/model/motion.md");
+        let (_, table) = chapter.split_once("| column | definition |").unwrap();
+        let explained: Vec<&str> = table
+            .lines()
+            .skip(2)
+            .map_while(|line| line.strip_prefix("| `")?.split_once("` |").map(|(name, _)| name))
+            .collect();
+        assert_eq!(explained, EnergyRow::COLUMNS[1..]);
+    }
+
+    #[test]
+    fn a_row_is_turned_over_by_all_but_what_is_passed_on_or_told_beside() {
+        let accounts = ACCOUNTS.map(|account| match account.name {
+            "work_rotation" => 1000.0,
+            "dissipated_friction" => 990.0,
+            "contact_work" => 1e6,
+            "dissipated_contact" => -3.0,
+            _ => 1.0,
+        });
+        let row = EnergyRow { kinetic: 2.0, stored: -4.0, accounts, ..EnergyRow::default() };
+        // Unbalance, flow, structure and mud count one each.
+        assert_eq!(row.turned_over(), 2.0 + 4.0 + 4.0 + 3.0 + 10.0);
+        assert_eq!((row["dissipated_contact"], row["stored"]), (-3.0, -4.0));
+    }
 }

@@ -132,7 +132,7 @@ impl<const D: usize> Esdirk<D> {
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
             if WEIGHTS[stage] != 0.0 {
-                let unbalance = forces.unbalance_at(stage_time);
+                let unbalance = forces.unbalance.at(stage_time);
                 self.powers[stage] = ledger.power(velocity, displacement, &self.solver.contact, unbalance);
             }
         }

@@ -3,10 +3,11 @@
 use crate::contact::{
     ContactForce, ContactNode, ContactParameters, LateralMotion, Yielding, dynamic_contact, implicit_contact,
 };
+use crate::effect::unbalance::TurningForces;
 use crate::freedom::{Freedoms, U, V};
 use crate::linalg::{Block, Four, Lane, Mask, NodalField};
 use crate::model::Model;
-use crate::motion::{DynamicSystem, UnbalanceForce};
+use crate::motion::DynamicSystem;
 
 /// What the wall does to every node, as of one evaluation: four nodes side by side.
 #[derive(Debug, Clone)]
@@ -139,7 +140,7 @@ impl GroupContact {
 #[derive(Debug, Clone)]
 pub(super) struct Forces<const D: usize> {
     pub(super) load: NodalField<D>,
-    unbalance: Vec<TurningForce>,
+    pub(super) unbalance: TurningForces,
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
     /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
@@ -164,31 +165,13 @@ impl<const D: usize> Forces<D> {
         });
         Self {
             load: NodalField::from_nodes(&system.load),
-            unbalance: system.unbalance.iter().map(TurningForce::new).collect(),
+            unbalance: TurningForces::new(&system.unbalance, system.rotation_speed),
             rotation_speed: system.rotation_speed,
             parameters: model.wall.law().in_lanes(),
             sites: sites.collect(),
             contact: model.effects.contact,
             freedoms: system.freedoms,
         }
-    }
-
-    /// Adds the unbalance at `time` \[s\] to nodal forces.
-    pub(super) fn add_unbalance(&self, time: f64, nodal: &mut NodalField<D>) {
-        for (node, force) in self.unbalance_at(time) {
-            nodal[(node, U)] += force[U];
-            nodal[(node, V)] += force[V];
-        }
-    }
-
-    /// Unbalance forces (u, v) at `time` \[s\] with their nodes. The angle is reduced before the sine, so that late
-    /// times lose no digits.
-    pub(super) fn unbalance_at(&self, time: f64) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
-        let angle = (self.rotation_speed * time).rem_euclid(std::f64::consts::TAU);
-        let (sine, cosine) = angle.sin_cos();
-        self.unbalance.iter().map(move |TurningForce { node, at_start: [u, v] }| {
-            (*node, [u * cosine - v * sine, u * sine + v * cosine])
-        })
     }
 
     /// How the nodes give way to their own contact forces, from the blocks on the diagonal of a stage matrix' inverse.
@@ -380,20 +363,6 @@ impl<const D: usize> Forces<D> {
         if let Some(twist) = self.freedoms.twist() {
             forces[twist] = forces[twist] + contact.torque_z;
         }
-    }
-}
-
-/// An unbalance force: its parts along u and v at the start, which turn with the string.
-#[derive(Debug, Clone, Copy)]
-struct TurningForce {
-    node: usize,
-    at_start: [f64; 2],
-}
-
-impl TurningForce {
-    fn new(force: &UnbalanceForce) -> Self {
-        let (sine, cosine) = force.phase.sin_cos();
-        Self { node: force.node, at_start: [force.amplitude * cosine, force.amplitude * sine] }
     }
 }
 

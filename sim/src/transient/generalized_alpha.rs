@@ -109,7 +109,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
             &mut self.mean_velocity,
             &mut solver.displacement,
             &solver.contact,
-            forces.unbalance_at(level_time),
+            forces.unbalance.at(level_time),
         );
     }
 

@@ -181,7 +181,7 @@ impl<const D: usize> StageSolver<D> {
             velocity_offset,
             &mut self.external,
         );
-        forces.add_unbalance(time, &mut self.external);
+        forces.unbalance.add(time, &mut self.external);
         // The wall does not push the top node, which alone is held here.
         for (&(node, dof), &value) in self.held.iter().zip(&matrix.held_values) {
             self.external[(node, dof)] = value;

@@ -191,7 +191,7 @@ impl<const D: usize> Rk4<D> {
             }
             let stage_time = time + c;
             self.damping_and_stiffness.subtract_products(&forces.load, v, x, &mut self.external);
-            forces.add_unbalance(stage_time, &mut self.external);
+            forces.unbalance.add(stage_time, &mut self.external);
             for &(node, dof) in &self.held {
                 self.external[(node, dof)] = 0.0;
             }
@@ -200,7 +200,7 @@ impl<const D: usize> Rk4<D> {
             self.mass.solve_field(&self.right, &mut self.between, &mut self.rates[stage].1);
             self.rates[stage].0.copy_from(v);
             if let Some(ledger) = &mut ledger {
-                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance_at(stage_time));
+                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance.at(stage_time));
             }
         }
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {

@@ -289,7 +289,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let (mut forces, mut linear) = (NodalField::zeros(n), vec![[0.0; D]; n]);
         let contact = &mut self.contact;
         let mut external = self.forces.load.clone();
-        self.forces.add_unbalance(0.0, &mut external);
+        self.forces.unbalance.add(0.0, &mut external);
         let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
         self.forces.contact_into(&state.displacement, rates, contact, &external, &mut forces);
         let mut right = forces.to_nodes();
@@ -302,7 +302,7 @@ impl<'m, const D: usize> Run<'m, D> {
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
         state.acceleration.copy_from_nodes(&right);
         state.stage_power =
-            self.ledger.power(&state.velocity, &state.displacement, contact, self.forces.unbalance_at(0.0));
+            self.ledger.power(&state.velocity, &state.displacement, contact, self.forces.unbalance.at(0.0));
         self.observe([0.0; 2]);
         Ok(())
     }

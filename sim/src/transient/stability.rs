@@ -4,7 +4,7 @@ use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
 use crate::contact::ContactNode;
-use crate::effect::Account;
+use crate::effect::structural_damping;
 use crate::freedom::{DOFS, LATERAL, THETA_Z, U, V};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::Model;
@@ -183,7 +183,7 @@ pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
     let stiffness = |site: &ContactNode<f64>| contact.stiffness * site.stiffness_share;
     let frequency = largest_ratio(model, system, &system.stiffness, stiffness)?.sqrt();
     let damping = |site: &ContactNode<f64>| contact.unit_damping() * site.damping_share;
-    let decay = largest_ratio(model, system, system.damping_of(Account::Structure), damping)?;
+    let decay = largest_ratio(model, system, system.damping_of(&structural_damping::DISSIPATED), damping)?;
     Ok(RK4_IMAGINARY_LIMIT / frequency.max(decay))
 }
 

@@ -183,10 +183,10 @@ impl Clock {
     }
 }
 
-/// The attempt of the point that it claimed last.
-fn last_attempt(log: &str) -> Option<u64> {
+/// The fencing token of the point that it claimed last.
+fn last_claim(log: &str) -> Option<u64> {
     let line = log.lines().rfind(|line| line.contains("point claimed"))?;
-    line.split("attempt=").nth(1)?.split(|sign: char| !sign.is_ascii_digit()).next()?.parse().ok()
+    line.split("fencing_token=").nth(1)?.split(|sign: char| !sign.is_ascii_digit()).next()?.parse().ok()
 }
 
 #[test]
@@ -207,10 +207,10 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
     for kill in 0..WORKER_KILLS {
         let doomed = &mut workers[kill % 2];
         // A point is given up after three dead workers: none is made to lose more than two.
-        doomed.wait_for(|log| last_attempt(log).filter(|attempt| *attempt <= 2));
+        doomed.wait_for(|log| last_claim(log).filter(|token| *token <= 2));
         // At different stages of the work.
         std::thread::sleep(Duration::from_millis(37 * kill as u64 % 300));
-        doomed.wait_for(|log| last_attempt(log).filter(|attempt| *attempt <= 2));
+        doomed.wait_for(|log| last_claim(log).filter(|token| *token <= 2));
         std::mem::replace(doomed, known_worker(stormy.path())).kill();
         if (kill + 1) % (WORKER_KILLS / SERVER_KILLS) == 0 {
             // Killed while it takes a submission, which is then sent again under the same key.
@@ -304,7 +304,7 @@ fn worker_that_slept_past_its_lease_changes_nothing_when_it_wakes() {
     let (_server, address) = serve(data.path(), None);
     let sweep = submit(&address, &request(6.0, 1, 1));
     let sleeper = known_worker(data.path());
-    sleeper.wait_for(last_attempt);
+    sleeper.wait_for(last_claim);
     sleeper.process.signal(Signal::STOP);
     let _heir = worker(data.path());
     let ended = wait(&address, &sweep, completed);
@@ -391,7 +391,7 @@ fn point_of_a_dead_worker_does_not_wait_for_the_hour_by_which_the_clock_was_set_
     let (_server, address) = clock.serve(data.path());
     let sweep = submit(&address, &request(6.0, 1, 1));
     let mut doomed = clock.worker(data.path());
-    doomed.wait_for(last_attempt);
+    doomed.wait_for(last_claim);
     // Stopped, it cannot renew its lease by the new time.
     doomed.process.signal(Signal::STOP);
     clock.set(-HOUR);

@@ -118,10 +118,10 @@ CREATE TABLE work (
     vtime            INTEGER NOT NULL,
     -- When a retry is due.
     ready_at         INTEGER NOT NULL,
-    -- Fencing token: it never falls.
-    attempt          INTEGER NOT NULL DEFAULT 0,
-    -- What people see: attempts that were not given back untried.
-    starts           INTEGER NOT NULL DEFAULT 0,
+    -- Grows with every claim, and never falls: a write under an older one changes nothing.
+    fencing_token    INTEGER NOT NULL DEFAULT 0,
+    -- How often a worker has started it and not given it back.
+    attempts         INTEGER NOT NULL DEFAULT 0,
     -- Deaths of workers, and failures of disk, object store or database, after which it is given up.
     crash_count      INTEGER NOT NULL DEFAULT 0,
     failure_count    INTEGER NOT NULL DEFAULT 0,

@@ -2,7 +2,7 @@
 //!
 //! The only crate that knows SQL and blobs. It knows nothing of drillstrings: a work item is a 32-byte key, the
 //! text of a scenario, a state. Every write happens in one statement or one immediate transaction, and every
-//! write of a worker carries the attempt that it was given, so that a late worker changes nothing.
+//! write of a worker carries the fencing token that it was given, so that a late worker changes nothing.
 
 mod blob;
 mod census;

@@ -180,7 +180,7 @@ impl PointRecord {
                 .map(|(base_json, changes_json)| ScenarioText { base_json, changes_json }),
             state: WorkState::parse(row.try_get("state")?)?,
             progress: row.try_get("progress")?,
-            attempts: row.try_get("starts")?,
+            attempts: row.try_get("attempts")?,
             error_json: row.try_get("error")?,
             summary_json: row.try_get("summary")?,
             provenance_json: row.try_get("provenance")?,

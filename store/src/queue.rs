@@ -35,13 +35,13 @@ pub struct Claim {
     pub checkpoint: Option<BlobId>,
 }
 
-/// The right to write about one work item: void once another attempt has begun.
+/// The right to write about one work item: void once it is claimed again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lease {
     /// The work item.
     pub key: WorkKey,
-    /// Fencing token: the number of this attempt.
-    pub attempt: i64,
+    /// Grows with every claim of the work item: a write under an older one changes nothing.
+    pub fencing_token: i64,
     /// The worker that holds it.
     pub worker: String,
 }
@@ -53,7 +53,7 @@ pub enum Renewal {
     Held,
     /// The lease is extended, and nobody wants the result any more.
     CancelRequested,
-    /// The lease has gone to another attempt: nothing that is computed now will be taken.
+    /// The work item was claimed again: nothing that is computed now will be taken.
     Lost,
 }
 
@@ -161,10 +161,10 @@ impl Store {
             .bind(physics_version)
             .fetch_all(executor)
             .await?;
-        let Some((key, attempt, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
+        let Some((key, fencing_token, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
             return Ok(None);
         };
-        let lease = Lease { key: work_key(&key)?, attempt, worker: worker.to_owned() };
+        let lease = Lease { key: work_key(&key)?, fencing_token, worker: worker.to_owned() };
         let checkpoint = checkpoint.as_deref().map(str::parse).transpose()?;
         Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json }, checkpoint }))
     }
@@ -176,7 +176,7 @@ impl Store {
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
         let cancel_requested: Vec<i64> = sqlx::query_scalar(sql::queue::RENEW)
             .bind(lease.key.as_slice())
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(progress)
             .bind(lease_ms)
@@ -201,7 +201,7 @@ impl Store {
         let key = lease.key.as_slice();
         let finished: Vec<i64> = sqlx::query_scalar(sql::queue::FINISH)
             .bind(key)
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .fetch_all(&mut *tx)
             .await?;
@@ -282,7 +282,7 @@ impl Store {
     pub async fn crashed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         let changed = sqlx::query(sql::queue::CRASH)
             .bind(lease.key.as_slice())
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(error_json)
             .bind(CRASH_LIMIT)
@@ -300,7 +300,7 @@ impl Store {
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
         let changed = sqlx::query(sql::queue::RELEASE)
             .bind(lease.key.as_slice())
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .execute(&self.pool)
             .await?
@@ -316,7 +316,7 @@ impl Store {
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         let changed = sqlx::query(sql::queue::RETRY_LATER)
             .bind(lease.key.as_slice())
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(error_json)
             .bind(INFRASTRUCTURE_TRIES)
@@ -380,7 +380,7 @@ impl Store {
     async fn leave(&self, statement: &'static str, lease: &Lease, text: &str) -> Result<bool> {
         let changed = sqlx::query(statement)
             .bind(lease.key.as_slice())
-            .bind(lease.attempt)
+            .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(text)
             .execute(&self.pool)

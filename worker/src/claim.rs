@@ -139,7 +139,8 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
         match store.claim(&id, i64::from(PHYSICS_VERSION), lease_ms).await {
             Ok(Some(claim)) => {
                 let key = hex(&claim.lease.key);
-                let span = tracing::info_span!("point", key = &key[..12], attempt = claim.lease.attempt);
+                let span =
+                    tracing::info_span!("point", key = &key[..12], fencing_token = claim.lease.fencing_token);
                 let claim_ms = asked.elapsed().as_secs_f64() * 1e3;
                 span.in_scope(|| tracing::info!(claim_ms, "point claimed"));
                 let timeout = config.point_timeout;
@@ -250,7 +251,7 @@ async fn work_on(
             computed.provenance.worker = Some(WorkerProvenance {
                 host: worker.host.clone(),
                 worker: worker.id.clone(),
-                attempt: lease.attempt,
+                fencing_token: lease.fencing_token,
                 started,
                 ended: Timestamp::now(),
             });
@@ -275,7 +276,7 @@ async fn read_checkpoint(store: &Store, blob: Option<BlobId>) -> Option<Checkpoi
 /// Writes how a point ended. The store being out of reach is tried again until the lease must be gone.
 async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, halt: Halt) {
     const TRIES: u32 = 5;
-    for attempt in 0..TRIES {
+    for tries in 0..TRIES {
         match write_end(store, lease, &ended, reason, halt).await {
             Ok(true) => return,
             Ok(false) => {
@@ -284,7 +285,7 @@ async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, hal
             }
             Err(error) => {
                 tracing::warn!(%error, "the end of a point cannot be stored");
-                tokio::time::sleep(Duration::from_millis(250) * 2_u32.pow(attempt)).await;
+                tokio::time::sleep(Duration::from_millis(250) * 2_u32.pow(tries)).await;
             }
         }
     }

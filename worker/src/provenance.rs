@@ -95,8 +95,8 @@ pub struct WorkerProvenance {
     pub host: String,
     /// Identifier of the worker process.
     pub worker: String,
-    /// Number of the lease under which it was computed.
-    pub attempt: i64,
+    /// The claim under which it was computed: grows with every claim of the same work.
+    pub fencing_token: i64,
     /// When it began, by that host's clock: for people, nothing is decided by it.
     pub started: Timestamp,
     /// When it ended, likewise.

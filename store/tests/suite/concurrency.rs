@@ -34,7 +34,7 @@ pub(crate) async fn four_workers_share_a_thousand_points_without_losing_or_doubl
                 let name = format!("worker {worker}");
                 let mut done: Vec<WorkKey> = Vec::new();
                 while let Some(claim) = claim_or_none(&store, &name).await {
-                    assert_eq!(claim.lease.attempt, 1, "nobody else has had it");
+                    assert_eq!(claim.lease.fencing_token, 1, "nobody else has had it");
                     assert_eq!(store.renew(&claim.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
                     assert!(finish(&store, &claim).await);
                     done.push(claim.lease.key);

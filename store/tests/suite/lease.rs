@@ -24,13 +24,13 @@ pub(crate) async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
     let first = claim(&store, "first").await;
-    assert_eq!(first.lease.attempt, 1);
+    assert_eq!(first.lease.fencing_token, 1);
 
     let shortly_before = engine.after(LEASE_MS - 5_000).await;
     assert_eq!(claim_or_none(&shortly_before, "second").await, None);
     let later = engine.after(LEASE_MS + 1).await;
     let second = claim(&later, "second").await;
-    assert_eq!((second.lease.key, second.lease.attempt), (key(1), 2));
+    assert_eq!((second.lease.key, second.lease.fencing_token), (key(1), 2));
     assert_eq!(point_record(&later, "s", 1).await.attempts, 2);
 }
 
@@ -50,7 +50,7 @@ pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E:
     assert_eq!(store.bury_worker("rig", 7).await.unwrap(), 1);
 
     let heir = claim(&engine.after(1).await, "heir").await;
-    assert_eq!((heir.lease.key, heir.lease.attempt), (lost.lease.key, 2));
+    assert_eq!((heir.lease.key, heir.lease.fencing_token), (lost.lease.key, 2));
     assert!(!finish(&store, &lost).await, "its late result is refused");
     assert!(finish(&store, &kept).await);
     let left = store.workers(LEASE_MS).await.unwrap();
@@ -92,7 +92,7 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
     assert!(!finish(&later, &prompt).await);
 }
 
-pub(crate) async fn the_same_worker_cannot_write_with_its_earlier_attempt<E: Engine>() {
+pub(crate) async fn the_same_worker_cannot_write_under_its_earlier_claim<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -129,7 +129,7 @@ pub(crate) async fn a_point_whose_workers_die_three_times_is_dead<E: Engine>() {
     submit(&store, &sweep("s", [1])).await;
     for death in 1..=3 {
         let store = engine.after((death - 1) * 2 * LEASE_MS).await;
-        assert_eq!(claim(&store, "doomed").await.lease.attempt, death);
+        assert_eq!(claim(&store, "doomed").await.lease.fencing_token, death);
     }
     let end = engine.after(6 * LEASE_MS).await;
     assert_eq!(claim_or_none(&end, "w").await, None);
@@ -158,7 +158,7 @@ pub(crate) async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fenci
     let point = point_record(&store, "s", 1).await;
     assert_eq!((point.state, point.attempts), (WorkState::Queued, 0));
     let again = claim(&store, "w").await;
-    assert_eq!(again.lease.attempt, 2);
+    assert_eq!(again.lease.fencing_token, 2);
     assert_eq!(point_record(&store, "s", 1).await.attempts, 1);
     assert!(!finish(&store, &released).await);
     assert!(finish(&store, &again).await);
@@ -226,7 +226,7 @@ pub(crate) async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_don
 
     // A worker that dies on the way does not lose it either.
     let second = claim(&store, "second").await;
-    assert_eq!((second.checkpoint, second.lease.attempt), (Some(blob), 2));
+    assert_eq!((second.checkpoint, second.lease.fencing_token), (Some(blob), 2));
     let later = engine.after(LEASE_MS + 1).await;
     let third = claim(&later, "third").await;
     assert_eq!(third.checkpoint, Some(blob));
@@ -316,7 +316,7 @@ pub(crate) async fn a_clock_that_is_set_back_keeps_no_point_with_a_dead_worker<E
     assert_eq!(claim_or_none(&shortly_before, "heir").await, None);
     let later = engine.after(LEASE_MS + 5_000).await;
     let heir = claim(&later, "heir").await;
-    assert_eq!((heir.lease.key, heir.lease.attempt), (dead.lease.key, 2));
+    assert_eq!((heir.lease.key, heir.lease.fencing_token), (dead.lease.key, 2));
     assert!(!finish(&later, &dead).await);
     assert!(finish(&later, &alive).await, "who renewed has it still");
 }
@@ -328,7 +328,7 @@ pub(crate) async fn a_clock_that_is_set_back_holds_up_no_retry<E: Engine>() {
     let failing = claim(&before, "w").await;
     assert!(before.retry_later(&failing.lease, "{}").await.unwrap());
     assert_eq!(claim_or_none(&before, "w").await, None);
-    assert_eq!(claim(&engine.open().await, "w").await.lease.attempt, 2);
+    assert_eq!(claim(&engine.open().await, "w").await.lease.fencing_token, 2);
 }
 
 pub(crate) async fn a_clock_that_is_set_back_makes_no_dead_worker_alive<E: Engine>() {

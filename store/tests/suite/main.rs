@@ -68,7 +68,7 @@ macro_rules! conformance {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
                 a_buried_workers_points_are_free_at_once_and_nobody_elses,
                 a_late_writer_changes_nothing,
-                the_same_worker_cannot_write_with_its_earlier_attempt,
+                the_same_worker_cannot_write_under_its_earlier_claim,
                 a_renewal_extends_the_lease_and_carries_the_progress,
                 a_point_whose_workers_die_three_times_is_dead,
                 a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token,

@@ -158,7 +158,7 @@ pub(crate) async fn a_physical_failure_is_final_until_a_retry_is_asked_for<E: En
     let record = sweep_record(&store, "a").await;
     assert_eq!((record.counts.queued, record.finished), (1, None));
     let again = claim(&store, "w").await;
-    assert_eq!(again.lease.attempt, failed.lease.attempt + 1);
+    assert_eq!(again.lease.fencing_token, failed.lease.fencing_token + 1);
     assert!(finish(&store, &again).await);
     assert_eq!(point_record(&store, "b", 1).await.error_json, None);
     assert_eq!(states(&store, "a").await, [WorkState::Done]);

@@ -4,7 +4,7 @@
 -- An explicit order of the tables: the failures are few, and the index has them in this order. An error that is not JSON
 -- has no class.
 SELECT s.id AS sweep_id, s.name AS sweep_name, s.owner, w.changed,
-       p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
+       p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.attempts,
        w.error, NULL AS summary, NULL AS provenance
 FROM work w CROSS JOIN point p ON p.work_key = w.key CROSS JOIN sweep s ON s.id = p.sweep_id
 WHERE w.stage = 'failed' AND p.verifies = 0 AND w.changed <= ?1 AND (w.changed, s.id, p.ordinal) < (?1, ?2, ?3)

@@ -1,7 +1,7 @@
 -- Points of a sweep in order, without scenarios and results.
 -- ?1 sweep, ?2 ordinal after which they are, ?3 states of their work, a JSON array, or none for all,
 -- ?4 how many at most.
-SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.starts,
+SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.attempts,
        w.error, NULL AS summary, NULL AS provenance
 FROM point p JOIN work w ON w.key = p.work_key
 WHERE p.sweep_id = ?1 AND p.verifies = 0 AND p.ordinal > ?2

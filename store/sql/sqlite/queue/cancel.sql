@@ -1,6 +1,6 @@
 -- Ends a lease whose work nobody wants any more; where it was asked for again since the worker's last renewal, the work is
 -- queued. A result from before stays, and the work is done then.
--- ?1 work item, ?2 attempt, ?3 worker, ?4 error, JSON.
+-- ?1 work item, ?2 fencing token, ?3 worker, ?4 error, JSON.
 UPDATE work SET
     state = CASE WHEN cancel_requested = 0 THEN 'queued'
                  WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done'
@@ -8,4 +8,4 @@ UPDATE work SET
     error = CASE WHEN cancel_requested = 0 OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN NULL
                  ELSE ?4 END,
     progress = 0, lease_until = NULL, changed = (SELECT now FROM clock)
-WHERE key = ?1 AND attempt = ?2 AND lease_owner = ?3 AND state = 'leased'
+WHERE key = ?1 AND fencing_token = ?2 AND lease_owner = ?3 AND state = 'leased'

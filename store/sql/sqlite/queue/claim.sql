@@ -1,8 +1,8 @@
 -- Hands out the next work item: of the owner whose turn it is the most urgent, of these the first in the order asked for.
 -- ?1 worker, ?2 length of the lease [ms], ?3 version of the numbers.
--- Gives: work item, attempt, base, changes, checkpoint; nothing if no work is ready.
+-- Gives: work item, fencing token, base, changes, checkpoint; nothing if no work is ready.
 UPDATE work SET
-    state = 'leased', attempt = attempt + 1, starts = starts + 1, progress = 0,
+    state = 'leased', fencing_token = fencing_token + 1, attempts = attempts + 1, progress = 0,
     lease_owner = ?1, lease_until = (SELECT now FROM clock) + ?2, lease_ms = ?2, changed = (SELECT now FROM clock)
 WHERE key = (
     SELECT key FROM work
@@ -13,4 +13,4 @@ WHERE key = (
                                    AND work.owner = owner_turn.owner)
                    ORDER BY vtime, owner LIMIT 1)
     ORDER BY priority DESC, vtime, key LIMIT 1)
-RETURNING key, attempt, (SELECT text FROM scenario WHERE hash = work.base), changes, checkpoint
+RETURNING key, fencing_token, (SELECT text FROM scenario WHERE hash = work.base), changes, checkpoint

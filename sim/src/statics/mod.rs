@@ -20,16 +20,18 @@ use crate::scenario::{ContactLaw, Mud};
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;
 
-/// Change of an eccentricity at which string and mud have converged.
+/// Change of an eccentricity at which string and mud have converged: as it gains three digits a pass, what is left is rounding.
 const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
 
-/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge.
+/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge: shorter steps
+/// alone, then held by a spring thirty times as stiff too. They are orders of magnitude, without a derivation.
 const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
 
-/// Stiffness of softer walls on the way to the scenario's own.
+/// Stiffness of softer walls on the way to the scenario's own, a decade apart: each lets the string ten times deeper in than the next one, from
+/// where Newton's method has to find the next.
 const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
-/// Iterations of such a search.
+/// Iterations of a search with steps a tenth as long.
 const FALLBACK_ITERATIONS: usize = 1000;
 
 /// The string at rest: displacements, internal forces, contacts, flow.

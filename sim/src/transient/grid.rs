@@ -56,7 +56,8 @@ impl Grid {
     }
 }
 
-/// Doublings of the recording interval that a step may have at most.
+/// Doublings of the recording interval that a step may have at most: 65,536 samples a step, more than any longest step spans, and powers of two
+/// that stay within their type.
 const MOST_DOUBLINGS: u32 = 16;
 
 /// Two times that differ by less than this part of them are the same.

@@ -1,12 +1,25 @@
-"""The documents: every link between them leads somewhere, and the book has every chapter."""
+"""The documents: every link between them leads somewhere, the book has every chapter, and commands print what is shown.
 
+A transcript is a block of the language `console`: lines that begin with `$ ` are commands, what follows each is its
+output. One that has the comment `<!-- checked -->` on the line before it is run and compared exactly, all commands in
+one shell; after `<!-- checked with a service -->` there is a server with workers at `DRILLSWEEP_SERVER`. Examples leave
+out by themselves what is not the same every time, such as times.
+"""
+
+from __future__ import annotations
+
+import os
 import re
 import runpy
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
-REPOSITORY = Path(__file__).parent.parent
+from service import REPOSITORY, Service, binary
+
 DOCUMENTS = [*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/**/*.md"), REPOSITORY / "api" / "python" / "README.md"]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
@@ -56,7 +69,7 @@ def test_every_chapter_is_in_the_book() -> None:
 def test_the_scenario_reference_is_that_of_the_schema() -> None:
     chapter = REPOSITORY / "docs" / "scenario.md"
     script = runpy.run_path(str(chapter.parent / "scenario_reference.py"))
-    assert chapter.read_text() == script["reference"](), "python docs/scenario_reference.py writes it anew"
+    assert chapter.read_text() == script["reference"](), "python docs/scenario_reference.py rewrites it"
 
 
 def test_the_chapter_of_columns_is_that_of_the_vocabulary() -> None:
@@ -67,3 +80,67 @@ def test_the_chapter_of_columns_is_that_of_the_vocabulary() -> None:
 
 def test_the_readme_stays_short() -> None:
     assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 130
+
+
+class Transcript(NamedTuple):
+    """A marked block of a document."""
+
+    place: str
+    needs_service: bool
+    text: str
+
+    def steps(self) -> list[tuple[str, str]]:
+        """Each command with the output that is shown; a command goes on after a backslash."""
+        steps = re.findall(r"^\$ ((?:.*\\\n)*.*)\n((?:(?!\$ ).*\n)*)", self.text, re.MULTILINE)
+        assert "".join(f"$ {command}\n{output}" for command, output in steps) == self.text, "begins with a command"
+        return steps
+
+
+def transcripts() -> Iterator[Transcript]:
+    for document in DOCUMENTS:
+        text = document.read_text()
+        for mark in re.finditer(
+            r"<!-- checked( with a service)? -->\n(?:```console\n(.*?)^```$)?", text, re.DOTALL | re.MULTILINE
+        ):
+            place = f"{document.relative_to(REPOSITORY)}:{text.count(chr(10), 0, mark.start()) + 1}"
+            assert mark[2], f"{place}: a mark without a transcript"
+            yield Transcript(place, bool(mark[1]), mark[2])
+
+
+TRANSCRIPTS = list(transcripts())
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    data = tmp_path_factory.mktemp("data")
+    service = Service("up", "--workers", "2", "--listen", "127.0.0.1:0", "--data", str(data))
+    yield service.server
+    service.stop()
+
+
+def test_transcripts_are_checked_with_and_without_a_service() -> None:
+    assert {transcript.needs_service for transcript in TRANSCRIPTS} == {False, True}
+    marks = sum(document.read_text().count("<!-- checked") for document in DOCUMENTS)
+    assert marks == len(TRANSCRIPTS), "a mark is misspelt"
+
+
+@pytest.mark.parametrize("transcript", TRANSCRIPTS, ids=lambda transcript: transcript.place)
+def test_commands_print_what_is_shown(transcript: Transcript, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    steps = transcript.steps()
+    environment = {"NO_COLOR": "1", "PATH": f"{Path(binary()).parent}:{os.environ['PATH']}"}
+    if transcript.needs_service:
+        environment["DRILLSWEEP_SERVER"] = request.getfixturevalue("server")
+    script = "".join(f"{command}\nprintf '\\0'\n" for command, _ in steps)
+    done = subprocess.run(
+        ["bash", "-c", script],
+        cwd=tmp_path,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    *printed, rest = done.stdout.split("\0")
+    assert rest == "", done.stderr
+    assert [*zip([command for command, _ in steps], printed, strict=True)] == steps, done.stderr

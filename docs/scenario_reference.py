@@ -24,8 +24,8 @@ def reference() -> str:
         "Every field of a scenario, in TOML and JSON alike; SI units unless the name says otherwise. A field is set by",
         "its path, as in `--set contact.static_friction=0.25`, and every numeric one can be an axis of a sweep.",
         "The last column is the base case, `paper-200m`; a field without a value there has its default or is absent.",
-        "Fields that are required are marked *. What is refused, and why, is told by",
-        "`drillsweep plan` and by every submission.",
+        "Fields that are required are marked *. Usual ranges are those of drilling practice; values outside the limits",
+        "that are given with them are refused: `drillsweep plan` and every submission report all of them together.",
         "",
     ]
     waiting: list[tuple[str, str, Any]] = [("Scenario", "", base)]

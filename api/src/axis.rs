@@ -10,7 +10,7 @@ pub enum Axis {
     /// `{"values": [...]}`: the values as listed, in that order.
     #[schema(title = "AxisValues")]
     Values {
-        /// The values, in SI units.
+        /// The values, in the units of the field; 1 or more.
         #[schema(min_items = 1)]
         values: Vec<f64>,
     },
@@ -21,10 +21,10 @@ pub enum Axis {
         from: f64,
         /// Last value.
         to: f64,
-        /// Number of values, 2 or more.
+        /// Number of values, 2 to 100,000; usual 3 to 20, since a grid has the product of all axes' counts.
         #[schema(minimum = 2)]
         count: u32,
-        /// How the values between are spaced.
+        /// How the values between are spaced; absent means `linear`.
         #[serde(default)]
         #[schema(inline)]
         scale: Scale,

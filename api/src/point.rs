@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// Where a point stands.
+/// The state of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PointState {
@@ -47,7 +47,7 @@ impl std::fmt::Display for PointState {
 pub struct PointRow {
     /// Number of the point in its sweep, from 1, the first axis varying slowest.
     pub ordinal: u32,
-    /// Where the point stands.
+    /// Its state.
     pub state: PointState,
     /// The swept parameters of this point, by axis name, then the other axes' values of the scenario.
     pub parameters: IndexMap<String, f64>,
@@ -55,7 +55,7 @@ pub struct PointRow {
     pub progress: f64,
     /// How often a worker has started it.
     pub attempts: u64,
-    /// Why it failed; of a point that has succeeded, why its last attempt to be computed anew failed.
+    /// Why it failed; of a point that has succeeded, why its last recomputation failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<PointError>,
     /// Where to read more.
@@ -88,7 +88,7 @@ impl PointRow {
         ["ordinal", "state", "parameters", "progress", "attempts", "error", "links"];
 }
 
-/// A point that was given up, in the list over all sweeps.
+/// A failed point, in the list over all sweeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Failure {
     /// Identifier of its sweep.
@@ -98,14 +98,14 @@ pub struct Failure {
     pub sweep_name: Option<String>,
     /// Whose sweep it is.
     pub owner: String,
-    /// When it was given up.
+    /// When it failed.
     pub at: Timestamp,
     /// The point as in the list of its sweep.
     #[serde(flatten)]
     pub point: PointRow,
 }
 
-/// A page of points that were given up, the latest first.
+/// A page of failed points, the latest first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FailureList {
     /// The points.
@@ -135,7 +135,7 @@ pub struct ArtifactEntry {
     pub rows: u64,
     /// BLAKE3 hash of its content, its `ETag`.
     pub hash: String,
-    /// When it was given up, having reached its age.
+    /// When it was deleted, having expired.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expired: Option<Timestamp>,
     /// Where it is.
@@ -155,7 +155,7 @@ pub struct PointDetail {
     /// The scalar results; the same fields make up the point's row in the sweep's table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub summary: Option<Map<String, Value>>,
-    /// Which code computed it, where, and at what cost. Where it was computed anew (`cache=refresh`) and came out otherwise,
+    /// Which code computed it, where, and at what cost. Where it was recomputed (`cache=refresh`) and differs,
     /// which equal keys rule out, `disagreement` says what `differs` and has the provenance of the `earlier` result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub provenance: Option<Map<String, Value>>,

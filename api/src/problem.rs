@@ -138,13 +138,13 @@ impl ProblemKind {
             ProblemKind::WindowNotKept => ("window-not-kept", "No spectrum over this window was kept", 422),
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
-            ProblemKind::Expired => ("expired", "The table was kept for its time", 410),
+            ProblemKind::Expired => ("expired", "The table has expired", 410),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
             ProblemKind::IdempotencyKeyReused => {
                 ("idempotency-key-reused", "The idempotency key belongs to another request", 422)
             }
-            ProblemKind::Unavailable => ("unavailable", "Not available just now", 503),
-            ProblemKind::StorageFull => ("storage-full", "No room on disk", 507),
+            ProblemKind::Unavailable => ("unavailable", "Temporarily unavailable", 503),
+            ProblemKind::StorageFull => ("storage-full", "Storage full", 507),
             ProblemKind::Internal => ("internal", "Internal error", 500),
         }
     }

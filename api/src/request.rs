@@ -18,15 +18,16 @@ use crate::problem::{FieldProblem, ProblemDetails};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepRequest {
-    /// A name for people.
+    /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_length = 1, max_length = 200, example = "flow rate against density")]
     pub name: Option<String>,
-    /// Whose share of the workers the sweep counts against; absent means `default`.
+    /// Whose share of the workers the sweep counts against; absent means `default`. Where tokens are in use it is the token's
+    /// owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_length = 1, max_length = 100)]
     pub owner: Option<String>,
-    /// Words to find it by.
+    /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     #[schema(max_items = 20, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
@@ -44,16 +45,17 @@ pub struct SweepRequest {
     #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
-    /// `"spectra"`, `{"orbits": {...}}` or `"full"`.
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says. A point of 60 s takes some 4 MB in full,
+    /// 0.5 MB as spectra and nothing as a summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "full")]
     pub outputs: Option<Outputs>,
-    /// How the points are made from the axes.
+    /// How the points are made from the axes; absent means `grid`.
     #[serde(default)]
     pub design: Design,
-    /// The swept parameters, by name: `flow_rate`, `mud_density`, or the path of any numeric field of the scenario,
-    /// such as `operation.rotation_speed_rpm` or `string.sections[1].count`. In a grid the first axis varies slowest,
-    /// in the order in which they are written.
+    /// The swept parameters, by name: `flow_rate`, `mud_density`, or the path of any numeric field of the scenario, such as
+    /// `operation.rotation_speed_rpm` or `string.sections[1].count`. In a grid the first axis varies slowest, in the order in which
+    /// they are written. A sweep has 100,000 points at most, the product of the axes' counts in a grid; without axes it has one.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schema(example = json!({
         "flow_rate": {"values": [0.01, 0.04, 0.06]},
@@ -64,24 +66,27 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!([]))]
     pub points: Vec<IndexMap<AxisName, f64>>,
-    /// Number of points of the designs `latin_hypercube` and `sobol`.
+    /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
+    /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u32>,
-    /// What these designs are drawn from; 0 unless said otherwise. The same seed draws the same points, always.
+    /// What these designs are drawn from, any whole number from 0; 0 unless given. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same
-    /// seed ended.
+    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
+    /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
     /// How many of the points are run a second time, at the accuracy `reference`, to see how far theirs can be trusted: a part of
-    /// them below 1, such as 0.05 (rounded, but one at least), or a number of them. They are spread over the order of the points,
-    /// the same for the same request. Of points that are added later as many are verified as make up that part, or that number, of
-    /// the whole sweep. What is found is at `GET /v1/sweeps/{id}/verification`.
+    /// them below 1, usual 0.02 to 0.1 (rounded, but one at least), or a number of them, 1 or more; absent means none. A reference
+    /// run takes three to four times as long as one at `standard`. They are spread over the order of the points, the same for the
+    /// same request; of points that are added later as many are verified as make up that part, or that number, of the whole sweep.
+    /// What is found is at `GET /v1/sweeps/{id}/verification`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(exclusive_minimum = 0.0, example = 0.05)]
     pub verify: Option<f64>,
-    /// Higher goes first among the sweeps of one owner.
+    /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
+    /// turns.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
     pub priority: i32,
@@ -91,15 +96,15 @@ pub struct SweepRequest {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
-    /// A name for people.
+    /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_length = 1, max_length = 200)]
     pub name: Option<String>,
-    /// Whose share of the workers the run counts against; absent means `default`.
+    /// Whose share of the workers the run counts against; absent means `default`. Where tokens are in use it is the token's owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_length = 1, max_length = 100)]
     pub owner: Option<String>,
-    /// Words to find it by.
+    /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     #[schema(max_items = 20, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
@@ -115,11 +120,12 @@ pub struct RunRequest {
     #[schema(example = json!({"mud.flow_rate": 0.04}))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
-    /// `"spectra"`, `{"orbits": {...}}` or `"full"`.
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "full")]
     pub outputs: Option<Outputs>,
-    /// Higher goes first among the sweeps of one owner.
+    /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
+    /// turns.
     #[serde(default)]
     #[schema(minimum = -10, maximum = 10)]
     pub priority: i32,
@@ -147,7 +153,7 @@ impl From<RunRequest> for SweepRequest {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AppendRequest {
-    /// How the points are made from the axes.
+    /// How the points are made from the axes; absent means `grid`.
     #[serde(default)]
     pub design: Design,
     /// The sweep's parameters with new values.
@@ -158,13 +164,16 @@ pub struct AppendRequest {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!([]))]
     pub points: Vec<IndexMap<AxisName, f64>>,
-    /// Number of points of the designs `latin_hypercube` and `sobol`.
+    /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
+    /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u32>,
-    /// What these designs are drawn from; 0 unless said otherwise.
+    /// What these designs are drawn from; 0 unless given. For further points of another Latin hypercube give another seed; of a
+    /// Sobol sequence, `skip` with the same one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to skip.
+    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
+    /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
 }

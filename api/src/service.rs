@@ -28,11 +28,11 @@ pub struct Limits {
     pub tags_per_sweep: usize,
     /// Characters in a tag.
     pub tag_length: usize,
-    /// Requests that an owner may make a second, over longer times.
+    /// Requests that an owner may make per second, on average.
     pub requests_per_second: u32,
-    /// Requests that an owner may make at once after a rest.
+    /// Requests that an owner may make at once (the size of the token bucket).
     pub request_burst: u32,
-    /// Points of an owner that may wait or run.
+    /// Points of an owner that may be queued or running.
     pub open_points_per_owner: u64,
 }
 
@@ -104,20 +104,20 @@ pub struct Worker {
     pub physics_version: i64,
     /// When it started.
     pub started: Timestamp,
-    /// When it last gave a sign of life.
+    /// Its last heartbeat.
     pub seen: Timestamp,
 }
 
 /// The queue over all sweeps, in results to be computed: points that share a key are one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Queue {
-    /// Ready for a worker.
+    /// Queued for a worker.
     pub queued: u64,
     /// Wanted by paused sweeps only.
     pub paused: u64,
-    /// Waiting until a retry is due.
+    /// To be retried later.
     pub waiting_for_retry: u64,
-    /// Under way.
+    /// Being computed.
     pub running: u64,
 }
 

@@ -21,14 +21,14 @@ pub struct Sweep {
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// Where it stands as a whole.
+    /// Its state as a whole.
     pub state: SweepState,
     /// Points by state.
     pub counts: PointCounts,
     /// How far a sample of the points is verified by the reference, and what that shows; absent where none is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verification: Option<SweepVerification>,
-    /// Done part of the work, that of verifying points included, what is under way counted by its simulated time; 1 when every point
+    /// Fraction of the work that is done, reference runs included, running points counted by their simulated time; 1 when every point
     /// and every reference run is final.
     pub progress: f64,
     /// Higher goes first among the sweeps of one owner.
@@ -58,13 +58,13 @@ pub struct Sweep {
     pub links: SweepLinks,
 }
 
-/// Where a sweep stands as a whole.
+/// The state of a sweep as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepState {
     /// Some points, or reference runs that verify some, are not final yet.
     Running,
-    /// Some are not final yet, and those that wait are not handed out.
+    /// Some are not final yet, and those that are queued are not started.
     Paused,
     /// Every point and every reference run is final, succeeded or failed; `counts` says how many of each.
     Completed,
@@ -91,7 +91,7 @@ pub struct PointCounts {
     pub total: u64,
     /// Waiting for a worker.
     pub queued: u64,
-    /// Under way.
+    /// Being simulated.
     pub running: u64,
     /// With a result.
     pub succeeded: u64,
@@ -106,7 +106,7 @@ pub struct PointCounts {
 pub struct SweepVerification {
     /// The reference runs by state; `total` is how many were wanted.
     pub counts: PointCounts,
-    /// The bias of orbit size that is farthest from zero, once a point is verified; told by the sweep itself, and left out of lists,
+    /// The bias of orbit size that is farthest from zero, once a point is verified; shown with the sweep itself, and left out of lists,
     /// event streams and answers to what is done with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst: Option<WorstBias>,
@@ -135,9 +135,9 @@ pub struct SweepLinks {
     pub cancel: String,
     /// Retries its failed and cancelled points (POST).
     pub retry: String,
-    /// Hands out no more of its points (POST).
+    /// Pauses it: queued points are not started (POST).
     pub pause: String,
-    /// Hands them out again (POST).
+    /// Resumes it (POST).
     pub resume: String,
 }
 

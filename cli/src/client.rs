@@ -22,7 +22,7 @@ pub(crate) struct ServerArguments {
     pub(crate) server: String,
 }
 
-/// How long a command that watches puts up with a server that does not answer, as while it is started anew.
+/// How long a command that watches tolerates a server that does not answer, as during a restart.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// How long it waits between two tries.

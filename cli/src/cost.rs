@@ -29,14 +29,14 @@ pub(crate) struct CostArguments {
     /// spectra over the last sixth.
     #[arg(long)]
     duration: Option<f64>,
-    /// Members of the ensemble that each method runs: with 5 or more, bias can be told from spread.
+    /// Members of the ensemble that each method runs: with 5 or more, bias can be distinguished from spread.
     #[arg(long)]
     members: Option<u32>,
     /// The two methods that make the reference, as JSON: `[{"integrator": "rk4", "step": 5e-5}, {"integrator": "esdirk4", "step":
     /// 1.25e-4, "contact_sweeps": 30}]`.
     #[arg(long, value_parser = json_value)]
     reference: Option<Value>,
-    /// Named accuracies to compare, such as `draft,standard`; all three unless said otherwise, none for ''.
+    /// Named accuracies to compare, such as `draft,standard`; all three unless given, none for ''.
     #[arg(long, value_delimiter = ',')]
     presets: Option<Vec<String>>,
     /// Methods and steps in place of the usual ones, as JSON: `[{"integrator": "esdirk4", "steps": [1e-3, 5e-4]}]`; `[]` for none.
@@ -46,13 +46,13 @@ pub(crate) struct CostArguments {
     #[arg(long, value_delimiter = ',')]
     mesh_factors: Vec<f64>,
     /// Look for the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
-    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless said otherwise.
+    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless given.
     #[arg(long, value_parser = parse_share)]
     total: Option<f64>,
     /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.
     #[arg(long, conflicts_with_all = ["methods", "mesh_factors", "total"])]
     effects: bool,
-    /// Simulations at once; absent means all cores. Side by side they disturb each other's processor time: 1 measures best.
+    /// Simulations run at the same time; absent means one per core. They disturb each other's processor time: 1 measures best.
     #[arg(long)]
     threads: Option<NonZeroUsize>,
     /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png; of several scenarios a folder each, with

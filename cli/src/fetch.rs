@@ -30,7 +30,7 @@ pub(crate) struct FetchArguments {
     /// Format of the files.
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
-    /// Bring the sweep's table only.
+    /// Download the sweep's table only.
     #[arg(long)]
     table_only: bool,
     /// Print the names of the files as JSON instead of the directory's.

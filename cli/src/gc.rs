@@ -20,7 +20,7 @@ const DAY: Duration = Duration::from_secs(86_400);
 pub(crate) struct GcArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Tell what would be deleted, and delete nothing.
+    /// Report what would be deleted, and delete nothing.
     #[arg(long)]
     dry_run: bool,
     /// Print JSON.
@@ -40,7 +40,7 @@ pub(crate) struct GcArguments {
     grace_hours: u32,
 }
 
-/// Deletes what has reached its age, and tells how much that was.
+/// Deletes expired data, and reports how much that was.
 pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
     let recordings = DAY * arguments.recordings_days;
     let policy = RetentionPolicy {

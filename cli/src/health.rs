@@ -1,4 +1,4 @@
-//! Health for supervisors: whether the server can work, whether a worker on this machine lives.
+//! Health for supervisors: whether the server is ready, whether a worker on this machine is alive.
 
 use std::time::Duration;
 
@@ -17,19 +17,19 @@ pub(crate) struct HealthArguments {
     server: ServerArguments,
     #[command(flatten)]
     data: DataArguments,
-    /// Ask for a worker on this machine instead of the server.
+    /// Check for a worker on this machine instead of the server.
     #[arg(long)]
     worker: bool,
-    /// Seconds after which a silent worker counts as gone; workers give a sign of life every third of their lease.
+    /// Seconds without a heartbeat after which a worker counts as gone; workers send one every third of their lease.
     #[arg(long, default_value_t = 60.0, requires = "worker")]
     silence_seconds: f64,
 }
 
-/// Fails unless the server can work, or a worker of this machine has given a sign of life.
+/// Fails unless the server is ready, or a worker of this machine has sent a heartbeat.
 pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
     if !arguments.worker {
         let _: Health = Client::new(&arguments.server).get("/readyz")?;
-        print("the server can work");
+        print("the server is ready");
         return Ok(());
     }
     let silence = Duration::try_from_secs_f64(arguments.silence_seconds)?;
@@ -43,7 +43,7 @@ pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
     })?;
     let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
     let here = workers.iter().filter(|worker| worker.host == host).count();
-    ensure!(here > 0, "no worker on {host} has given a sign of life for {} s", arguments.silence_seconds);
+    ensure!(here > 0, "no worker on {host} has sent a heartbeat for {} s", arguments.silence_seconds);
     print(&format!("{here} workers on {host}"));
     Ok(())
 }

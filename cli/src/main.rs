@@ -52,31 +52,31 @@ enum Command {
     List(sweeps::ListArguments),
     /// Show a sweep with its points, or one point with its results.
     Show(sweeps::ShowArguments),
-    /// Cancel a sweep: what waits at once, what runs within a heartbeat.
+    /// Cancel a sweep: queued points at once, running ones within a heartbeat.
     Cancel(sweeps::SweepArguments),
     /// Queue a sweep's failed and cancelled points again.
     Retry(sweeps::SweepArguments),
-    /// Hand out no more points of a sweep; those under way go on.
+    /// Pause a sweep: its queued points are not started; running ones continue.
     Pause(sweeps::SweepArguments),
-    /// Hand out the points of a paused sweep again.
+    /// Resume a paused sweep: its queued points may be started again.
     Resume(sweeps::SweepArguments),
     /// Change name, tags, priority, pin or expiry of a sweep.
     Change(sweeps::ChangeArguments),
     /// Add points to a sweep, over its own parameters; those that it has are skipped.
     Append(submit::AppendArguments),
-    /// List the points of all sweeps that were given up, the latest first.
+    /// List the failed points of all sweeps, the latest first.
     Failures(sweeps::FailuresArguments),
     /// Show the queue and the workers.
     Status(sweeps::StatusArguments),
-    /// Bring a sweep's table and files.
+    /// Download a sweep's table and files.
     Fetch(fetch::FetchArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
-    /// Tell what a scenario will take, without running it: effects and why, steps and time at each accuracy.
+    /// Print what a scenario will take, without running it: effects and why, steps and time at each accuracy.
     Plan(plan::PlanArguments),
     /// Measure what accuracy costs: methods, steps and meshes against a converged run.
     Cost(cost::CostArguments),
-    /// Small motions about the equilibrium: frequencies, growth, direction of whirl.
+    /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
     /// Run scenes drawn at random over wide ranges and report how each ends.
     Soak(soak::SoakArguments),
@@ -88,18 +88,18 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Delete what has reached its age, and blobs that belong to nothing.
+    /// Delete expired data, and blobs that nothing refers to.
     Gc(gc::GcArguments),
     /// Make, list and revoke tokens.
     #[command(subcommand)]
     Token(token::TokenCommand),
-    /// Read a data directory in full and tell what is wrong with it, if anything.
+    /// Verify a data directory in full and report what is wrong with it, if anything.
     Check(check::CheckArguments),
-    /// Tell by the exit status whether the server can work, or a worker on this machine; for supervisors.
+    /// Report by the exit status whether the server, or a worker on this machine, is ready; for supervisors.
     Health(health::HealthArguments),
     /// Print the OpenAPI document of the service.
     Openapi,
-    /// Print what a shell needs to complete this command, for its start-up file.
+    /// Print the completion script of a shell, for its start-up file.
     Completions {
         /// The shell.
         shell: Shell,

@@ -46,13 +46,13 @@ struct ListenArguments {
     /// File with an administrator's token that was made elsewhere: 32 to 200 visible ASCII characters.
     #[arg(long, env = "DRILLSWEEP_ADMIN_TOKEN_FILE")]
     admin_token_file: Option<PathBuf>,
-    /// Requests that an owner may make a second, over longer times.
+    /// Requests that an owner may make per second, on average.
     #[arg(long, default_value_t = OwnerLimits::default().requests_per_second)]
     requests_per_second: NonZeroU32,
-    /// Requests that an owner may make at once after a rest.
+    /// Requests that an owner may make at once (the size of the token bucket).
     #[arg(long, default_value_t = OwnerLimits::default().request_burst)]
     request_burst: NonZeroU32,
-    /// Points of an owner that may wait or run.
+    /// Points of an owner that may be queued or running.
     #[arg(long, default_value_t = OwnerLimits::default().open_points)]
     open_points: u64,
 }
@@ -63,13 +63,13 @@ pub(crate) struct UpArguments {
     data: DataArguments,
     #[command(flatten)]
     listen: ListenArguments,
-    /// Number of worker processes; one a core unless said otherwise.
+    /// Number of worker processes; one per core unless given.
     #[arg(long)]
     workers: Option<usize>,
-    /// Seconds that a point stays with a silent worker.
+    /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
     #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
-    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless said otherwise.
+    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
     #[arg(long, value_parser = parse_span)]
     point_timeout: Option<Duration>,
 }
@@ -86,17 +86,17 @@ pub(crate) struct ServeArguments {
 pub(crate) struct WorkerArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Seconds that a point stays with a silent worker.
+    /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
     #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
     /// End when there is nothing left to claim.
     #[arg(long)]
     drain: bool,
-    /// End after so long, such as `3h`, `90m` or `600s`; the point under way is suspended, and another worker goes on
-    /// with it.
+    /// End after so long, such as `3h`, `90m` or `600s`; the running point is suspended with a checkpoint, from which
+    /// another worker continues.
     #[arg(long, value_parser = parse_span)]
     max_runtime: Option<Duration>,
-    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless said otherwise.
+    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
     #[arg(long, value_parser = parse_span)]
     point_timeout: Option<Duration>,
     /// End when the process that started this one ends.
@@ -226,7 +226,7 @@ async fn bind(address: SocketAddr) -> anyhow::Result<TcpListener> {
     TcpListener::bind(address).await.with_context(|| format!("cannot listen on {address}"))
 }
 
-/// Keeps a number of worker processes alive until told to stop.
+/// Keeps a number of worker processes alive until asked to stop.
 async fn keep_workers(
     arguments: &UpArguments,
     number: usize,
@@ -275,9 +275,9 @@ async fn keep_worker(
         let process = child.id();
         tokio::select! {
             status = child.wait() => {
-                tracing::warn!(status = %status?, "a worker ended; another one is started");
+                tracing::warn!(status = %status?, "a worker ended; a new one is started");
                 if let Some(process) = process && let Err(error) = bury(store, process).await {
-                    tracing::warn!(%error, "its point is taken over when its lease ends");
+                    tracing::warn!(%error, "its point is queued again when its lease expires");
                 }
                 tokio::select! {
                     () = tokio::time::sleep(Duration::from_secs(1)) => {}
@@ -290,7 +290,7 @@ async fn keep_worker(
     Ok(())
 }
 
-/// Frees the points of a worker that is gone: a process that was waited for writes nothing more.
+/// Releases the points of a worker that has ended: a process that was waited for writes nothing more.
 async fn bury(store: &StoreConfig, process: u32) -> drillsweep_store::Result<()> {
     let store = Store::open(store).await?;
     store.bury_worker(&host_name(), i64::from(process)).await?;
@@ -301,12 +301,12 @@ async fn bury(store: &StoreConfig, process: u32) -> drillsweep_store::Result<()>
 /// Asks a child to end, and ends it after a while.
 async fn end_child(mut child: Child) -> anyhow::Result<()> {
     if let Some(pid) = child.id().and_then(|id| rustix::process::Pid::from_raw(id as i32)) {
-        // A child that is gone already cannot be signalled, and need not be.
+        // A child that has ended already cannot be signalled, and need not be.
         let _ = rustix::process::kill_process(pid, Signal::TERM);
     }
     if tokio::time::timeout(CHILD_GRACE, child.wait()).await.is_err() {
         tracing::warn!(
-            "a worker did not end in time and is killed; its point is taken over when its lease ends"
+            "a worker did not end in time and is killed; its point is queued again when its lease expires"
         );
         child.kill().await?;
     }

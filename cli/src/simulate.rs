@@ -228,7 +228,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             writeln!(text, "{time}\n{mesh}\n{spread}")?;
         }
         if let Some(time) = computed.histories_part_at {
-            writeln!(text, "the runs part at {time:.2} s: beyond, only statistics mean something")?;
+            writeln!(text, "the runs part at {time:.2} s: after that only statistics are meaningful")?;
         }
         for warning in &computed.warnings {
             writeln!(text, "warning: {warning}")?;

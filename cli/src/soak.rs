@@ -29,7 +29,7 @@ pub(crate) struct SoakArguments {
     /// The first scene.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Scenes at once.
+    /// Scenes run at the same time.
     #[arg(long, default_value_t = 1)]
     threads: usize,
     /// Seconds of wall time after which a scene counts as hung.
@@ -38,7 +38,7 @@ pub(crate) struct SoakArguments {
     /// Run the scenes at this accuracy for 0.4 s, in place of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
     accuracy: Option<String>,
-    /// Run every scene with a finer step besides, and report how many that says otherwise of.
+    /// Run every scene with a finer step as well, and report how many results that contradicts.
     #[arg(long)]
     finer: bool,
     /// Print the report as JSON.
@@ -168,7 +168,7 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
 
 #[expect(clippy::print_stderr, reason = "the last word of a process that cannot go on")]
 fn bail_out(seed: u64, index: u64) -> ! {
-    eprintln!("scene {index} of seed {seed} hangs and does not hear that it should stop");
+    eprintln!("scene {index} of seed {seed} hangs and does not react to its cancellation");
     std::process::exit(1)
 }
 
@@ -209,23 +209,23 @@ struct FinerCounts {
     agree: u64,
     at_rest: u64,
     no_result: u64,
-    /// Scenes that a finer step says otherwise of.
+    /// Scenes whose results a finer step contradicts.
     differ: Vec<Differing>,
-    /// Those of which a start beside says otherwise as well.
+    /// Those whose results a start a micrometre apart contradicts as well.
     sensitive: Vec<Differing>,
 }
 
-/// A scene that a finer step says otherwise of.
+/// A scene whose result a finer step contradicts.
 struct Differing {
     index: u64,
     /// What differs most.
     difference: Difference,
-    /// The error by steps that the result tells, relative; absent where it says that none is known.
+    /// The error by steps that the result reports, relative; absent where it is unknown.
     told: Option<f64>,
 }
 
 impl Differing {
-    /// Whether the result says itself that it may be off by so much, or that nothing is known of it.
+    /// Whether the result itself reports an error as large, or an unknown one.
     fn is_told(&self) -> bool {
         self.told.is_none_or(|told| told >= self.difference.relative)
     }
@@ -274,18 +274,18 @@ impl FinerCounts {
 
     fn text(&self, of: &str) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
-        writeln!(text, "a finer step, of the scenes {of}:")?;
-        writeln!(text, "{:>7} says the same", self.agree)?;
+        writeln!(text, "the finer step, over the scenes {of}:")?;
+        writeln!(text, "{:>7} confirms the result", self.agree)?;
         for (scenes, verdict) in [
-            (&self.differ, "says otherwise"),
-            (&self.sensitive, "says otherwise, and so does a start a micrometre beside"),
+            (&self.differ, "contradicts the result"),
+            (&self.sensitive, "contradicts the result, and so does a start a micrometre apart"),
         ] {
             writeln!(text, "{:>7} {verdict}", scenes.len())?;
             let told = scenes.iter().filter(|scene| scene.is_told()).count();
             if !scenes.is_empty() {
                 writeln!(
                     text,
-                    "        ({told} of them tell so themselves: an error as large, or that none is known)"
+                    "        ({told} of these results report it: an error as large, or an unknown one)"
                 )?;
             }
             for Differing { index, difference, .. } in scenes.iter().take(NAMED) {
@@ -294,7 +294,7 @@ impl FinerCounts {
                 let place = measured_depth.map_or_else(String::new, |depth| format!(" at {depth:.2} m"));
                 writeln!(
                     text,
-                    "          scene {index}: {}{place} is {own:.3e}, by the finer step {finer:.3e}: {:.1} % apart, promised are {:.1} %",
+                    "          scene {index}: {}{place} is {own:.3e}, with the finer step {finer:.3e}: {:.1} % apart, promised are {:.1} %",
                     quantity.words(),
                     100.0 * relative,
                     100.0 * allowed
@@ -307,7 +307,7 @@ impl FinerCounts {
     }
 }
 
-/// Adds a scene: those first that do not tell, then the worst, and of equals the first.
+/// Adds a scene: first those whose results do not report it, then the worst, and of equals the first.
 fn insert(scenes: &mut Vec<Differing>, scene: Differing) {
     let place = scenes.partition_point(|other| {
         let by_size = other.difference.share().total_cmp(&scene.difference.share()).reverse();

@@ -32,8 +32,8 @@ pub(crate) struct SubmitArguments {
     /// `{"orbits": {"window": {"from": 40, "to": 60}, "decimation": 4}}`.
     #[arg(long, value_parser = parse_value)]
     outputs: Option<Value>,
-    /// Run some of the points again by the reference, to see how far the accuracy can be trusted: a part of them such as 0.05, or a
-    /// number of them.
+    /// Verify some of the points by a second run at the accuracy `reference`: a fraction of them such as 0.05, or a number of
+    /// them.
     #[arg(long)]
     verify: Option<f64>,
     /// A name for people.
@@ -45,14 +45,14 @@ pub(crate) struct SubmitArguments {
     /// A word to find the sweep by; may be given again.
     #[arg(long = "tag", value_name = "TAG")]
     tags: Vec<String>,
-    /// What becomes of points that were computed before: take their results (reuse), compute them anew (refresh), or
-    /// take them and compute nothing (only).
+    /// Use of results that are stored already: use them (reuse), recompute them (refresh), or use them and compute nothing
+    /// (only).
     #[arg(long, default_value = "reuse", value_parser = ["reuse", "refresh", "only"])]
     cache: String,
     /// Higher goes first among the sweeps of one owner: -10 to 10.
     #[arg(long, allow_negative_numbers = true)]
     priority: Option<i32>,
-    /// A text of your making: the same request under the same text is one sweep, however often it is sent.
+    /// A key of your choice, such as a UUID: the same request with the same key is one sweep, however often it is sent.
     #[arg(long)]
     idempotency_key: Option<String>,
     /// Print what the request would become, and store nothing.
@@ -89,7 +89,7 @@ pub(crate) struct DesignArguments {
     /// Number of points of a design that draws.
     #[arg(long)]
     samples: Option<u32>,
-    /// What such a design is drawn from.
+    /// Seed of a design that draws.
     #[arg(long)]
     seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip: as many as a sweep of the same seed has already.
@@ -167,7 +167,7 @@ impl SubmitArguments {
     }
 }
 
-/// Submits a sweep; watches it unless told otherwise; prints its identifier.
+/// Submits a sweep; watches it unless detached; prints its identifier.
 pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
     let request = arguments.request()?;

@@ -127,7 +127,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints the points of all sweeps that were given up.
+/// Prints the failed points of all sweeps.
 pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
     let filters = [("owner", &arguments.owner), ("class", &arguments.class)];
     let path = with_filters(format!("/v1/failures?limit={}", arguments.limit), &filters);
@@ -150,7 +150,7 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
             ]
         })
         .collect();
-    let header = ["given up (UTC)", "sweep", "point", "attempts", "class", "error"];
+    let header = ["failed (UTC)", "sweep", "point", "attempts", "class", "error"];
     print(&columns(&header, &rows, numbers_in(&[2, 3])));
     if page.next.is_some() {
         print("older ones are left out; --limit shows more");

@@ -33,7 +33,7 @@ pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
 }
 
 /// Follows a sweep with a progress bar and returns it as it is when every point is final. A server that is away for
-/// a while, as when it is started anew, is waited for.
+/// a while, as during a restart, is waited for.
 pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
     let path = format!("/v1/sweeps/{}", path_segment(id));
     let bar = ProgressBar::new(1000);
@@ -60,7 +60,7 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
     }
 }
 
-/// An error if a point has no result, so that scripts can tell by the exit status.
+/// An error if a point has no result, so that scripts can use the exit status.
 pub(crate) fn check(sweep: &Sweep) -> anyhow::Result<()> {
     let Sweep { id, counts, .. } = sweep;
     ensure!(counts.failed == 0, "{} points failed; `drillsweep show {id}` has the reasons", counts.failed);

@@ -1,6 +1,6 @@
 //! The HTTP service: routes, formats and long polls over the store. It computes nothing but views of results.
 //!
-//! [`serve`] runs it on a listener until told to stop; [`router`] is the same without the network, for tests
+//! [`serve`] runs it on a listener until asked to stop; [`router`] is the same without the network, for tests
 //! and for embedding; [`openapi_json`] is the document that it serves.
 
 mod answer;

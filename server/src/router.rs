@@ -105,5 +105,5 @@ async fn no_such_route(uri: Uri) -> Error {
 }
 
 async fn method_not_allowed(method: Method, uri: Uri) -> Error {
-    Error::new(ProblemKind::MethodNotAllowed, format!("{} cannot be asked for with {method}", uri.path()))
+    Error::new(ProblemKind::MethodNotAllowed, format!("{} does not allow {method}", uri.path()))
 }

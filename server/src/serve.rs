@@ -12,7 +12,7 @@ use crate::app::{App, Config};
 use crate::route::metrics;
 use crate::router;
 
-/// Where the service listens unless told otherwise: this machine only.
+/// Where the service listens by default: this machine only.
 pub const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 7340);
 
 /// Where the service listens.
@@ -33,14 +33,14 @@ pub enum ServeError {
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// Others could reach the service, and nothing would tell them apart.
+    /// Others could reach the service without authentication.
     #[error(
         "will not listen on {0}: no valid token exists, so that anybody who reaches it could submit and cancel. Make one \
          with `drillsweep token create --owner NAME --scope admin`, or listen on 127.0.0.1"
     )]
     OpenToOthers(SocketAddr),
     /// Open requests did not end in time.
-    #[error("requests were still open {0:?} after the service was told to stop")]
+    #[error("requests were still open {0:?} after the service was asked to stop")]
     DrainTimeout(Duration),
 }
 
@@ -108,9 +108,9 @@ async fn reap_expired_leases(mut app: App) {
             Ok(0) => {}
             Ok(number) => {
                 app.metrics.expired_leases.inc_by(number);
-                tracing::warn!(number, "leases have run out; their points wait for a worker again");
+                tracing::warn!(number, "leases have expired; their points are queued again");
             }
-            Err(error) => tracing::error!(%error, "expired leases could not be looked for"),
+            Err(error) => tracing::error!(%error, "the search for expired leases failed"),
         }
     }
 }

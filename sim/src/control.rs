@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Shared between a run and whoever watches it. A run looks at it once every recording interval.
+/// Shared between a run and those that observe it. A run looks at it once every recording interval.
 ///
 /// Several runs that are watched as one each take a [`Control::part`]: what is asked of one is asked of all, and their
 /// simulated times add up.

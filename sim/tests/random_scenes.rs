@@ -1,5 +1,5 @@
 //! Three hundred scenes drawn over wide ranges: each ends with a finite result whose ledger closes within its bound, or as a typed
-//! failure; and at the accuracy of a preset a finer step says the same of most. More of them, and other seeds: `drillsweep soak`.
+//! failure; and at the accuracy of a preset a finer step confirms most results. More of them, and other seeds: `drillsweep soak`.
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::AccuracyPreset;

@@ -61,7 +61,7 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
     failures
 }
 
-/// A scene that multiplies disturbances is told from one that does not by an ensemble, and only so.
+/// A scene that multiplies disturbances is distinguished from one that does not by an ensemble only.
 #[test]
 fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
     let standard = Accuracy::Preset(AccuracyPreset::Standard);

@@ -1,4 +1,4 @@
-//! How fast this machine is: short runs whose steps are timed, so that plans can tell processor times.
+//! How fast this machine is: short runs whose steps are timed, so that plans can predict processor times.
 
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;

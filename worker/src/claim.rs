@@ -34,7 +34,7 @@ pub struct WorkerConfig {
     pub poll_interval: Duration,
     /// Ends when there is nothing left to claim.
     pub drain: bool,
-    /// Ends after so long, the point under way suspended for another worker.
+    /// Ends after so long, the running point suspended for another worker.
     pub max_runtime: Option<Duration>,
     /// Longest that one attempt at a point may take; one that takes longer fails, and a retry goes on from there.
     pub point_timeout: Option<Duration>,
@@ -66,7 +66,7 @@ pub enum WorkerError {
     Heartbeat(#[from] std::io::Error),
 }
 
-/// Measures the machine, unless that was done; plans do without where it fails.
+/// Measures the machine, unless that was done; where it fails plans have no times.
 async fn keep_speed(store: &Store, host: &str) {
     let measure = async {
         if store.machine_speed(i64::from(PHYSICS_VERSION)).await?.is_some() {
@@ -84,7 +84,7 @@ async fn keep_speed(store: &Store, host: &str) {
         }
     };
     if let Err(error) = measure.await {
-        tracing::warn!(%error, "the machine's speed is not kept");
+        tracing::warn!(%error, "the machine's speed cannot be stored");
     }
 }
 
@@ -94,7 +94,7 @@ enum Ended {
     Panicked(String),
 }
 
-/// Who told a point to stop, beside the heartbeat.
+/// Who asked a point to stop, besides the heartbeat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Halt {
     /// Nobody.
@@ -107,7 +107,7 @@ enum Halt {
 
 /// Claims and simulates points until `stop` turns true, its time is over, or nothing is left where the worker drains.
 ///
-/// A point under way when the worker is told to stop goes back to the queue with a checkpoint, its attempt refunded.
+/// A point that is running when the worker is asked to stop is queued again with a checkpoint, and its attempt is not counted.
 ///
 /// # Errors
 /// When the store cannot be opened or the heartbeat cannot be started. Later failures of the store are logged and
@@ -264,12 +264,12 @@ async fn work_on(
     heartbeat.watch(None);
 }
 
-/// The checkpoint that an earlier worker left. Without it the point begins again, which costs time and nothing else.
+/// The checkpoint that an earlier worker left. Without it the point starts from its beginning, which costs time and nothing else.
 async fn read_checkpoint(store: &Store, blob: Option<BlobId>) -> Option<Checkpoint> {
     let bytes = store.blobs().get(blob?).await;
     let bytes = bytes.inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be read")).ok()?;
     Checkpoint::from_bytes(&bytes)
-        .inspect_err(|error| tracing::warn!(%error, "a checkpoint is of no use"))
+        .inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be used"))
         .ok()
 }
 
@@ -340,7 +340,7 @@ fn text_of(error: &PointError) -> String {
     json!(error).to_string()
 }
 
-/// Writes the end of a point that was told to stop before its end.
+/// Writes the end of a point that was asked to stop before its end.
 async fn halted(
     store: &Store,
     lease: &Lease,
@@ -355,8 +355,7 @@ async fn halted(
             store.finish_cancelled(lease, &text_of(&error)).await
         }
         (StopReason::None, Halt::Timeout(time)) => {
-            let reason =
-                format!("it took longer than the {} s that this worker gives a point", time.as_secs_f64());
+            let reason = format!("it exceeded the worker's time limit of {} s", time.as_secs_f64());
             if let Some(blob) = write_checkpoint(store, checkpoint).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
@@ -371,7 +370,7 @@ async fn halted(
     }
 }
 
-/// Writes a checkpoint as a blob, before any row names it. One that cannot be written is done without.
+/// Writes a checkpoint as a blob, before any row refers to it; none where it cannot be written.
 async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Option<BlobId> {
     let bytes = checkpoint?.to_bytes();
     store
@@ -379,7 +378,7 @@ async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Opt
         .put(bytes)
         .await
         .inspect_err(
-            |error| tracing::warn!(%error, "a checkpoint cannot be written; the point will begin again"),
+            |error| tracing::warn!(%error, "a checkpoint cannot be written; the point will start from its beginning"),
         )
         .ok()
 }
@@ -395,7 +394,7 @@ enum UploadError {
     Store(#[from] StoreError),
 }
 
-/// Writes the tables as blobs, before any row names them.
+/// Writes the tables as blobs, before any row refers to them.
 async fn upload(store: &Store, computed: &Computed) -> Result<Vec<NewArtifact>, UploadError> {
     let mut artifacts = Vec::new();
     for EncodedArtifact { name, media_type, row_count, bytes } in computed.encode()? {

@@ -111,7 +111,7 @@ pub enum ComputeError {
     /// A cost study has no reference to compare with.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// It was told to stop.
+    /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,
 }
@@ -263,7 +263,7 @@ pub fn compute_from(
         let resumed = checkpoint.and_then(|checkpoint| {
             Transient::resume(&model, &equilibrium, &checkpoint)
                 .inspect_err(
-                    |error| tracing::warn!(%error, "a checkpoint is of no use; the point begins again"),
+                    |error| tracing::warn!(%error, "a checkpoint cannot be used; the point starts from its beginning"),
                 )
                 .ok()
         });

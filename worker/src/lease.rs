@@ -1,4 +1,4 @@
-//! The heartbeat: renews the lease of the point under way, from an OS thread with its own connection, so that no
+//! The heartbeat: renews the lease of the running point, from an OS thread with its own connection, so that no
 //! amount of computing can starve it.
 
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(crate) struct Watched {
     pub(crate) verdict: Arc<Verdict>,
 }
 
-/// Why a point was told to stop, if it was.
+/// Why a point was asked to stop, if it was.
 #[derive(Debug, Default)]
 pub(crate) struct Verdict(AtomicU8);
 
@@ -33,7 +33,7 @@ pub(crate) enum StopReason {
     None,
     /// Its sweep was cancelled.
     Cancelled,
-    /// Its lease is gone.
+    /// Its lease is lost.
     LeaseLost,
 }
 
@@ -112,7 +112,7 @@ fn beat(
     loop {
         match inbox.recv_timeout(next.saturating_duration_since(Instant::now())) {
             Ok(watched) => {
-                // The next beat stays when it was due: a worker of many short points must be heard of too.
+                // The next beat stays when it was due: a worker of many short points must send heartbeats too.
                 point = watched;
                 renewed = Instant::now();
                 continue;
@@ -163,7 +163,7 @@ async fn renew(
         Renewal::CancelRequested => StopReason::Cancelled,
         Renewal::Lost => StopReason::LeaseLost,
     };
-    tracing::info!(?reason, "the point under way is told to stop");
+    tracing::info!(?reason, "the running point is stopped");
     point.verdict.set(reason);
     point.control.cancel();
     Ok(())

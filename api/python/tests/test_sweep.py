@@ -48,7 +48,7 @@ def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> 
 
 
 def test_a_sample_is_verified_by_the_reference(client: Client) -> None:
-    # Node 49 settles onto the wall within this second; a coarse method gets its orbit wrong.
+    # Node 49 comes to rest on the wall within this second; a coarse method gets its orbit wrong.
     coarse = {**SHORT, "accuracy": {"integrator": "generalized_alpha", "step": 0.002}, "recording.rate_hz": 500}
     sweep = client.submit("paper-200m", set=coarse, axes={"flow_rate": [0.01, 0.02, 0.04]}, verify=2)
     assert sweep.wait(timeout=120.0).counts.succeeded == 3

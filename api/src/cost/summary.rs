@@ -25,7 +25,7 @@ pub struct SummaryRow {
     pub reference_orbit_size: Option<f64>,
     /// Measured depth of that node \[m\].
     pub measured_depth: Option<f64>,
-    /// Step \[s\] of the RK4 run that speeds are told from; absent where the study has none of fixed steps.
+    /// Step \[s\] of the RK4 run that speeds are relative to; absent where the study has none of fixed steps.
     pub rk4_step: Option<f64>,
     /// Name of the line; `A` and `B` are the reference's two methods, each against the other.
     pub name: String,
@@ -45,7 +45,7 @@ pub struct SummaryRow {
     pub speed_over_rk4: Option<f64>,
     /// What a named accuracy promises, and whether it keeps it; absent for others.
     pub promise: Option<PromiseCheck>,
-    /// Lines above a twentieth of the reference's highest that the reference has not; absent where nothing tells.
+    /// Lines above a twentieth of the reference's highest that the reference does not have; absent where that is unknown.
     pub spurious_lines: Option<usize>,
     /// Why the run failed.
     pub failure: Option<String>,
@@ -85,7 +85,7 @@ pub enum Verdict {
     Kept,
     /// A node is off by more.
     Broken,
-    /// Nothing tells: the run failed, no reference exists for one of the two quantities, or an interval of the bias holds both.
+    /// Unknown: the run failed, no reference exists for one of the two quantities, or an interval of the bias holds both.
     Unknown,
 }
 

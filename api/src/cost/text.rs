@@ -357,7 +357,7 @@ pub(super) fn signed_percent(ratio: f64) -> String {
     format!("{sign}{size}")
 }
 
-/// A bias in per cent, with its interval and spread where members tell them: `+39.8 ± 1.2 (2)`.
+/// A bias in per cent, with its interval and spread where there are several members: `+39.8 ± 1.2 (2)`.
 fn statistic_text(error: &StatisticError) -> String {
     let mut text = signed_percent(error.bias);
     if let Some(half_width) = error.half_width {

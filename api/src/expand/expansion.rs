@@ -118,7 +118,7 @@ pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
     Ok(scenario)
 }
 
-/// Sets a numeric field. Whole numbers go by way of the written form, which says what is wrong with others.
+/// Sets a numeric field. Whole numbers are converted by the written form, which reports what is wrong with others.
 pub(super) fn set_number(scenario: &mut Scenario, path: &str, value: f64) -> Result<(), Problem> {
     match scenario.number_mut(path) {
         Some(number) => *number = value,

@@ -16,7 +16,7 @@ use crate::point::{PointError, PointState};
 /// Lengths below this \[m\] are what rounding and the iteration of the equilibrium leave of no motion at all: they have no bias.
 const LEAST_LENGTH: f64 = 1e-9;
 
-/// A statistic of a node whose bias is told.
+/// A statistic of a node whose bias is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Statistic {
     OrbitSize,
@@ -33,7 +33,7 @@ impl Statistic {
         (&columns::LINE_FREQUENCY_HZ, Statistic::LineFrequency),
     ];
 
-    /// That of a field of the summary, if its bias is told.
+    /// That of a field of the summary, if its bias is reported.
     fn of(name: &str) -> Option<Self> {
         let name = Name::parse(name).filter(|name| name.variant == Variant::Value && name.node.is_some())?;
         let is_it = |(quantity, _): &&(&Quantity, Statistic)| *quantity == name.quantity;
@@ -78,7 +78,7 @@ pub struct VerifiedPoint {
     pub error: Option<PointError>,
 }
 
-/// Statistics whose bias is told, by their names in a summary: read from one, what else it has being skipped. Of ensembles they
+/// Statistics whose bias is reported, by their names in a summary: read from one, what else it has being skipped. Of ensembles they
 /// are the means over the members, which the spread of histories troubles least.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics(IndexMap<String, f64>);

@@ -68,7 +68,7 @@ impl PlotAxis {
         Self::between(0.0, high * (1.0 + 2.0 * PADDING)).or_else(|| Self::between(0.0, 1.0))
     }
 
-    /// A linear axis from end to end. None if the ends are not finite, or have no values between them to tell apart.
+    /// A linear axis from end to end. None if the ends are not finite, or have no values between them that are distinguishable.
     pub fn between(low: f64, high: f64) -> Option<Self> {
         let (low, high) = (Scale::Linear.coordinate(low)?, Scale::Linear.coordinate(high)?);
         let magnitude = low.abs().max(high.abs());

@@ -1,4 +1,4 @@
-//! How series are told apart: by colour and by the shape of their markers.
+//! How series are distinguished: by colour and by the shape of their markers.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
@@ -17,7 +17,7 @@ pub(super) enum Marker {
     Cross,
 }
 
-/// Okabe and Ito's palette, which people with any common colour vision can tell apart, without its yellow:
+/// Okabe and Ito's palette, which people with any common colour vision can distinguish, without its yellow:
 /// that is too faint for lines on white.
 const PALETTE: [Colour; 7] = [
     Colour(0x00, 0x72, 0xb2),

@@ -126,7 +126,7 @@ impl OrbitPlot {
     }
 }
 
-/// The places that can be told from the one before.
+/// The positions that are distinguishable from the one before.
 fn without_near(places: impl Iterator<Item = Position>) -> Vec<Position> {
     let mut kept: Vec<Position> = Vec::new();
     for [x, y] in places {

@@ -73,7 +73,7 @@ impl Metrics {
         );
         registry.register(
             "expired_leases",
-            "Leases of silent workers that this process has found run out",
+            "Expired leases of silent workers that this process has found",
             expired_leases.clone(),
         );
         census.register(&mut registry);
@@ -101,12 +101,12 @@ impl CensusGauges {
     fn register(&self, registry: &mut Registry) {
         registry.register(
             "work",
-            "Points to be computed, by state; points that share a result are one",
+            "Work items by state; points that share a result are one",
             self.work.clone(),
         );
         registry.register("points", "Points of all sweeps, by state", self.points.clone());
         registry.register("sweeps", "Sweeps that are stored", self.sweeps.clone());
-        registry.register("workers", "Workers heard of lately", self.workers.clone());
+        registry.register("workers", "Workers with a recent heartbeat", self.workers.clone());
         registry.register_with_unit(
             "oldest_queued",
             "Age of the point that has waited longest for a worker",
@@ -122,7 +122,7 @@ impl CensusGauges {
         );
         registry.register(
             "results_that_disagree",
-            "Results that were computed anew and came out otherwise: never, if all is well",
+            "Results that were recomputed and differ from the earlier ones; 0 where all is well",
             self.disagreements.clone(),
         );
         registry.register_with_unit(

@@ -24,7 +24,7 @@ pub struct Config {
     pub reap_interval: Duration,
     /// How often a long poll looks for a change.
     pub poll_interval: Duration,
-    /// How long open requests may take to end once the service is told to stop.
+    /// How long open requests may take to end once the service is asked to stop.
     pub drain_timeout: Duration,
     /// What one owner may ask for.
     pub owner_limits: OwnerLimits,
@@ -46,7 +46,7 @@ impl Default for Config {
 pub(crate) struct App {
     pub(crate) store: Store,
     pub(crate) config: Arc<Config>,
-    /// Turns true when the service is told to stop; long polls and event streams end on it.
+    /// Turns true when the service is asked to stop; long polls and event streams end on it.
     pub(crate) stopping: watch::Receiver<bool>,
     pub(crate) limiter: Arc<RequestLimiter>,
     pub(crate) metrics: Arc<Metrics>,

@@ -17,8 +17,7 @@ pub(crate) async fn check_open_points(app: &App, owner: &str, added: usize) -> R
     if open + added as u64 <= limit {
         return Ok(());
     }
-    let detail = format!(
-        "{owner} has {open} points that wait or run and may have {limit}; {added} more have no room until some are done"
-    );
+    let detail =
+        format!("{owner} has {open} points queued or running; {added} more would exceed the {limit} allowed");
     Err(Error::too_many(ProblemKind::QuotaExceeded, detail, WAIT))
 }

@@ -29,7 +29,7 @@ const PAGE: i64 = 500;
 /// How long a client waits before it connects again.
 const RETRY: Duration = Duration::from_secs(2);
 
-/// From where on a stream tells.
+/// Where a stream begins.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
@@ -41,7 +41,7 @@ pub(crate) struct EventsQuery {
 
 /// Follow a sweep: a stream of events
 ///
-/// Events `point` (data: `PointEvent`) tell of points, and of reference runs that verify some, that came to a new state; events
+/// Events `point` (data: `PointEvent`) report points, and reference runs that verify some, that changed their state; events
 /// `sweep` (data: `Sweep`, without its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and
 /// every two seconds while there is progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at
 /// the first that is kept. It ends when everything is final; who then connects again is answered 204, which ends the matter for a
@@ -58,7 +58,7 @@ pub(crate) struct EventsQuery {
     ),
     responses(
         (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
-        (status = 204, description = "There is nothing left to tell"),
+        (status = 204, description = "There are no further events"),
         Problems
     )
 )]
@@ -87,7 +87,7 @@ pub(crate) async fn follow(
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
     let Ok(permit) = app.streams.clone().try_acquire_owned() else {
-        return Err(Error::unavailable("all event streams are taken"));
+        return Err(Error::unavailable("all event streams are in use"));
     };
     let follower = Follower {
         app,
@@ -108,9 +108,9 @@ pub(crate) async fn follow(
 struct Follower {
     app: App,
     id: String,
-    /// The number of the last event that was told.
+    /// The number of the last event that was sent.
     sequence: i64,
-    /// The sweep as it was last told, and when it was read.
+    /// The sweep as it was last sent, and when it was read.
     seen: Option<(Sweep, Instant)>,
     version: Option<i64>,
     pending: VecDeque<Event>,
@@ -135,7 +135,7 @@ impl Follower {
                 tracing::warn!(
                     ?error,
                     sweep = self.id,
-                    "an event stream ends early; its client may come back"
+                    "an event stream ends early; its client may reconnect"
                 );
                 return None;
             }
@@ -174,7 +174,7 @@ impl Follower {
         if events.len() as i64 == PAGE {
             return Ok(());
         }
-        // The version was read before the events: all up to it have been told.
+        // The version was read before the events: all up to it have been sent.
         self.sequence = self.sequence.max(version);
         let sweep = Sweep { request: None, ..load(&self.app, &self.id).await? };
         self.has_ended = sweep.finished.is_some();

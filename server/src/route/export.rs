@@ -72,7 +72,7 @@ pub(crate) async fn export(
         if let Err(error) = archive.write(&mut sink, &sweep) {
             // The client sees a body that breaks off; one that has gone away needs no word in the log.
             if error.kind() != io::ErrorKind::BrokenPipe {
-                tracing::error!(%error, sweep = archive.id, "an export broke off");
+                tracing::error!(%error, sweep = archive.id, "an export was aborted");
             }
             let _ = sink.sender.blocking_send(Err(error));
         }

@@ -73,7 +73,7 @@ pub(crate) async fn list(
     params(
         ArtifactPath,
         ("Range" = Option<String>, Header, description = "Which bytes, such as `bytes=0-1023`."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still right."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still current."),
         ("If-Range" = Option<String>, Header, description = "The `ETag` under which `Range` holds."),
     ),
     responses(
@@ -85,7 +85,7 @@ pub(crate) async fn list(
             (Vec<u8> = "application/vnd.apache.parquet"),
             (Vec<u8> = "application/json")
         )),
-        (status = 304, description = "The copy is right"),
+        (status = 304, description = "The copy is current"),
         Problems
     )
 )]
@@ -111,7 +111,7 @@ pub(crate) async fn show(
         (header::CONTENT_TYPE, media_type),
         (header::ETAG, tag),
         (header::ACCEPT_RANGES, HeaderValue::from_static("bytes")),
-        // The point may be computed anew; asking whether the copy is right costs little.
+        // The point may be recomputed; checking whether the copy is current costs little.
         (header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache")),
     ];
     // What is not a range of bytes is to be ignored (RFC 9110 section 14.2).

@@ -69,7 +69,7 @@ pub(crate) async fn list(
         return Err(records::no_such_sweep(&id));
     }
     let states = query.state.map_or_else(Vec::new, records::work_states);
-    // One more than asked for tells whether there is a next page.
+    // One more than asked for shows whether there is a next page.
     let mut records = app.store.points(&id, &states, after, i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
@@ -112,10 +112,10 @@ pub(crate) struct FailuresQuery {
     cursor: Option<String>,
 }
 
-/// The points of all sweeps that were given up, the latest first
+/// The failed points of all sweeps, the latest first
 ///
 /// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
-/// of a sweep again. Of reference runs that only verify a point `GET /v1/sweeps/{id}/verification` tells.
+/// of a sweep again. Reference runs that only verify a point are at `GET /v1/sweeps/{id}/verification`.
 #[utoipa::path(
     get,
     path = "/v1/failures",
@@ -132,7 +132,7 @@ pub(crate) async fn failures(
     let after = query.cursor.as_deref().map(failure_place).transpose()?;
     let filter =
         FailureFilter { owner: query.owner.as_deref(), class: query.class.map(FailureClass::as_str) };
-    // One more than asked for tells whether there is a next page.
+    // One more than asked for shows whether there is a next page.
     let mut records = app.store.failures(&filter, after.as_ref(), i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
@@ -163,7 +163,7 @@ fn failure_place(cursor: &str) -> Result<FailurePlace> {
     tag = "points",
     operation_id = "get_point",
     params(PointPath),
-    responses((status = 200, description = "The point as it stands", body = PointDetail), Problems)
+    responses((status = 200, description = "The point in its present state", body = PointDetail), Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

@@ -21,7 +21,7 @@ pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);
     path = "/v1/workers",
     tag = "service",
     operation_id = "list_workers",
-    responses((status = 200, description = "Workers heard of lately, oldest first", body = WorkerList), Problems)
+    responses((status = 200, description = "Workers with a recent heartbeat, oldest first", body = WorkerList), Problems)
 )]
 pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> {
     let worker = |record: WorkerRecord| {
@@ -45,7 +45,7 @@ pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> 
     path = "/v1/queue",
     tag = "service",
     operation_id = "get_queue",
-    responses((status = 200, description = "How much waits and how much is under way", body = Queue), Problems)
+    responses((status = 200, description = "How much is queued and how much is running", body = Queue), Problems)
 )]
 pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     let depths = app.store.queue_depths().await?;

@@ -60,7 +60,7 @@ pub(crate) enum Cache {
     /// Their results are taken; the others are computed.
     #[default]
     Reuse,
-    /// All points are computed anew, failed ones too. The old results stay until new ones take their place, for all sweeps
+    /// All points are recomputed, failed ones too. The old results stay until new ones replace them, for all sweeps
     /// that have the points; these are running again meanwhile.
     Refresh,
     /// Their results are taken, and nothing is computed: a sweep with points that nobody has computed yet is refused (409),
@@ -80,11 +80,11 @@ pub(crate) enum Cache {
     request_body = SweepRequest,
     params(
         SubmitQuery,
-        ("Idempotency-Key" = Option<String>, Header, description = "A text of the client's making, such as a UUID. \
-            The same request sent again under the same key is answered with the sweep that it made the first time."),
+        ("Idempotency-Key" = Option<String>, Header, description = "A key of the client's choice, such as a UUID. \
+            The same request sent again with the same key is answered with the sweep that it made the first time."),
     ),
     responses(
-        (status = 201, description = "The sweep is stored and waits for workers", body = Sweep,
+        (status = 201, description = "The sweep is stored and queued", body = Sweep,
             headers(("Location" = String, description = "The sweep"))),
         (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
         Problems,
@@ -114,7 +114,7 @@ pub(crate) async fn create(
         ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
     ),
     responses(
-        (status = 201, description = "The run is stored and waits for a worker", body = Sweep,
+        (status = 201, description = "The run is stored and queued", body = Sweep,
             headers(("Location" = String, description = "The sweep of one point"))),
         (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
         Problems,
@@ -208,7 +208,7 @@ async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<Dry
     blocking(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
 }
 
-/// What tells two requests under the same key apart.
+/// What distinguishes two requests with the same key.
 fn request_hash(body: &[u8], cache: Cache) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     hasher.update(body);
@@ -264,7 +264,7 @@ pub(crate) struct ListQuery {
 )]
 pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
     let limit = extract::page_size(query.limit)?;
-    // One more than asked for tells whether there is a next page.
+    // One more than asked for shows whether there is a next page.
     let filter = SweepFilter {
         owner: query.owner.as_deref(),
         state: query.state.map(SweepState::as_str),
@@ -348,7 +348,7 @@ pub(crate) enum Until {
     tag = "sweeps",
     operation_id = "get_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,
@@ -381,7 +381,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
             // An error means that the service is gone.
             _ = stopping.wait_for(|stopping| *stopping) => break,
         }
-        // The version tells of new states cheaply; progress within a point does not raise it.
+        // The version shows new states cheaply; progress within a point does not raise it.
         let current = app.store.sweep_version(&before.id).await?;
         if version != Some(current) || read.elapsed() >= PROGRESS_INTERVAL {
             sweep = load(app, &before.id).await?;
@@ -396,7 +396,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
 
 /// Cancel a sweep
 ///
-/// Points that wait are cancelled at once, points under way within a heartbeat of their worker, and so are the reference runs that
+/// Queued points are cancelled at once, running ones within a heartbeat of their worker, and so are the reference runs that
 /// verify some. What another sweep wants too goes on for that sweep. Cancelling again changes nothing.
 #[utoipa::path(
     post,
@@ -404,7 +404,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
     tag = "sweeps",
     operation_id = "cancel_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep")),
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.cancel_sweep(&id).await?;
@@ -418,7 +418,7 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
     tag = "sweeps",
     operation_id = "retry_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep")),
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.retry_sweep(&id).await?;
@@ -427,7 +427,7 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
 
 /// Pause a sweep
 ///
-/// Its points are not handed out any more, but for those that another sweep wants; points under way go on to their end.
+/// Its queued points are not started any more, but for those that another sweep wants; running ones continue to their end.
 /// Pausing again changes nothing.
 #[utoipa::path(
     post,
@@ -435,7 +435,7 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
     tag = "sweeps",
     operation_id = "pause_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep")),
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, true).await?;
@@ -449,7 +449,7 @@ pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Res
     tag = "sweeps",
     operation_id = "resume_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep")),
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, false).await?;
@@ -466,7 +466,7 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
     operation_id = "change_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep")),
     request_body = SweepPatch,
-    responses((status = 200, description = "The sweep as it stands", body = Sweep), Problems)
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn change(
     State(app): State<App>,

@@ -31,7 +31,7 @@ impl Verified {
     pub(crate) async fn load(store: &Store, id: &str) -> Result<Self> {
         let records = store.verifications(id).await?;
         let Some(first) = records.first() else { return Ok(Self::default()) };
-        // A preset is the same for all points of a sweep, and nothing else promises anything: one of them tells.
+        // A preset is the same for all points of a sweep, and nothing else promises anything: one of them is enough.
         let scenario = store.point(id, first.ordinal).await?.and_then(|point| point.scenario);
         blocking(move || {
             let points: Vec<VerifiedPoint> =

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::bench::Bench;
 
-/// `DRILLSWEEP_WRITE_OPENAPI=1 cargo test -p drillsweep-server openapi` writes the file anew.
+/// `DRILLSWEEP_WRITE_OPENAPI=1 cargo test -p drillsweep-server openapi` rewrites the file.
 #[tokio::test]
 async fn the_committed_document_is_the_one_that_is_served() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../api/openapi.json");

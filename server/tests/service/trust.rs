@@ -121,7 +121,7 @@ async fn an_owner_who_asks_too_fast_is_told_when_to_come_back() {
     let three = json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02, 0.03]}}});
     let refused = submit(&bench, &bob, three).await;
     let problem = refused.problem(429, "quota-exceeded");
-    assert!(problem["detail"].as_str().unwrap().contains("may have 2"), "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("the 2 allowed"), "{problem}");
     assert!(refused.headers.contains_key(header::RETRY_AFTER));
     assert_eq!(submit(&bench, &bob, json!({"preset": "paper-200m"})).await.status, StatusCode::CREATED);
 }

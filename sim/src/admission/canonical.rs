@@ -25,7 +25,7 @@ struct Canonical {
     cost_study: Option<CostStudy>,
 }
 
-/// A mesh of which the encoding tells which form it has.
+/// A mesh whose encoding distinguishes its forms.
 #[derive(Serialize)]
 enum CanonicalMesh {
     /// By what the lengths of `auto` are multiplied.

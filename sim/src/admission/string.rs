@@ -101,7 +101,7 @@ fn mesh_targets(report: &mut Report, scenario: &Scenario) {
     report.warn(
         scenario.mesh.is_auto() && scenario.contact.law == WallLaw::PerNode,
         "mesh",
-        "contact stiffness is a node's, so the elements that \"auto\" makes decide how hard the wall is; with contact.law = \
+        "contact stiffness is a node's, so the element lengths of \"auto\" decide how stiff the wall is; with contact.law = \
          \"per_length\" it is the same for every mesh",
     );
     report.warn(
@@ -181,7 +181,7 @@ fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
             too_fine(report, scenario);
             None
         }
-        // Only places off the string and materials that are none are left, reported above.
+        // Only gauges and masses off the string and invalid materials are left, reported above.
         Err(_) => None,
     }
 }
@@ -200,7 +200,7 @@ fn too_fine(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-/// Clearances of gauges against what the bodies leave, and places that will not do what they promise.
+/// Clearances of gauges against what the bodies leave, and gauges and masses that will have no effect.
 fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
     let string = &scenario.string;
     for (i, gauge) in string.gauges.iter().enumerate() {

@@ -117,7 +117,7 @@ fn check_reference(report: &mut Report, scenario: &Scenario, study: &CostStudy) 
         of_different_kind,
         format!("{PATH}.methods"),
         names.join(", "),
-        "must be two different integrators: what one alone reaches may be its own doing",
+        "must be two different integrators: a limit that only one of them reaches may be an error of the method",
     );
     for (i, &stepping) in methods.iter().enumerate() {
         let mut found = Report::default();

@@ -162,8 +162,8 @@ pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
             |radius| of_alpha && (0.0..=LARGEST_SPECTRAL_RADIUS).contains(&radius),
             if of_alpha {
                 format!(
-                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps what the contact sweeps leave, and the \
-                     run goes wrong without a sign"
+                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps the error that the contact sweeps \
+                     leave, and results are wrong without any indication"
                 )
             } else {
                 "is for generalized_alpha only".to_owned()

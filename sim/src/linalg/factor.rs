@@ -10,7 +10,7 @@ use crate::freedom::DOFS;
 ///
 /// The elimination is twisted: rows are eliminated from both ends towards the middle one, which gives two
 /// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
-/// matrix can be regular and still fail; [`Factor::growth`] tells how much was lost.
+/// matrix can be regular and still fail; [`Factor::growth`] measures how much was lost.
 #[derive(Debug, Clone)]
 pub struct Factor<const D: usize = DOFS> {
     /// From the top end, in the order of elimination.

@@ -144,7 +144,7 @@ fn start(pencil: &Pencil) -> Vec<Vec<Complex<f64>>> {
     basis
 }
 
-/// Takes the basis' components out of a vector, tells them, and returns the size of what is left.
+/// Removes the basis' components from a vector, reports them, and returns the norm of the remainder.
 fn orthogonalise(
     vector: &mut [Complex<f64>],
     basis: &[Vec<Complex<f64>>],

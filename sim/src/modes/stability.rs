@@ -1,4 +1,4 @@
-//! Whether a scene is unstable by its physics, and by which: what a failed run or a limit cycle is to be told apart by.
+//! Whether a scene is unstable by its physics, and by which: what distinguishes a failed run from a limit cycle.
 
 use std::f64::consts::TAU;
 use std::fmt;

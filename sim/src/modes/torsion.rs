@@ -234,7 +234,7 @@ impl Chain {
             }
             let middle = 0.5 * (low + high);
             if high - low <= ENCLOSED * high || middle <= low || middle >= high {
-                // What lies closer together than this is told by one shape.
+                // Frequencies closer together than this have one shape.
                 modes.extend((below_low..below_high).map(|_| self.mode(middle)));
                 continue;
             }

@@ -15,7 +15,7 @@ use super::slot::slot_flow;
 use crate::beam::BeamSection;
 use crate::scenario::Mud;
 
-/// Everything the flow at one cross-section tells, SI units.
+/// All quantities of the flow at one cross-section, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElementFlow {
     /// Eccentricity e, cut to \[0, 1\].

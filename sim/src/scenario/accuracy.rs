@@ -24,9 +24,13 @@ pub enum Accuracy {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyTarget {
-    /// Of statistics over the windows that are read, such as the size of an orbit: 0.0001 to 0.1.
+    /// Of statistics over the windows that are read, such as the size of an orbit: 0.0001 to 0.1, usual 0.003 to 0.08. The longest
+    /// step goes with its root, so that a quarter of it costs about twice the time. Too large, and stick-slip is inaccurate; from
+    /// 0.003 down, steps also resolve torsion that falling friction feeds, to 0.125 ms. It does not reduce the spread of an
+    /// ensemble.
     Statistics(f64),
-    /// Of the history itself, relative to the motion, as long as histories of neighbouring starts stay together: 0.0001 to 0.1.
+    /// Of the history itself, relative to the motion, as long as histories of neighbouring starts stay together: 0.0001 to 0.1,
+    /// usual 0.01 to 0.05. Steps are those of half as large a tolerance on statistics.
     Trajectory(f64),
 }
 
@@ -154,7 +158,8 @@ struct Fields {
     spectral_radius: Option<f64>,
 }
 
-/// Named accuracies.
+/// Named accuracies, by the error allowed in the size of an orbit and in the standard deviation of its radius: `draft` 8 and 15 %,
+/// `standard` 2 and 5 %, `reference` 0.3 and 1 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -194,17 +199,26 @@ impl AccuracyPreset {
 pub struct TimeStepping {
     /// The method.
     pub integrator: Integrator,
-    /// Step \[s\]; with a tolerance the longest one. A part of the recording interval, or for `esdirk4` the recording interval times a
-    /// power of two.
+    /// Step \[s\], above 0; with a tolerance the longest one. A fixed step is a whole part of the recording interval, or for
+    /// `esdirk4` that times a power of two. Usual 2.5e-4 to 8e-3 for `esdirk4`, 1e-4 to 1e-3 for `generalized_alpha`, 1e-5 to 6e-5
+    /// for `rk4`. Implicit methods damp what a long step does not resolve, and cut it into up to 4096 parts where contact sweeps
+    /// would diverge; `rk4` is refused beyond its stability limit. Below 1e-4 s implicit methods no longer damp the torsion of
+    /// single elements, which falling friction feeds unless `damping.stiffness_proportional` is above 0.
     pub step: f64,
-    /// Contact sweeps a solve, 2 or more (implicit methods).
+    /// Contact sweeps a solve, 2 to 1000, 2 unless given (implicit methods). Two are a fixed number; more are a limit on sweeps
+    /// that end once they have converged (1e-9 m, and 1e-6 of a friction coefficient). Usual 2, or 30 for a reference: with fixed
+    /// steps too few leave contact forces that do not fit the motion, which the result's sweep monitor shows.
     #[serde(default = "two")]
     pub contact_sweeps: u32,
-    /// Adapts the step; absent means a fixed step. For `esdirk4` the relative error that statistics may have, for `rk4` the local error
-    /// of a lateral displacement in hole radii.
+    /// Adapts the step; absent means a fixed step, which `generalized_alpha` always has. For `esdirk4` the relative error that
+    /// statistics may have, 0.0001 to 0.1, usual 0.003 to 0.08; for `rk4` the local error of a lateral displacement in hole radii,
+    /// above 0 and below 0.1, usual 1e-6 to 1e-4. Too large misses sticking and impacts. Too small asks for steps that are not
+    /// taken: `esdirk4` keeps its shortest, a 128th of the longest, and counts it in `unresolved_steps`; `rk4` fails below a
+    /// millionth of it.
     #[serde(default)]
     pub tolerance: Option<f64>,
-    /// Spectral radius at infinite frequency (`generalized_alpha`), 0 to 0.95; absent means 0.8. One, the trapezium rule,
+    /// Spectral radius at infinite frequency (`generalized_alpha` only), 0 to 0.95; absent means 0.8, usual 0.6 to 0.9. Smaller
+    /// values damp more, also of what a step resolves; larger ones leave unresolved frequencies undamped. One, the trapezium rule,
     /// damps nothing, and with a fixed number of contact sweeps it fails silently.
     #[serde(default)]
     pub spectral_radius: Option<f64>,
@@ -237,7 +251,9 @@ fn two() -> u32 {
     2
 }
 
-/// Time integration methods.
+/// Time integration methods: `esdirk4` is ESDIRK4(3)6L (Kennedy and Carpenter 2003), order 4, L-stable, the method of all named
+/// accuracies; `generalized_alpha` (Chung and Hulbert 1993) has order 2 and fixed steps; `rk4` is the classical Runge-Kutta method
+/// of order 4, the paper's, explicit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

@@ -37,25 +37,29 @@ pub enum MeshName {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ScaledMesh {
-    /// What multiplies all lengths of `auto`: 0.5 makes every element half as long.
+    /// What multiplies all lengths of `auto`, above 0; usual 0.25 to 2: 0.5 makes every element half as long. Above 2 elements are
+    /// longer than the length over which the wall spreads a bent pipe's force; a mesh of more than 20,000 elements is refused.
     pub auto: f64,
 }
 
-/// Target element lengths \[m\]; every stretch between two places that need a node is cut into equal
-/// elements no longer than its kind's target.
+/// Target element lengths \[m\], each above 0; every stretch between two boundaries (changes of section, tool joints, gauges,
+/// masses) is cut into equal elements no longer than its kind's target, at most 20,000 in all. Contact acts at nodes, so that long
+/// elements miss it between them. Short ones cost time, lower RK4's stability limit in proportion, and with the law `per_node` make
+/// the wall stiffer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ElementLengths {
-    /// Drillpipe bodies \[m\].
+    /// Drillpipe bodies \[m\]; usual 0.5 to 3. Too long makes the pipe too stiff against buckling between its joints.
     pub drillpipe: f64,
-    /// Tool joints \[m\].
+    /// Tool joints \[m\]; usual 0.03 to 0.3. Orbits of pipe between joints on the wall change by a third from one element a joint
+    /// to eight; the shortest elements of the mesh set RK4's stability limit.
     pub tool_joint: f64,
-    /// Collars \[m\].
+    /// Collars \[m\]; usual 0.25 to 1, at most the length over which the wall spreads a bent collar's force, about 1.
     pub collar: f64,
-    /// Stabilizers \[m\].
+    /// Stabilizers \[m\]; usual 0.25 to 1. The blades touch at the gauge's node, whatever the length.
     pub stabilizer: f64,
-    /// Bit \[m\].
+    /// Bit \[m\]; usual its whole length, 0.2 to 0.5, as one element.
     pub bit: f64,
 }
 

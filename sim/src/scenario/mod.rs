@@ -33,14 +33,15 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
-    /// A name for people; it does not enter the numbers.
+    /// A name for people; it does not enter the numbers. Empty unless given.
     #[serde(default)]
     pub name: String,
     /// The hole: survey and diameter.
     pub well: Well,
     /// The string, from the top down.
     pub string: DrillString,
-    /// The mud inside and outside the string; absent means a dry hole (no fluid effect, no buoyancy).
+    /// The mud inside and outside the string; absent means a dry hole: no fluid effect and no buoyancy, and so no damping of
+    /// lateral motion but the structure's and the wall's.
     #[serde(default)]
     pub mud: Option<Mud>,
     /// Rotation and loads.
@@ -49,23 +50,27 @@ pub struct Scenario {
     pub contact: ContactLaw,
     /// Rayleigh damping of the structure.
     pub damping: RayleighDamping,
-    /// How finely the string is cut into elements: `"auto"` or target element lengths.
+    /// How finely the string is cut into elements: `"auto"` or target element lengths. Too coarse, and bending between contacts and
+    /// torsion at high frequencies are wrong; too fine costs processor time in proportion to the number of elements.
     pub mesh: Mesh,
-    /// Simulated time \[s\].
+    /// Simulated time \[s\], a whole multiple of the recording interval; usual 20 to 120. Too short, and the statistics show how
+    /// the run starts: friction takes some 15 s to swing torsion of the base case up to stick-slip. Longer runs cost processor time
+    /// in proportion.
     pub duration: f64,
     /// What is kept of the run.
     pub recording: Recording,
-    /// Integrator and step, as a preset or in full.
+    /// How finely time is resolved: a preset, a tolerance, or integrator and step in full; absent means `standard`.
     #[serde(default)]
     pub accuracy: Accuracy,
-    /// Which terms of the model are assembled: `auto` (those that the scene calls for), `on` or `off`.
+    /// Which terms of the model are assembled: `auto` (those that the scene calls for), `on` or `off`. Absent means `auto` for all.
     #[serde(default)]
     pub effects: Effects,
-    /// Runs of the point: the first as it is, the others disturbed by 1e-6 m at the start. More than one gives every
-    /// statistic its spread, and the time up to which the history itself can be trusted.
+    /// Runs of the point, 1 to 64, 1 unless given: the first as it is, the others disturbed by 1e-6 m at the start. More than one
+    /// gives every statistic its spread, and the time up to which the history itself can be trusted. Usual 1, 2 to measure how far
+    /// the scene amplifies errors, 5 to 8 for a spread; each member costs a whole run.
     #[serde(default = "one")]
     pub ensemble: u32,
-    /// A work-precision study in place of the run.
+    /// A work-precision study in place of the run; absent means the run.
     #[serde(default)]
     pub cost_study: Option<CostStudy>,
 }
@@ -83,9 +88,12 @@ impl Scenario {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Well {
-    /// Diameter of the hole, D_ch \[m\].
+    /// Diameter of the hole, D_ch \[m\], larger than every outer diameter; usual 0.1 to 0.45. The smaller the annulus, the greater
+    /// the mud's added mass, friction and damping, which grow without bound as it closes.
     pub hole_diameter: f64,
-    /// Survey stations, measured depth strictly increasing. The string hangs from the first one.
+    /// Survey stations, 2 or more, from the top of the string at measured depth 0 to its end or beyond. The hole turns by less than
+    /// 180 deg from one to the next; between them its curvature is constant, so that wide stations smooth doglegs out and noisy
+    /// close ones invent them.
     pub survey: Vec<SurveyStation>,
 }
 
@@ -94,11 +102,13 @@ pub struct Well {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SurveyStation {
-    /// Measured depth \[m\], counted from the top of the string.
+    /// Measured depth \[m\], counted from the top of the string: 0 at the first station, then strictly increasing; usual 10 to 30
+    /// from one station to the next.
     pub measured_depth: f64,
-    /// Inclination from the vertical \[deg\], 0 to 180.
+    /// Inclination from the vertical \[deg\], 0 to 180: 0 is straight down, 90 horizontal; usual 0 to 95. With the azimuth it makes
+    /// the dogleg, usually up to 15 deg per 30 m; more than 30 is warned of.
     pub inclination_deg: f64,
-    /// Azimuth from north, clockwise \[deg\].
+    /// Azimuth from north, clockwise \[deg\]; usual 0 to 360, any value counts modulo 360. In a vertical stretch it says nothing.
     pub azimuth_deg: f64,
 }
 
@@ -109,12 +119,14 @@ pub struct SurveyStation {
 pub struct DrillString {
     /// The steel (or other material) of all sections.
     pub material: Material,
-    /// Sections from the top down.
+    /// Sections from the top down, 1 or more, together no longer than the survey.
     pub sections: Vec<Section>,
-    /// Places where a blade or the bit narrows the clearance. A node is put at each.
+    /// Where a blade or the bit narrows the clearance; none unless given. A node is put at each. Without them stabilizers touch the
+    /// wall with their bodies only.
     #[serde(default)]
     pub gauges: Vec<Gauge>,
-    /// Discrete unbalance masses. A node is put at each.
+    /// Discrete unbalance masses; none unless given. A node is put at each. Without them nothing excites forward whirl at the speed
+    /// of rotation.
     #[serde(default)]
     pub unbalance: Vec<UnbalanceMass>,
 }
@@ -124,11 +136,14 @@ pub struct DrillString {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Young's modulus E \[Pa\].
+    /// Young's modulus E \[Pa\], above 0; usual 2.0e11 to 2.1e11 for steel, 7e10 for aluminium, 1.1e11 for titanium. Bending, axial
+    /// and torsional stiffness are proportional to it, and so is the force with which a straight pipe presses on a curved hole.
     pub youngs_modulus: f64,
-    /// Density \[kg/m3\].
+    /// Density \[kg/m3\], above 0; usual 7700 to 7900 for steel, 2800 for aluminium, 4400 for titanium. It decides weight, and with
+    /// it side forces and tension, and the inertia.
     pub density: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio, 0 to 0.5; usual 0.27 to 0.33. It sets the shear modulus, E / (2 (1 + nu)), and so torsional stiffness: 0.3
+    /// instead of 0.27 lowers torsional frequencies by 1.2 %.
     pub poissons_ratio: f64,
 }
 
@@ -137,16 +152,20 @@ pub struct Material {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Section {
-    /// What the section is; it decides the target element length.
+    /// What the section is; it decides which target element length holds, and nothing else.
     pub kind: SectionKind,
-    /// Number of equal pieces; each has `length`.
+    /// Number of equal pieces, each of `length`; 1 unless given.
     #[serde(default = "one")]
     pub count: u32,
-    /// Length of one piece \[m\], tool joints included.
+    /// Length of one piece \[m\], above 0, tool joints included; usual 9 to 9.6 for a drillpipe or collar, 1 to 3 for a stabilizer,
+    /// 0.2 to 0.5 for a bit.
     pub length: f64,
-    /// Outer diameter of the body \[m\].
+    /// Outer diameter of the body \[m\], smaller than the hole; usual 0.089 to 0.168 for drillpipe, 0.12 to 0.24 for collars.
+    /// Bending and torsional stiffness grow with its fourth power; the nearer to the hole, the more added mass and the less room
+    /// for whirl.
     pub outer_diameter: f64,
-    /// Inner diameter of the body \[m\].
+    /// Inner diameter of the body \[m\], 0 to below the outer; usual 0.07 to 0.15 for drillpipe, 0.05 to 0.08 for collars. A narrow
+    /// bore raises the speed of the mud and the pressure that it takes.
     pub inner_diameter: f64,
     /// Tool joints at both ends of each piece; absent means a plain body.
     #[serde(default)]
@@ -157,7 +176,8 @@ fn one() -> u32 {
     1
 }
 
-/// The kinds of section that a mesh tells apart.
+/// The kinds of section that a mesh distinguishes: `drillpipe` (heavy-weight drillpipe too), `collar`, `stabilizer` (its body; its
+/// blades are a gauge) and `bit`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -177,11 +197,13 @@ pub enum SectionKind {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ToolJoint {
-    /// Length of one joint \[m\].
+    /// Length of one joint \[m\], less than half of the piece; usual 0.2 to 0.4. Where joints rest on the wall, orbits of the pipe
+    /// between them depend on how finely they are meshed.
     pub length: f64,
-    /// Outer diameter \[m\].
+    /// Outer diameter \[m\], smaller than the hole; usual 0.12 to 0.21. Larger than the body's, it keeps the body off the wall; a
+    /// smaller one is warned of.
     pub outer_diameter: f64,
-    /// Inner diameter \[m\].
+    /// Inner diameter \[m\], 0 to below the outer; usual 0.05 to 0.13, at most that of the body.
     pub inner_diameter: f64,
 }
 
@@ -191,9 +213,12 @@ pub struct ToolJoint {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Gauge {
-    /// Measured depth \[m\].
+    /// Measured depth \[m\], on the string. Within a twentieth of the target element length of another boundary it is moved there,
+    /// with a warning.
     pub measured_depth: f64,
-    /// Radial clearance j0 \[m\].
+    /// Radial clearance j0 \[m\], above 0 and at most what the body leaves of the hole; usual 1e-4 to 3e-3. Smaller, the node is
+    /// held nearly as in a bearing, its contact chatters and steps become short; larger, the bottom-hole assembly tilts and whirls
+    /// more freely.
     pub clearance: f64,
 }
 
@@ -202,13 +227,18 @@ pub struct Gauge {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct UnbalanceMass {
-    /// Measured depth \[m\].
+    /// Measured depth \[m\], on the string; at the top node, which is held, a mass does nothing. Within a twentieth of the target
+    /// element length of another boundary it is moved there, with a warning.
     pub measured_depth: f64,
-    /// Mass m_u \[kg\].
+    /// Mass m_u \[kg\], 0 or more. Only its product with the radius counts, usually 0.01 to 1 kg m in one place; the string's own
+    /// mass is unchanged. The force is that product times the square of the speed of rotation: too small leaves friction alone to
+    /// excite whirl, too large throws the string from wall to wall.
     pub mass: f64,
-    /// Distance from the axis d \[m\].
+    /// Distance from the axis d \[m\], 0 to the radius of the hole; usual 0.03 to 0.1, within the section. Only its product with
+    /// the mass counts.
     pub radius: f64,
-    /// Phase alpha_u at t = 0 \[deg\], from e1 of the node.
+    /// Phase alpha_u at t = 0 \[deg\], from e1 of the node towards e2, any value; 0 unless given. Masses in phase add up to the
+    /// greatest excitation, opposite ones excite higher modes of bending.
     #[serde(default)]
     pub phase_deg: f64,
 }
@@ -218,34 +248,48 @@ pub struct UnbalanceMass {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mud {
-    /// Density rho_f \[kg/m3\].
+    /// Density rho_f \[kg/m3\], above 0; usual 1000 to 2300, below 500 and above 3000 is warned of. More means more added mass,
+    /// buoyancy and damping, and lower frequencies; damping grows with its root only, so that orbits may grow with it.
     pub density: f64,
-    /// Flow rate Q \[m3/s\]; 0 means still mud.
+    /// Flow rate Q \[m3/s\], 0 to 1; usual 0.01 to 0.08, 0 means still mud. Faster flow thins the mud, so that C_f and the damping
+    /// k fall; far beyond the usual range the flow's centrifugal force lowers frequencies, and in the end the string flutters.
     pub flow_rate: f64,
-    /// Yield stress tau_y \[Pa\].
+    /// Yield stress tau_y \[Pa\], 0 or more; usual 0 to 15, 0 is a power-law fluid. More makes the mud stiffer at low shear rates:
+    /// higher C_f, damping and pressure, and laminar flow up to higher rates.
     pub yield_stress: f64,
-    /// Consistency K \[Pa s^n\].
+    /// Consistency K \[Pa s^n\], above 0; usual 0.05 to 2, water has 1e-3 with n = 1. It is the viscosity at a shear rate of 1 1/s,
+    /// so that its size means little without n. Damping grows about with the root of the apparent viscosity; too small, flow is
+    /// turbulent everywhere.
     pub consistency: f64,
-    /// Flow index n.
+    /// Flow index n, above 0 and at most 2; usual 0.4 to 1: 1 is a Bingham (without yield stress a Newtonian) fluid, less is
+    /// shear-thinning. The smaller, the more rotation and flow thin the mud; above 1 it thickens, which drilling muds do not.
     pub flow_index: f64,
-    /// Which flow regimes are considered.
+    /// Which flow regimes are considered; absent means `auto`. With `laminar` C_f is too low wherever the flow is turbulent, in the
+    /// base case above about 0.01 m3/s.
     #[serde(default)]
     pub regime: RegimeChoice,
-    /// Multiply laminar annular friction by the helical-flow factor of the string's rotation.
+    /// Multiply laminar annular friction by the helical-flow factor of the string's rotation, at most 1; `false` unless given. It
+    /// holds for concentric laminar flow and leaves turbulent flow as it is; without it fast rotation in thick mud has too high a
+    /// C_f.
     #[serde(default)]
     pub rotation_factor: bool,
-    /// Put the eccentricity factor into the shear rate of the apparent viscosity.
+    /// Put the eccentricity factor into the shear rate of the apparent viscosity; `false` unless given. It lowers the axial shear
+    /// rate where the string lies on the wall, so that viscosity and damping are higher there.
     #[serde(default)]
     pub viscosity_eccentricity: bool,
-    /// Pressure drop over the bit \[Pa\].
+    /// Pressure drop over the bit \[Pa\], 0 or more; 0 unless given, usual 2e6 to 1.5e7. It raises the reported pressure in the
+    /// bore by as much and moves nothing: loads are written in the effective tension, which contains the pressures.
     #[serde(default)]
     pub bit_pressure_drop: f64,
-    /// Pressure in the annulus at the top of the string \[Pa\].
+    /// Pressure in the annulus at the top of the string \[Pa\], 0 or more; 0 unless given, an annulus open to the air. Usual up to
+    /// 1e7 with managed pressure, or what the mud above weighs where the string begins deep in the well. It raises the reported
+    /// pressures and moves nothing.
     #[serde(default)]
     pub back_pressure: f64,
 }
 
-/// Flow regimes considered by the friction factors.
+/// Flow regimes considered by the friction factors: `auto` is laminar, transitional and turbulent by the Reynolds number, `laminar`
+/// is laminar at any Reynolds number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -253,7 +297,8 @@ pub enum RegimeChoice {
     /// Laminar, transitional and turbulent by the Reynolds number.
     #[default]
     Auto,
-    /// Laminar at any Reynolds number: the paper's own declaration, for comparison with it.
+    /// Laminar at any Reynolds number: the paper's own declaration, for comparison with it. C_f is too low where the flow is
+    /// turbulent.
     Laminar,
 }
 
@@ -262,18 +307,25 @@ pub enum RegimeChoice {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Operation {
-    /// Speed of rotation imposed at the top \[rpm\], clockwise seen from above.
+    /// Speed of rotation imposed at the top \[rpm\], clockwise seen from above, negative the other way; usual 60 to 200, more than
+    /// 1000 is warned of. Slow rotation favours stick-slip, since friction falls with speed; the force of the unbalance grows with
+    /// the square of the speed. With 0 there is neither unbalance nor damping k.
     pub rotation_speed_rpm: f64,
-    /// Weight on bit \[N\], the axial force in the string at the bit: negative is compression.
+    /// Weight on bit \[N\], the axial force in the string at the bit: negative is compression, and it must not be positive; usual
+    /// -2.5e5 to -2e4, 0 off bottom. Beyond the buckling load the string leaves the low side and presses on the wall in a helix;
+    /// far beyond it the search for the equilibrium may fail.
     pub weight_on_bit: f64,
-    /// Torque on bit \[N m\]: negative opposes the rotation.
+    /// Torque on bit \[N m\], of the sign opposite to the rotation's (either where nothing turns): negative opposes clockwise
+    /// rotation; usual -2e4 to -1e3, 0 off bottom. It winds the string up and lowers its buckling load; it is constant, so that
+    /// stick-slip comes from the wall alone.
     pub torque_on_bit: f64,
-    /// How the top node is held.
+    /// How the top node is held; absent means `clamped`. Bending near the top depends on it, that of the rest of the string hardly.
     #[serde(default)]
     pub top: TopCondition,
 }
 
-/// Boundary condition of the top node, in the frame that turns with the string.
+/// Boundary condition of the top node, in the frame that turns with the string: `clamped` holds all six degrees of freedom,
+/// `pinned` leaves the lateral rotations free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -281,7 +333,7 @@ pub enum TopCondition {
     /// All six degrees of freedom are held.
     #[default]
     Clamped,
-    /// The lateral rotations are free.
+    /// The lateral rotations are free; the other four are held.
     Pinned,
 }
 
@@ -290,33 +342,50 @@ pub enum TopCondition {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ContactLaw {
-    /// Whether stiffness and damping are a node's or a length's.
+    /// Whether stiffness and damping are a node's or a length's; absent means `per_node`.
     #[serde(default)]
     pub law: WallLaw,
-    /// Largest stiffness k_c of one node \[N/m\]; with the law `per_length` of a gauge.
+    /// Largest stiffness k_c of one node \[N/m\], above 0; with the law `per_length` of a gauge. Usual 1e6 to 1e8 on elements of
+    /// half a metre: 1 kN sinks a node 0.1 mm into a wall of 1e7. Too small, and penetration is as large as the clearance of a
+    /// gauge; too large, and implicit methods cut their step until contact sweeps converge, into 4096 parts at most, beyond which
+    /// the run fails.
     pub stiffness: f64,
-    /// Largest damping c_c of one node \[N s/m\]; with the law `per_length` of a gauge.
+    /// Largest damping c_c of one node \[N s/m\], 0 or more; with the law `per_length` of a gauge. Usual 1e3 to 1e5. At 0 nodes
+    /// rebound with all their energy and rattle; large values make impacts plastic, pull where `adhesion` is `allowed`, and shorten
+    /// steps as stiffness does.
     pub damping: f64,
-    /// Largest stiffness of a metre of string \[N/m2\], with the law `per_length` only; absent means 2e7, the paper's 1e7 N/m on
-    /// collar nodes 0.5 m apart.
+    /// Largest stiffness of a metre of string \[N/m2\], above 0, with the law `per_length` only; absent means 2e7, the paper's 1e7
+    /// N/m on collar nodes 0.5 m apart. Usual 2e6 to 2e8. Under a load of w N/m the string sinks in by w over this; stiffer walls
+    /// ask for shorter elements, by its fourth root.
     #[serde(default)]
     pub stiffness_per_length: Option<f64>,
-    /// Largest damping of a metre of string \[N s/m2\], with the law `per_length` only; absent means 2e4, the paper's 1e4 N s/m on
-    /// collar nodes 0.5 m apart.
+    /// Largest damping of a metre of string \[N s/m2\], 0 or more, with the law `per_length` only; absent means 2e4, the paper's
+    /// 1e4 N s/m on collar nodes 0.5 m apart. Usual 2e3 to 2e5, with the consequences of `damping`.
     #[serde(default)]
     pub damping_per_length: Option<f64>,
-    /// Sharpness lambda_k of the stiffness' arctangent \[1/m\].
+    /// Sharpness lambda_k of the stiffness' arctangent \[1/m\], above 0; usual 1e6 to 1e8. Stiffness is half of its largest at
+    /// first touch and nine tenths at a penetration of 1 / lambda_k: where that is large beside the penetration under load, the
+    /// wall is only half as stiff.
     pub stiffness_sharpness: f64,
-    /// Sharpness lambda_c of the damping's arctangent \[1/m\].
+    /// Sharpness lambda_c of the damping's arctangent \[1/m\], above 0; usual 1e4 to 1e7. Damping is half of its largest at first
+    /// touch and nine tenths at a penetration of 1 / lambda_c; too small a value halves it in every contact. No value removes the
+    /// jump at touch, which limits the order of every integrator.
     pub damping_sharpness: f64,
-    /// Whether the damper may pull the string to the wall when it leaves fast.
+    /// Whether the damper may pull the string to the wall when it leaves fast; absent means `allowed`, the paper's law. With `none`
+    /// normal forces are never negative, and a rebound keeps more of its energy.
     #[serde(default)]
     pub adhesion: Adhesion,
-    /// Static friction coefficient mu_s.
+    /// Static friction coefficient mu_s, the peak of the friction curve, 0 or more; usual 0.15 to 0.5. The equilibrium is found
+    /// with it, so that it also sets the torque along the string at rest. 0 means no friction at all.
     pub static_friction: f64,
-    /// Dynamic friction coefficient mu_d, at most mu_s.
+    /// Dynamic friction coefficient mu_d of fast sliding, 0 to mu_s; usual 0.1 to 0.4. The more it lies below mu_s, the more the
+    /// falling curve feeds torsion, up to stick-slip; where it equals mu_s, it feeds none. Backward whirl is driven by friction
+    /// itself and grows with it.
     pub dynamic_friction: f64,
-    /// Reference speed v_ref of the regularised friction \[m/s\]; its slope at rest is 1 / v_ref.
+    /// Reference speed v_ref of the regularised friction \[m/s\], above 0; its slope at rest is 1 / v_ref. Usual 0.01 to 0.1, a few
+    /// per cent of the speed at which the surface slides. A sticking node creeps against a damper of F_n / v_ref: larger values
+    /// creep visibly and, beyond the sliding speed, leave only the rising part of the curve and no stick-slip; smaller ones are
+    /// stiffer and ask for shorter steps.
     pub friction_reference_speed: f64,
 }
 
@@ -348,7 +417,9 @@ impl ContactLaw {
     }
 }
 
-/// What stiffness and damping of the wall belong to.
+/// What stiffness and damping of the wall belong to: with `per_node`, the paper's law, to every node, so that a finer mesh meets a
+/// stiffer wall; with `per_length` to the length of string that touches through a node, so that every mesh meets the same wall, and
+/// to gauges as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -357,17 +428,18 @@ pub enum WallLaw {
     #[default]
     PerNode,
     /// A node has `stiffness_per_length` and `damping_per_length` times the length of string that touches the wall through it, half
-    /// of each adjoining element of the node's contact diameter, so every mesh meets the same wall: under a uniform load w it gives way by
-    /// w / `stiffness_per_length`. Gauges, which are places, have `stiffness` and `damping`.
+    /// of each adjoining element of the node's contact diameter, so every mesh meets the same wall: under a uniform load w the string penetrates it by
+    /// w / `stiffness_per_length`. Gauges, which act at a point, have `stiffness` and `damping`.
     PerLength,
 }
 
-/// What happens when the contact's damper would pull.
+/// What happens when the contact's damper would pull: with `allowed` the normal force may turn negative, with `none` it is never
+/// negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Adhesion {
-    /// The paper's law as printed: the normal force may turn negative.
+    /// The paper's law as printed: the normal force may be negative, a pull, and brakes like a push.
     #[default]
     Allowed,
     /// The normal force is never negative.
@@ -379,9 +451,12 @@ pub enum Adhesion {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RayleighDamping {
-    /// alpha \[1/s\].
+    /// alpha \[1/s\], 0 or more; usual 0 to 0.5. The damping ratio alpha / (2 omega) falls with frequency: 0.03 1/s is 0.12 % at 2
+    /// Hz. Large values suppress whirl and stick-slip; high frequencies stay undamped whatever its value.
     pub mass_proportional: f64,
-    /// beta \[s\].
+    /// beta \[s\], 0 or more; usual 1e-6 to 1e-4. The damping ratio beta omega / 2 grows with frequency: 3e-5 s is 0.019 % at 2 Hz
+    /// and 2.6 % at 280 Hz. With 0, falling friction feeds torsion at every frequency, and mesh and step decide what survives;
+    /// large values overdamp the vibration of single pipes and lower RK4's stability limit.
     pub stiffness_proportional: f64,
 }
 
@@ -390,21 +465,28 @@ pub struct RayleighDamping {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Recording {
-    /// Recording rate \[Hz\].
+    /// Recording rate \[Hz\], above 0; usual 100 to 2000. Frequencies above half of it fold back into the spectra, and below 250 Hz
+    /// there is no `high_frequency_rms`; higher rates cost storage, at most 1e7 samples a run. Steps that adapt do not depend on
+    /// it; a fixed step must divide the recording interval (of `esdirk4` it may also be that times a power of two).
     pub rate_hz: f64,
-    /// Nodes whose histories are kept.
+    /// Nodes whose histories are kept, each once; usual 1 to 10. Orbits, spectra and statistics exist for these only, and each
+    /// costs storage; with none, and no window, `auto` leaves the run in time out.
     pub nodes: Vec<NodeChoice>,
-    /// Half-open windows whose full spectra are summarised.
+    /// Half-open windows whose full spectra are summarised, of 8 samples at least; none unless given, usual 5 to 20 s each.
+    /// Frequencies are resolved to 1 over the length of a window; too long a one smears lines that drift.
     #[serde(default)]
     pub spectrum_windows: Vec<TimeWindow>,
-    /// Half-open window of the orbit statistics; absent means the last third of the run.
+    /// Half-open window of the orbit statistics, of 8 samples at least; absent means the last third of the run. It should begin
+    /// when the start has died away and hold many periods of the slowest vibration, some 2 Hz in the base case: statistics over a
+    /// short one scatter.
     #[serde(default)]
     pub orbit_window: Option<TimeWindow>,
-    /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which. It takes about a second; a run
-    /// that fails is judged in any case.
+    /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which; `false` unless given.
+    /// It takes about a second; a run that fails is judged in any case.
     #[serde(default)]
     pub stability: bool,
-    /// Which tables are kept: `summary`, `spectra`, `orbits` or `full`.
+    /// Which tables are kept: `summary`, `spectra`, `orbits` or `full`; absent means `full`. Orbits and spectra that need what was
+    /// not kept can only be had by another run.
     #[serde(default)]
     pub outputs: Outputs,
 }
@@ -414,9 +496,11 @@ pub struct Recording {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum NodeChoice {
-    /// Node number, 1 at the top.
+    /// Node number, 1 at the top, which is held and has a constant record. Numbers are those of one mesh: another one has other
+    /// nodes by them.
     Node(u32),
-    /// Measured depth \[m\]; the nearest node is taken.
+    /// Measured depth \[m\], on the string; the nearest node is taken, at most half an element away. It is the same place on every
+    /// mesh.
     Depth(f64),
 }
 
@@ -425,8 +509,8 @@ pub enum NodeChoice {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TimeWindow {
-    /// Start \[s\], included.
+    /// Start \[s\], included; 0 or more.
     pub from: f64,
-    /// End \[s\], not included.
+    /// End \[s\], not included; within the run, and 8 samples or more after the start.
     pub to: f64,
 }

@@ -30,11 +30,11 @@ pub struct OrbitOutputs {
     /// Those of these nodes, which must be recorded; absent means all that are.
     #[serde(default)]
     pub nodes: Option<Vec<NodeChoice>>,
-    /// Their samples in this half-open window; absent means the whole run.
+    /// Their samples in this half-open window, of 8 samples at least; absent means the whole run.
     #[serde(default)]
     pub window: Option<TimeWindow>,
-    /// Every how many samples one is kept, from the first of the window on. Nothing is smoothed: frequencies above half the rate that is left
-    /// fold back into spectra of what is kept.
+    /// Every how many samples one is kept, from the first of the window on; 1 or more, 1 unless given, usual 1 to 10. Storage falls
+    /// in proportion. Nothing is smoothed: frequencies above half the rate that is left fold back into spectra of what is kept.
     #[serde(default = "super::one")]
     pub decimation: u32,
 }

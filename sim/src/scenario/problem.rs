@@ -25,7 +25,7 @@ impl Problem {
         pointer(&self.path)
     }
 
-    /// A problem from the words of a serde error: what it got and what it expected are told apart, and Rust's
+    /// A problem from the words of a serde error: what it got and what it expected are separated, and Rust's
     /// names of types become words.
     pub(super) fn from_serde(path: String, message: &str) -> Self {
         let parted = ["invalid type: ", "invalid value: "]

@@ -10,34 +10,38 @@ use super::{AccuracyPreset, Integrator, TimeStepping};
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
-    /// Simulated time of each run \[s\]. Absent means the scenario's own duration and windows; of any other duration orbits
-    /// are looked at over the last third, and spectra over the last sixth.
+    /// Simulated time of each run \[s\], 80 recording intervals or more and a whole number of them. Absent means the scenario's own
+    /// duration and windows; of any other duration orbits are looked at over the last third, and spectra over the last sixth. A
+    /// short one saves time and misses what comes late, such as stick-slip.
     #[serde(default)]
     pub duration: Option<f64>,
-    /// Members of the ensemble that each method runs: with 5 or more, bias (difference of means, with a confidence interval) can
-    /// be told from spread. One alone has no spread.
+    /// Members of the ensemble that each method runs, 1 to 64, 1 unless given; usual 1, 3 or 5. With 5 or more, bias (difference of
+    /// means, with a confidence interval) can be distinguished from spread; one alone has no spread. All runs of a study together are at
+    /// most 256.
     #[serde(default = "one")]
     pub members: u32,
-    /// What the others are compared with.
+    /// What the others are compared with; absent means RK4 and ESDIRK4 with fine steps.
     #[serde(default)]
     pub reference: StudyReference,
-    /// Named accuracies to compare, as they stand; all three unless said otherwise.
+    /// Named accuracies to compare, as they stand; all three unless given.
     #[serde(default = "all_presets")]
     pub presets: Vec<AccuracyPreset>,
     /// Methods and their steps to compare besides; absent means `generalized_alpha` with 0.5, 0.25 and 0.125 ms and `esdirk4`
     /// with 1, 0.5 and 0.25 ms, as far as they divide the recording interval. The reference's two methods are always shown.
     #[serde(default)]
     pub methods: Option<Vec<MethodSteps>>,
-    /// Factors on the mesh's target element lengths, each a run of its own at the accuracy `reference`; empty means none.
+    /// Factors on the mesh's target element lengths, 0.1 to 10, each a run of its own at the accuracy `reference`; none unless
+    /// given, usual 2, 0.5 and 0.25. Factors near 1 show little; small ones cost time in inverse proportion, and without
+    /// `contact.law = "per_length"` the values need not converge.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
-    /// Wanted relative error of orbit size, mesh and time together: the cheapest mesh, method and tolerance for it are looked for.
-    /// Without `mesh_factors` the meshes are then those of the factors 1, 0.5 and 0.25: nodes of the first are mostly nodes of the others, so
-    /// that values are compared in the same places.
+    /// Wanted relative error of orbit size, mesh and time together, above 0 and below 1, usual 0.01 to 0.1: the cheapest mesh,
+    /// method and tolerance for it are looked for; absent means not. Without `mesh_factors` the meshes are then those of the
+    /// factors 1, 0.5 and 0.25: nodes of the first are mostly nodes of the others, so that values are compared at the same depths.
     #[serde(default)]
     pub total: Option<f64>,
     /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
-    /// switched off in turn.
+    /// switched off in turn; `false` unless given. It goes with neither `methods` nor `mesh_factors` nor `total`.
     #[serde(default)]
     pub effects: bool,
 }
@@ -60,11 +64,13 @@ pub struct StudyReference {
     /// with 0.125 ms and up to 30 contact sweeps.
     #[serde(default)]
     pub methods: Option<Vec<TimeStepping>>,
-    /// Relative difference of orbit size, mean radius and contact force up to which the two agree.
+    /// Relative difference of orbit size, mean radius and contact force up to which the two agree, above 0 and below 1; 0.01 unless
+    /// given, usual 0.003 to 0.03. Too small leaves no reference in scenes that scatter; too large lets the reference's own error
+    /// pass for that of a method.
     #[serde(default = "one_percent")]
     pub size_agreement: f64,
-    /// Relative difference of standard deviations (of the radius, of torsional speed) and of lines' amplitudes up to which the
-    /// two agree.
+    /// Relative difference of standard deviations (of the radius, of torsional speed) and of lines' amplitudes up to which the two
+    /// agree, above 0 and below 1; 0.03 unless given, usual 0.01 to 0.1.
     #[serde(default = "three_percent")]
     pub deviation_agreement: f64,
 }
@@ -76,9 +82,10 @@ pub struct StudyReference {
 pub struct MethodSteps {
     /// The method.
     pub integrator: Integrator,
-    /// Steps \[s\], by the rules of `accuracy.step`.
+    /// Steps \[s\], each a run of its own, by the rules of `accuracy.step`; usual three that halve from one to the next, which show
+    /// the order of convergence.
     pub steps: Vec<f64>,
-    /// Contact sweeps a solve, 2 or more (implicit methods).
+    /// Contact sweeps a solve, 2 to 1000, 2 unless given, by the rules of `accuracy.contact_sweeps`.
     #[serde(default = "two")]
     pub contact_sweeps: u32,
     /// Relative error tolerance of the adaptive step, by the rules of `accuracy.tolerance`; absent means fixed steps.

@@ -71,7 +71,7 @@ pub struct StaticsEffort {
 pub enum StaticsError {
     /// Newton's method did not converge.
     #[error(
-        "no equilibrium after {iterations} iterations: the force left is {residual:.3e} N, largest at node {node}; {}",
+        "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
         overload::verdict(overload.as_ref())
     )]
     NotConverged {
@@ -81,7 +81,7 @@ pub enum StaticsError {
         residual: f64,
         /// Node where it stands, from 1.
         node: usize,
-        /// Where the string is loaded beyond its stability between two places that hold it; absent where it is not.
+        /// Where the string is loaded beyond its stability between two supports; absent where it is not.
         overload: Option<Overload>,
     },
     /// The tangent broke down.
@@ -95,9 +95,9 @@ pub enum StaticsError {
         /// What is wrong with it.
         error: MudError,
     },
-    /// String and mud keep moving each other.
+    /// The iteration between equilibrium and hydraulics did not converge.
     #[error(
-        "string and mud do not settle: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
+        "the equilibrium of string and mud did not converge: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
     )]
     HydraulicsNotConverged {
         /// Passes made.
@@ -215,7 +215,7 @@ impl Equilibrium {
     }
 }
 
-/// Newton's method, and where it does not converge, again from the same start: against a soft wall that is hardened by and by, then with
+/// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with
 /// shorter steps held by a stiffer spring.
 fn with_fallbacks(
     model: &Model,

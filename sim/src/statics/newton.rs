@@ -30,7 +30,7 @@ pub struct NewtonSettings {
     /// Largest lateral displacement of one iteration \[m\]. The default, 0.02, is less than a collar's clearance (28 mm in the base case), so
     /// that no iteration throws a node from one side of the hole into the other.
     pub largest_step: f64,
-    /// Iterations after which the search is given up.
+    /// Iterations after which the search has failed.
     pub iteration_limit: usize,
     /// Last Newton step at which the search has converged \[m, rad\]. The default, 1e-11, is 1e-4 N of contact force at 1e7 N/m; convergence
     /// is quadratic there, so that the step after it would be rounding.

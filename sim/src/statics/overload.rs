@@ -38,7 +38,7 @@ impl fmt::Display for Overload {
 /// What a failed search says about the physics.
 pub(super) fn verdict(overload: Option<&Overload>) -> String {
     overload.map_or_else(
-        || "no stretch of the string is beyond its buckling load: it is the search that failed".to_owned(),
+        || "no stretch of the string is beyond its buckling load: the search itself failed".to_owned(),
         Overload::to_string,
     )
 }

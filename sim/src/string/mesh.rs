@@ -100,7 +100,7 @@ pub struct MeshNode {
     /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
     /// The node's largest contact stiffness over that of the law, `contact.stiffness`: 1 where stiffness is a node's or the node is a
-    /// gauge, which is a place and not a length; else that of the length that touches the wall through the node, half of each adjoining
+    /// gauge, which acts at a point and not along a length; else that of the length that touches the wall through the node, half of each adjoining
     /// element of its contact diameter.
     pub stiffness_share: f64,
     /// The same of the damping, `contact.damping`; over 1 N s/m where that is zero and a length's need not be.
@@ -388,7 +388,7 @@ mod tests {
             }
             let body = mesh.elements[mesh.nearest_node(8.0)].length;
             assert!((length(8.0) - body).abs() < 1e-12);
-            // Gauges are places: the whole of the law, whatever the mesh.
+            // Gauges act at a point: the whole of the law, whatever the mesh.
             assert!(mesh.nodes.iter().all(|node| !node.is_gauge || whole(node)));
             // All joints together touch with their own length, 9 pairs of 0.3 m.
             let joints = mesh.nodes.iter().filter(|node| (node.contact_radius - 0.08095).abs() < 1e-9);

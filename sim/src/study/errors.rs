@@ -22,12 +22,12 @@ pub struct ResultErrors {
     pub spread: SpreadError,
 }
 
-/// What the steps of a run leave in orbit size and in the standard deviation of the radius, relative to them.
+/// The error of the steps of a run in orbit size and in the standard deviation of the radius, relative to them.
 ///
-/// Each step leaves an error, which the embedded method tells, and the scene amplifies it until the end of the run as it amplifies any
-/// other disturbance. The first is known of every run, the second of an ensemble: its members start a micrometre apart, and what has
-/// become of that tells by how much. Scenes differ by three orders of magnitude there, so an estimate without an ensemble holds on a
-/// condition.
+/// Each step leaves an error, which the embedded method estimates, and the scene amplifies it until the end of the run as it amplifies any
+/// other disturbance. The local errors are known in every run, the amplification in an ensemble only, from the distance at the end between
+/// members that start a micrometre apart. Scenes differ in it by three orders of magnitude, so an estimate without an ensemble is
+/// conditional.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "state", rename_all = "snake_case")]
@@ -93,10 +93,10 @@ const SHARE_OF_HISTORY: f64 = 0.2;
 /// that hardly damp amplify by hundreds.
 const USUAL_AMPLIFICATION: f64 = 5.0;
 
-/// Part of the bound of the energy ledger that a run leaves at most whose steps can be told anything of: usual runs leave less than a hundredth.
+/// Largest residual of the energy ledger, as a fraction of its bound, of a run whose error is estimated: usual runs have less than a hundredth.
 const SOUND_RESIDUAL: f64 = 0.05;
 
-/// Relative error beyond which an estimate says no more than that nothing is known.
+/// Relative error beyond which an estimate counts as unknown.
 const LARGEST_ESTIMATE: f64 = 0.5;
 
 impl ResultErrors {
@@ -120,14 +120,14 @@ impl TimeError {
         }
         if run.unresolved_steps > 0 {
             return unknown(format!(
-                "{} steps of the shortest length left more than the tolerance",
+                "{} steps of the shortest length exceeded the tolerance",
                 run.unresolved_steps
             ));
         }
         if let Some(residual) = run.energy_residual_of_bound.filter(|residual| *residual > SOUND_RESIDUAL) {
             return unknown(format!(
-                "the energy ledger leaves {:.0} % of what it may: steps make or lose energy, as by chatter on a hard wall; a smaller \
-                 tolerance helps",
+                "the residual of the energy ledger is {:.0} % of its bound: the steps create or lose energy, as in contact chatter on a stiff \
+                 wall; a smaller tolerance helps",
                 100.0 * residual
             ));
         }
@@ -138,8 +138,8 @@ impl TimeError {
             |(node, orbit): &(usize, &OrbitSummary)| distance(*node) > PARTED * orbit.orbit_radius_rms;
         if let Some((node, orbit)) = run.orbits.iter().enumerate().find(parted) {
             return unknown(format!(
-                "runs that start {DISTURBANCE:e} m apart have come {:.1e} m apart at {} m, where the orbit has {:.1e} m: what steps leave \
-                 is amplified alike",
+                "runs that start {DISTURBANCE:e} m apart differ by {:.1e} m at {} m, where the orbit size is {:.1e} m: the errors of the \
+                 steps are amplified in the same way",
                 distance(node),
                 orbit.measured_depth,
                 orbit.orbit_radius_rms
@@ -155,8 +155,8 @@ impl TimeError {
         };
         if statistics > LARGEST_ESTIMATE || !statistics.is_finite() {
             return unknown(format!(
-                "what steps leave, amplified by {amplification:.0} as any disturbance of this scene, comes to half of the orbit and \
-                 more; a smaller tolerance leaves less"
+                "the errors of the steps, amplified by {amplification:.0} like any disturbance of this scene, reach half of the orbit \
+                 size or more; a smaller tolerance reduces them"
             ));
         }
         if others.is_empty() {

@@ -1,9 +1,9 @@
-//! Would a finer time step say otherwise? A run beside another of the same scenario whose step is finer, in what users read of both.
+//! Does a finer time step confirm a result? A run is compared with another of the same scenario and a finer step, in their statistics.
 //!
-//! A run can be finite, its ledger closed, and wrong. If statistics move by more than the accuracy promises when the step is refined, the run
-//! is not to be trusted: its steps are too long for the scene, or the scene is so sensitive that a window of this length tells nothing.
-//! Which of the two it is, a third run tells, with the steps of the first, that starts a micrometre beside it. Runs of one method share
-//! what is wrong with that, so agreement is no proof; what two methods of different kind reach is the [cost study's](super::cost) question.
+//! A run can be finite, its ledger closed, and wrong. If statistics change by more than the accuracy promises when the step is refined, the run
+//! is not to be trusted: its steps are too long for the scene, or the scene is too sensitive for a window of this length.
+//! A third run distinguishes the two, with the steps of the first and a start a micrometre apart from it. Runs of one method share
+//! its bias, so agreement is no proof; what two methods of different kind reach is the subject of the [cost study](super::cost).
 
 use super::cost::{Measure, Quantity};
 use crate::control::Control;

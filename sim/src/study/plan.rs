@@ -178,7 +178,7 @@ impl Plan {
         })
     }
 
-    /// The plan with what the scenario's equilibrium tells beforehand, which takes as long as that. Where there is none, that is for the run
+    /// The plan with what follows from the scenario's equilibrium, which takes as long as that. Where there is none, that is for the run
     /// to say.
     #[must_use]
     pub fn with_equilibrium(mut self, scenario: &Scenario) -> Self {
@@ -280,7 +280,7 @@ impl MethodKind {
     }
 }
 
-/// The runs that tell how fast a machine is: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
+/// The runs that measure the speed of a machine: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
 /// (the 200 m case), and one on a large mesh of it.
 pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
     let run = |method: MethodKind, degrees_of_freedom: usize| {

@@ -1,8 +1,8 @@
 //! Scenes drawn at random over wide ranges, and what a run of one must keep to.
 //!
 //! Every scene ends in one of two ways: with a result whose numbers are all finite and whose energy ledger closes within its bound,
-//! or with a typed failure that says where, when and why. Of a result it can be asked besides [whether a finer step says
-//! otherwise](crate::study::finer). Scene i of a seed is always the same one.
+//! or with a typed failure that says where, when and why. Of a result it can be asked besides [whether a finer step confirms
+//! it](crate::study::finer). Scene i of a seed is always the same one.
 
 use crate::control::Control;
 use crate::model::Model;
@@ -27,7 +27,7 @@ const SAMPLES: f64 = 40.0;
 /// How long a scene runs at the accuracy of a preset \[s\].
 const PRESET_DURATION: f64 = 0.4;
 
-/// Elements of a scene at most, before places that ask for nodes of their own.
+/// Elements of a scene at most, before gauges and masses add nodes of their own.
 const MOST_ELEMENTS: f64 = 120.0;
 
 /// How a scene ended.
@@ -65,13 +65,13 @@ pub fn run(scenario: &Scenario, control: &Control) -> SceneEnd {
 /// What is known of the steps of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refined {
-    /// Whether a finer step says otherwise.
+    /// Whether a finer step confirms the result.
     pub verdict: Verdict,
-    /// The error by steps that the result tells by itself.
+    /// The error by steps that the result itself reports.
     pub told: TimeError,
 }
 
-/// Runs a scene and judges how it ended; where it has a result, also whether a finer step says otherwise, and what the result tells of that.
+/// Runs a scene and judges how it ended; where it has a result, also whether a finer step confirms it, and what the result reports of that.
 pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Option<Refined>) {
     let (model, equilibrium, records) = match simulate(scenario, control) {
         Ok(run) => run,

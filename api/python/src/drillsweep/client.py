@@ -159,7 +159,7 @@ class Client:
             yield Sweep(self, data)
 
     def failures(self, *, owner: str | None = None, kind: str | None = None) -> Iterator[Point]:
-        """Points of all sweeps that were given up, the latest first; of one owner, or of one `PointError.kind`."""
+        """Failed points of all sweeps, the latest first; of one owner, or of one `PointError.kind`."""
         for data in self.pages("/v1/failures", "failures", {"owner": owner, "class": kind}):
             yield Point(self, data)
 
@@ -177,7 +177,7 @@ class Client:
         return list(self.get_json("/v1/workers")["workers"])
 
     def queue(self) -> dict[str, int]:
-        """How much waits and how much is under way."""
+        """How much is queued and how much is running."""
         return dict(self.get_json("/v1/queue"))
 
     def limits(self) -> dict[str, int]:
@@ -240,13 +240,13 @@ class Client:
                     sink.write(piece)
             part.replace(file)
         except httpx.TransportError as error:
-            raise NoAnswer(f"the transfer from {self.server} broke off: {error}") from error
+            raise NoAnswer(f"the transfer from {self.server} was interrupted: {error}") from error
         finally:
             part.unlink(missing_ok=True)
         return file
 
     def events(self, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Names and data of a stream of server-sent events, until the server has nothing left to tell.
+        """Names and data of a stream of server-sent events, until the server has no further events.
 
         A stream that breaks off, as when the server is started anew, is taken up after the last event that came.
         """
@@ -269,7 +269,7 @@ class Client:
                             yield event.event, event.json()
             except httpx.TransportError as error:
                 if time.monotonic() > deadline:
-                    raise NoAnswer(f"the events of {self.server} broke off: {error}") from error
+                    raise NoAnswer(f"the events of {self.server} were interrupted: {error}") from error
             time.sleep(_FIRST_PAUSE)
 
     def close(self) -> None:

@@ -104,7 +104,7 @@ def profile(
     *,
     axes: Axes | None = None,
 ) -> Axes:
-    """A column of the profile over measured depth, downwards, C_f unless told otherwise; one line a point."""
+    """A column of the profile over measured depth, downwards, C_f unless given; one line a point."""
     axes = axes or _new_axes()
     lines = [points] if isinstance(points, Point) else list(points)
     shown = _shown(column)

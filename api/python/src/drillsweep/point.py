@@ -31,7 +31,7 @@ class PointError:
 
 
 class Point:
-    """One point of a sweep: where it stands and what came of it."""
+    """One point of a sweep: its state and its result."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
         """A point as the service showed it, in a list or in full."""
@@ -103,7 +103,7 @@ class Point:
         return str(self._data["links"]["self"])
 
     def refresh(self) -> Point:
-        """Reads its state anew."""
+        """Updates its state from the server."""
         self._data = self._client.get_json(self.path)
         return self
 

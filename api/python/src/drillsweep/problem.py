@@ -112,7 +112,7 @@ class RateLimited(Problem):
 
 
 class Unavailable(Problem):
-    """The service cannot answer just now."""
+    """The service is temporarily unavailable."""
 
 
 _BY_KIND: dict[str, type[Problem]] = {

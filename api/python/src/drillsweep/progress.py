@@ -21,7 +21,7 @@ class ProgressBar:
     """Shows a sweep in one line that is written over and over."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
-        """A bar on a stream; standard error unless said otherwise."""
+        """A bar on a stream; standard error unless given."""
         self._stream = stream or sys.stderr
         self._start = time.monotonic()
         self._first: float | None = None

@@ -79,7 +79,7 @@ class Plan:
 
 
 class Sweep:
-    """A sweep on the server. What it says of itself is as of its last answer; `refresh` and `wait` ask anew."""
+    """A sweep on the server. What it says of itself is as of its last answer; `refresh` and `wait` update it."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
         """A sweep as the service showed it."""
@@ -124,7 +124,7 @@ class Sweep:
 
     @property
     def state(self) -> str:
-        """Where it stands as a whole: `running`, `paused`, `completed` or `cancelled`."""
+        """Its state as a whole: `running`, `paused`, `completed` or `cancelled`."""
         return str(self._data["state"])
 
     @property
@@ -140,7 +140,7 @@ class Sweep:
 
     @property
     def progress(self) -> float:
-        """Done part of the work, that of verifying points included, 0 to 1."""
+        """Fraction of the work that is done, reference runs included, 0 to 1."""
         return float(self._data["progress"])
 
     @property
@@ -161,7 +161,7 @@ class Sweep:
 
     @property
     def warnings(self) -> tuple[FieldProblem, ...]:
-        """What can be simulated but is probably not meant; told at submission only."""
+        """What can be simulated but is probably not meant; in the answer to a submission only."""
         return tuple(FieldProblem.from_json(warning) for warning in self._data.get("warnings", ()))
 
     @property
@@ -177,7 +177,7 @@ class Sweep:
         return str(self._data["links"]["self"])
 
     def refresh(self) -> Sweep:
-        """Asks the server where it stands."""
+        """Updates it from the server."""
         self._data = self._client.get_json(self.path)
         return self
 
@@ -219,8 +219,8 @@ class Sweep:
     def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
         """What happens to it from now on, as it happens, until every point is final.
 
-        Pairs of a name and data: `sweep` with the sweep as it stands, `point` with the `ordinals` of points that came
-        to a new `state` at a time `at`.
+        Pairs of a name and data: `sweep` with the sweep in its present state, `point` with the `ordinals` of points
+        that came to a new `state` at a time `at`.
         """
         return self._client.events(f"{self.path}/events")
 
@@ -266,7 +266,7 @@ class Sweep:
         return self._client.download(f"{self.path}/export", file, {"artifacts": names})
 
     def cancel(self) -> Sweep:
-        """Cancels it: points that wait at once, points under way within a heartbeat of their worker."""
+        """Cancels it: queued points at once, running ones within a heartbeat of their worker."""
         return self._ask("cancel")
 
     def retry(self) -> Sweep:
@@ -274,11 +274,11 @@ class Sweep:
         return self._ask("retry")
 
     def pause(self) -> Sweep:
-        """Hands out no more of its points, but for those that another sweep wants; points under way go on."""
+        """Pauses it: queued points are not started, but for those that another sweep wants; running ones continue."""
         return self._ask("pause")
 
     def resume(self) -> Sweep:
-        """Hands out its points again after a pause."""
+        """Resumes it after a pause: its queued points may be started again."""
         return self._ask("resume")
 
     def change(

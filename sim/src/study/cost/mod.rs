@@ -89,7 +89,7 @@ impl Quantity {
         self == Quantity::ContactForce
     }
 
-    /// Whether it is a deviation, which takes longer to settle than a size.
+    /// Whether it is a deviation, which takes longer to converge than a size.
     pub(in crate::study) fn is_deviation(self) -> bool {
         matches!(self, Quantity::RadiusDeviation | Quantity::TorsionalSpeed | Quantity::Lines)
     }
@@ -151,7 +151,7 @@ impl CostReport {
         self.references.len() + self.methods.len() + self.meshes.len() + self.effects.len()
     }
 
-    /// The run of RK4 with fixed steps that speeds are told from, that nearest to [`RK4_STEP`]; absent where none came to its end.
+    /// The run of RK4 with fixed steps that speeds are relative to, that nearest to [`RK4_STEP`]; absent where none completed.
     pub fn rk4(&self) -> Option<&CostRow> {
         report::rk4(self.references.iter().chain(&self.methods))
     }

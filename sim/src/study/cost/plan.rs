@@ -13,7 +13,7 @@ use crate::statics::Equilibrium;
 use crate::study::plan::{MachineSpeed, Plan};
 use crate::transient::{recorded_nodes, rk4_stability_limit};
 
-/// Step of the reference's RK4 \[s\], where that is stable; speeds are told against it.
+/// Step of the reference's RK4 \[s\], where that is stable; speeds are relative to it.
 pub const RK4_STEP: f64 = 5e-5;
 
 /// Part of RK4's stability limit, found about the equilibrium, that a step may have.

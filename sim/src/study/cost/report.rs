@@ -15,7 +15,7 @@ const UNSOUND_RESIDUAL: f64 = 0.01;
 const RECOMMENDED: [Quantity; 2] = [Quantity::OrbitSize, Quantity::RadiusDeviation];
 const WANTED: [f64; 3] = [0.08, 0.02, 0.003];
 
-/// A line of the study with what came of it: its members' measures with their processor times \[s\], or why one failed.
+/// A line of the study with its outcome: its members' measures with their processor times \[s\], or why one failed.
 struct Ran<'a> {
     planned: &'a PlannedRow,
     outcome: Result<(Vec<&'a Measure>, f64), String>,
@@ -237,10 +237,10 @@ fn warn_of_references(references: &[CostRow], agreements: &[Agreement], warnings
         let by = if *difference > *bound {
             format!("differ by {:.2} %, more than {} %", 100.0 * difference, 100.0 * bound)
         } else {
-            "do not have the same ones".to_owned()
+            "show different ones".to_owned()
         };
         let hint = if half_width.is_some_and(|width| width >= *difference) {
-            "; the difference is within the members' spread, so that more of them may tell"
+            "; the difference is within the members' spread, so that more of them may resolve it"
         } else {
             ""
         };
@@ -287,7 +287,7 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
             )
         }
         _ if !agree => format!(
-            "{wanted}: cannot be told, since the reference's methods agree to {:.2} % only",
+            "{wanted}: cannot be determined, since the reference's methods agree to {:.2} % only",
             100.0 * difference
         ),
         _ => format!("{wanted}: none of these; take a smaller step or tolerance"),

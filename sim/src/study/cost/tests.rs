@@ -386,10 +386,10 @@ fn the_cheapest_mesh_and_method_for_a_whole_error_are_found() {
 fn a_whole_error_that_nothing_reaches_says_what_stops_it() {
     let found = report_of_total(0.004, SECOND_ORDER, 0.0, true).total.unwrap();
     assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::Mesh)));
-    let text =
-        "0.4 % of orbit size in all: nothing studied reaches it; the least is mesh x 0.5 (10 elements), B, ";
+    let text = "0.4 % of orbit size in all: not reached by any mesh and method studied; the smallest error is that of mesh x 0.5 \
+                (10 elements), B, ";
     assert!(found.text.starts_with(text), "{}", found.text);
-    assert!(found.text.ends_with(": the mesh stops it, take finer ones"), "{}", found.text);
+    assert!(found.text.ends_with(": the error of the meshes is too large, use finer ones"), "{}", found.text);
     // Half a per cent by the mesh, 0.05 % in time, by the method midway between A and B, which are a tenth apart.
     let found = report_of_total(0.0052, SECOND_ORDER, 1e-3, true).total.unwrap();
     assert_eq!((found.choice, found.stopped_by), (None, Some(StoppedBy::Sum)));

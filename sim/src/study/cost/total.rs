@@ -1,8 +1,8 @@
 //! The cheapest mesh, method and tolerance for a whole error of orbit size.
 //!
-//! A run is off for its mesh and for its steps. What each mesh is off by is told from runs on several meshes, all by the same
+//! The error of a run is that of its mesh and of its steps. That of each mesh is estimated from runs on several meshes, all by the same
 //! accuracy, against the limit that they tend to (Richardson's extrapolation with the observed order, within bounds; Oberkampf and
-//! Roy 2010, "Verification and validation in scientific computing"). What each method is off by is told on the scenario's own mesh, against the
+//! Roy 2010, "Verification and validation in scientific computing"). That of each method is measured on the scenario's own mesh, against the
 //! reference. The two are taken to add up, and a method to be off by as much on another mesh.
 
 use serde::{Deserialize, Serialize};
@@ -174,19 +174,21 @@ pub(super) fn total(report: &CostReport, base: &Scenario, wanted: f64) -> TotalC
             let mesh = total.meshes.iter().all(|mesh| mesh.error > wanted);
             let time = methods.iter().all(|(_, time_error)| *time_error > wanted);
             let (stopped_by, words_of_it) = match (mesh, time) {
-                (true, true) => (StoppedBy::MeshAndTime, "both stop it"),
-                (true, false) => (StoppedBy::Mesh, "the mesh stops it, take finer ones"),
-                (false, true) => (StoppedBy::Time, "time stops it, take a smaller step or tolerance"),
-                (false, false) => (StoppedBy::Sum, "each part alone keeps to it, but not both together"),
+                (true, true) => (StoppedBy::MeshAndTime, "either error is too large"),
+                (true, false) => (StoppedBy::Mesh, "the error of the meshes is too large, use finer ones"),
+                (false, true) => {
+                    (StoppedBy::Time, "the error in time is too large, use a smaller step or tolerance")
+                }
+                (false, false) => (StoppedBy::Sum, "each error alone is small enough, but not their sum"),
             };
             let text = format!(
-                "nothing studied reaches it; the least is {}{}: {words_of_it}",
+                "not reached by any mesh and method studied; the smallest error is that of {}{}: {words_of_it}",
                 words(report, least),
                 doubt(&total.limits)
             );
             (text, Some(stopped_by))
         }
-        (None, None) => ("no method has an error to tell".to_owned(), Some(StoppedBy::UnknownTime)),
+        (None, None) => ("the error of no method is known".to_owned(), Some(StoppedBy::UnknownTime)),
     };
     total.text = format!("{of}: {text}");
     total.choice = best.cloned();
@@ -247,7 +249,7 @@ fn doubt(limits: &[MeshLimit]) -> String {
     )
 }
 
-/// Whether errors in time can be told to what is wanted; if not, why.
+/// Whether the reference resolves errors in time of the wanted size; if not, why.
 fn reference_is_known(report: &CostReport, wanted: f64) -> Result<(), String> {
     let agreement = report.agreement(Quantity::OrbitSize).filter(|agreement| agreement.has_reference);
     let Some(agreement) = agreement else {
@@ -256,7 +258,7 @@ fn reference_is_known(report: &CostReport, wanted: f64) -> Result<(), String> {
     let difference = agreement.agreed_difference();
     if difference > wanted {
         return Err(format!(
-            "cannot be told, since the reference's methods agree to {:.2} % only",
+            "cannot be determined, since the reference's methods agree to {:.2} % only",
             100.0 * difference
         ));
     }
@@ -264,7 +266,7 @@ fn reference_is_known(report: &CostReport, wanted: f64) -> Result<(), String> {
 }
 
 /// A line's error in time: bias and half its interval's width, and where its steps are fixed the largest of it and all finer ones of
-/// its method, since one that hits by chance is none. Absent where one of them has no error to tell.
+/// its method, since one that hits by chance is none. Absent where one of them has no known error.
 fn time_error(report: &CostReport, row: &CostRow) -> Option<f64> {
     let bound = |row: &CostRow| Some(row.errors.as_ref()?.orbit_size.as_ref()?.bound());
     one_that_holds(report, row).map(bound).try_fold(0.0, |most, error| Some(f64::max(most, error?)))
@@ -296,8 +298,8 @@ fn mesh_parts(report: &CostReport, base: &Scenario) -> Result<(Vec<MeshLimit>, V
             continue;
         }
         let values: Vec<f64> = meshes.iter().map(|(_, nodes)| nodes[node].value).collect();
-        let (limit, of_node) = node_errors(&factors, &values)
-            .ok_or_else(|| "fewer than two meshes came to their end".to_owned())?;
+        let (limit, of_node) =
+            node_errors(&factors, &values).ok_or_else(|| "fewer than two meshes completed".to_owned())?;
         for (most, error) in errors.iter_mut().zip(of_node) {
             *most = most.max(error);
         }
@@ -330,7 +332,7 @@ fn node_errors(factors: &[f64], values: &[f64]) -> Option<(MeshLimit, Vec<f64>)>
 }
 
 /// The limit L and order p of values q = L + C h^p at three lengths h, falling; where p is at its bounds, 0.5 and 4, the two finest
-/// values tell the limit. Absent where the values do not tend monotonically to a positive limit.
+/// values determine the limit. Absent where the values do not tend monotonically to a positive limit.
 fn limit(h: [f64; 3], q: [f64; 3]) -> Option<(f64, f64)> {
     let [coarse, middle] = [h[0] / h[2], h[1] / h[2]];
     let [first, second] = [q[0] - q[1], q[1] - q[2]];

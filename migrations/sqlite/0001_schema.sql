@@ -241,7 +241,7 @@ CREATE TABLE result (
     -- Where and how it was computed, a JSON object.
     provenance TEXT    NOT NULL,
     created    INTEGER NOT NULL,
-    -- Computed anew, it came out otherwise than before, or one before it did: the same numbers are promised. What differed is
+    -- Recomputed, it differs from the one before, or one before it did: the same numbers are promised. What differed is
     -- in its provenance.
     disagrees  INTEGER NOT NULL DEFAULT 0
 ) STRICT;

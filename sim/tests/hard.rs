@@ -158,7 +158,7 @@ fn a_finer_step_says_the_same_of_every_hard_scene() {
         .filter(|(_, verdict)| !matches!(verdict, Verdict::Agrees(_) | Verdict::AtRest))
         .collect();
     assert!(otherwise.is_empty(), "{otherwise:#?}");
-    // Those that are there to stand still, flutter that has grown to three micrometres only, and no others.
+    // Those that stay at rest, flutter that has grown to three micrometres only, and no others.
     let at_rest = verdicts.iter().filter(|(_, verdict)| *verdict == Verdict::AtRest).map(|(name, _)| *name);
     let still = ["no-rotation", "near-buckling", "torque-near-greenhill", "flow-flutter"];
     assert_eq!(at_rest.collect::<Vec<_>>(), still.map(|name| format!("hard/{name}")));

@@ -728,7 +728,7 @@ proptest! {
             .expect("an admissible flow");
         prop_assert!(here.friction_coefficient <= plain.friction_coefficient * (1.0 + 1e-13));
 
-        // An iteration between statics and hydraulics stands still only if rounding in e comes out as rounding.
+        // An iteration between statics and hydraulics converges to the bit only if rounding in e comes out as rounding.
         let near = element_flow(&mud, &geometry, e + 1e-13, rotation_speed).expect("an admissible flow");
         prop_assert!((near.friction_coefficient / here.friction_coefficient - 1.0).abs() < 1e-11);
     }

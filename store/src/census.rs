@@ -24,7 +24,7 @@ pub struct Census {
     pub database_bytes: i64,
     /// Size of its write-ahead log.
     pub write_ahead_log_bytes: i64,
-    /// Results that were computed anew and came out otherwise.
+    /// Results that were recomputed and differ.
     pub disagreements: i64,
     /// Size of all artifacts, those that share a blob counted each time.
     pub artifact_bytes: i64,

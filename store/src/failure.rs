@@ -1,4 +1,4 @@
-//! What was given up, over all sweeps.
+//! Points that failed, over all sweeps.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::point::PointRecord;
 use crate::sql;
 
-/// A point that was given up.
+/// A point that failed for good.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailureRecord {
     /// The sweep.
@@ -17,7 +17,7 @@ pub struct FailureRecord {
     pub sweep_name: Option<String>,
     /// Whose sweep it is.
     pub owner: String,
-    /// When it was given up \[ms since the epoch\].
+    /// When it failed \[ms since the epoch\].
     pub at: i64,
     /// The point, without scenario and result.
     pub point: PointRecord,

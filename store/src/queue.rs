@@ -191,7 +191,7 @@ impl Store {
 
     /// Stores a result. False if the lease was lost: then nothing is written.
     ///
-    /// A result that was computed anew takes the place of the one before, with its artifacts. Where it should be the same and
+    /// A result that was recomputed takes the place of the one before, with its artifacts. Where it should be the same and
     /// is not, its provenance says so for good: `disagreement` tells what differs, and the provenance of the one before.
     ///
     /// # Errors
@@ -237,7 +237,7 @@ impl Store {
                 tracing::warn!(
                     key = key.as_str(),
                     differences,
-                    "computed anew, a result came out otherwise than before"
+                    "a recomputed result differs from the one before"
                 );
                 note_disagreement(&mut tx, lease.key.as_slice(), &differences, &earlier.provenance).await?;
             } else if earlier.disagrees {
@@ -308,7 +308,7 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Gives work back after the infrastructure failed: tried again later and later, given up at the fifth time.
+    /// Gives work back after the infrastructure failed: retried with increasing delays, and failed at the fifth time.
     /// False if the lease was lost.
     ///
     /// # Errors

@@ -33,7 +33,7 @@ pub enum Stage {
     Running,
     /// With a result.
     Done,
-    /// Failed, or given up because workers died.
+    /// Failed, or dead because workers died on it.
     Failed,
     /// Cancelled.
     Cancelled,
@@ -50,7 +50,7 @@ pub struct Transition {
     pub cause: &'static str,
 }
 
-/// All ways from one state to another. Work that was to be computed anew and ends without a new result goes back to done,
+/// All transitions from one state to another. Work that was to be recomputed and ends without a new result goes back to done,
 /// since the result from before stays.
 pub const TRANSITIONS: &[Transition] = {
     use WorkState::{Cancelled, Dead, Done, Failed, Leased, Queued, Waiting};
@@ -71,9 +71,9 @@ pub const TRANSITIONS: &[Transition] = {
         Transition { from: Waiting, to: Queued, cause: "the retry is due" },
         Transition { from: Waiting, to: Cancelled, cause: "no sweep wants it any more" },
         Transition { from: Waiting, to: Done, cause: "no sweep wants it any more, its earlier result stays" },
-        Transition { from: Done, to: Queued, cause: "a sweep wants it computed anew" },
-        Transition { from: Failed, to: Queued, cause: "retried, or a sweep wants it computed anew" },
-        Transition { from: Dead, to: Queued, cause: "retried, or a sweep wants it computed anew" },
+        Transition { from: Done, to: Queued, cause: "a sweep asks to recompute it" },
+        Transition { from: Failed, to: Queued, cause: "retried, or a sweep asks to recompute it" },
+        Transition { from: Dead, to: Queued, cause: "retried, or a sweep asks to recompute it" },
         Transition { from: Cancelled, to: Queued, cause: "retried, or a sweep wants it" },
     ]
 };

@@ -91,7 +91,7 @@ pub enum CachePolicy {
     /// Their result is taken.
     #[default]
     Reuse,
-    /// They are computed anew, failed ones too. The old result stays until a new one takes its place.
+    /// They are recomputed, failed ones too. The old result stays until a new one takes its place.
     Refresh,
     /// Their result is taken, or that they failed; a sweep with other points is not stored.
     Only,
@@ -371,7 +371,7 @@ async fn with_fuller<'p>(
     Ok(all)
 }
 
-/// Which of the keys belong to work that has a result with all its tables, and is not computed anew just now.
+/// Which of the keys belong to work that has a result with all its tables, and is not being recomputed.
 async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
     if keys.is_empty() {
         return Ok(HashSet::new());

@@ -36,8 +36,8 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
         let Some(expired) = artifact.expired else { return Ok(artifact) };
         let expired = records::timestamp(expired)?;
         let detail = format!(
-            "the table {name} reached its age and was given up at {expired}; the summary is kept, and a sweep submitted with \
-             ?cache=refresh computes the point anew"
+            "the table {name} expired at {expired}; the summary is kept, and a sweep submitted with ?cache=refresh recomputes \
+             the point"
         );
         return Err(Error::new(ProblemKind::Expired, detail));
     }
@@ -49,7 +49,7 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     Err(Error::new(ProblemKind::NoSuchTable, detail))
 }
 
-/// The key of a point that has a result, be it that it is computed anew just now.
+/// The key of a point that has a result, even while it is being recomputed.
 pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
     let Some(point) = store.point(sweep, n.into()).await? else {
         return Err(records::no_such_point(store, sweep, n).await?);

@@ -36,7 +36,7 @@ impl Error {
 
     /// A failure that is expected to pass.
     pub(crate) fn unavailable(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
-        tracing::warn!(%reason, "a request could not be served just now");
+        tracing::warn!(%reason, "a request could not be served for the time being");
         let error = Error::new(ProblemKind::Unavailable, "the service is busy; try again in a second");
         Error { retry_after: Some(1), ..error }
     }

@@ -35,7 +35,7 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
                 let detail = format!("a body has at most {} bytes", LIMITS.body_bytes);
                 Error::new(ProblemKind::BodyTooLarge, detail)
             } else {
-                Error::new(ProblemKind::MalformedBody, "the body broke off")
+                Error::new(ProblemKind::MalformedBody, "the body was interrupted")
             }
         })?;
         let value = parse(&bytes)?;

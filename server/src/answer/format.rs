@@ -224,7 +224,7 @@ pub(crate) fn file(body: impl Into<Bytes>, format: Format, name: &str) -> Respon
     if let Ok(tag) = tag.parse() {
         headers.insert(header::ETAG, tag);
     }
-    // A point may be computed anew, and a sweep goes on; asking whether the copy is right costs little.
+    // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(format.media_type()));
     headers.insert(header::VARY, HeaderValue::from_static("accept"));

@@ -137,7 +137,7 @@ pub(crate) fn point_row(sweep: &str, record: &PointRecord) -> Result<PointRow> {
     })
 }
 
-/// A point in the list of those that were given up.
+/// A point in the list of failures.
 pub(crate) fn failure(record: &FailureRecord) -> Result<Failure> {
     Ok(Failure {
         sweep: record.sweep_id.clone(),

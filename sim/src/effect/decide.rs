@@ -26,7 +26,7 @@ pub struct EffectDecision {
 impl Scenario {
     /// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
     ///
-    /// `auto` leaves an effect out where the scene makes its term zero, or a motion stand still, exactly, so that the
+    /// `auto` leaves an effect out where the scene makes its term, or a motion, exactly zero, so that the
     /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
     /// aggressive rule neglects what is small.
     pub fn decide_effects(&self) -> Vec<EffectDecision> {

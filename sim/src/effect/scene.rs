@@ -59,7 +59,7 @@ pub(super) fn has_mud(scene: &Scene<'_>) -> Call {
 pub(super) fn has_flow(scene: &Scene<'_>) -> Call {
     match &scene.scenario.mud {
         None => no("the hole is dry"),
-        Some(mud) if mud.flow_rate == 0.0 => no("the mud stands still"),
+        Some(mud) if mud.flow_rate == 0.0 => no("the mud does not flow"),
         Some(_) => yes("the mud flows"),
     }
 }

@@ -226,7 +226,7 @@ impl<const D: usize> Ledger<D> {
     }
 
     /// Adds the work of the stages gathered so far.
-    fn settle(&mut self) {
+    fn flush(&mut self) {
         // Both forms are what the matrices take from the motion.
         let Integrals { symmetric, skew } = self.forms.take();
         for ((work, account), taken) in self.work.damping.iter_mut().zip(working()).zip(symmetric) {
@@ -256,7 +256,7 @@ impl<const D: usize> Ledger<D> {
         displacement: &NodalField<D>,
         velocity: &NodalField<D>,
     ) -> EnergyRow {
-        self.settle();
+        self.flush();
         let [mut x, mut v] = std::mem::take(&mut self.motion);
         displacement.copy_to_nodes(&mut x);
         velocity.copy_to_nodes(&mut v);
@@ -294,7 +294,7 @@ impl<const D: usize> Ledger<D> {
 
     /// All work so far \[J\].
     pub(super) fn work(&mut self) -> Work {
-        self.settle();
+        self.flush();
         self.work
     }
 

@@ -3,10 +3,10 @@
 //! At a stage the velocities and accelerations are linear in the unknown displacements,
 //! `v = v^ + c_v x` and `a = a^ + c_a x`, so that the equations of motion become
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix A0 is factored once for each step length.
-//! Contact stays on the right-hand side and is evaluated afresh in each sweep, implicitly at each node: the blocks on the diagonal
+//! Contact stays on the right-hand side and is re-evaluated in each sweep, implicitly at each node: the blocks on the diagonal
 //! of A0^-1 tell how a node gives way to its own contact force, and the force is the one that agrees with that. So a node that sticks,
 //! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is held in the first sweep; what sweeps still
-//! have to settle is what nodes do to each other.
+//! have to converge to is what nodes do to each other.
 
 use super::forces::{Compliance, ContactForces, Forces, SweepChange};
 use crate::freedom::LATERAL;

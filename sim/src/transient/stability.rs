@@ -78,7 +78,7 @@ pub(super) fn subdivisions(
 }
 
 /// What is expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction, which hardly
-/// matter to how contact pushes single nodes unless the string all but stands still.
+/// matter to how contact pushes single nodes unless the string hardly rotates.
 pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u32 {
     let unloaded = Equilibrium::unloaded(model);
     let system = model.dynamic_system(&unloaded);

@@ -172,7 +172,7 @@ pub(crate) async fn requests_are_kept_in_their_order_and_as_many_are_told_as_ask
     assert_eq!(point_record(&store, "s", 13).await.work_key, key(12));
 }
 
-/// A sweep of work item 1 that wants it computed anew.
+/// A sweep of work item 1 that asks to recompute it.
 fn refresh(id: &str) -> NewSweep {
     NewSweep { cache: CachePolicy::Refresh, ..sweep(id, [1]) }
 }
@@ -336,7 +336,7 @@ pub(crate) async fn only_what_is_known_is_taken_or_nothing_is_stored<E: Engine>(
     assert_eq!(store.sweep("some").await.unwrap(), None);
     submit(&store, &only("all", &[1, 2])).await;
     assert_eq!(states(&store, "all").await, [WorkState::Done, WorkState::Failed]);
-    // A result that is being computed anew is one all the same.
+    // A result that is being recomputed is one all the same.
     submit(&store, &refresh("new")).await;
     submit(&store, &only("meanwhile", &[1])).await;
 }

@@ -1,2 +1,2 @@
--- Counts the results that were computed anew and came out otherwise.
+-- Counts the results that were recomputed and differ.
 SELECT count(*) FROM result WHERE disagrees <> 0

@@ -1,4 +1,4 @@
--- Those of some work items that have a result with all its tables, and are not computed anew just now.
+-- Those of some work items that have a result with all its tables, and are not being recomputed.
 -- ?1 their keys, a JSON array of hexadecimal digits.
 SELECT key FROM work
 WHERE key IN (SELECT unhex(value) FROM json_each(?1))

@@ -1,5 +1,5 @@
 -- Cancels the open work of a sweep that no live sweep wants: has a point of it, or verifies one by it, and of work that has
--- a result, wants it computed anew. What is under way ends when its worker hears of it. A result from before stays, and
+-- a result, asks to recompute it. What is under way ends when its worker hears of it. A result from before stays, and
 -- the work is done then.
 -- ?1 sweep.
 UPDATE work SET

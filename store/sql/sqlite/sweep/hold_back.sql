@@ -1,5 +1,5 @@
 -- Holds back the open work of a sweep, or lets it go: it is held while no live sweep wants it that is not paused. A sweep
--- wants what it has a point of, or verifies one by, and of work that has a result, what it wants computed anew.
+-- wants what it has a point of, or verifies one by, and of work that has a result, what it asks to recompute.
 -- ?1 sweep.
 UPDATE work SET held = NOT EXISTS (
     SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id

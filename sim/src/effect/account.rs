@@ -33,8 +33,8 @@ pub enum Side {
 pub struct Booked {
     /// Work of the nodal forces.
     pub nodal: NodalWork,
-    /// Work of the matrices that multiply velocities and were [added](super::MotionTerms::add_damping) under this account, counted in the
-    /// sense of its side.
+    /// Work of the matrices that multiply velocities and were added to [`MotionTerms`](super::MotionTerms) under this account,
+    /// counted in the sense of its side.
     pub matrices: f64,
     /// Work of what in the stiffness has no potential, its skew part.
     pub follower: f64,

@@ -5,10 +5,11 @@
 //! (Tisseur and Meerbergen 2001, section 5). Two start vectors find the pairs of nearly equal eigenvalues that a round string has in its
 //! two planes.
 //!
-//! faer's `matrix_free::partial_eigen` (0.24) solves the same problem, and agrees to 1e-10 in about the same time (55 to 74 ms a shift, where
+//! faer's `matrix_free::eigen::partial_eigen` (0.24) solves the same problem, and agrees to 1e-10 in about the same time (55 to 74 ms a shift, where
 //! this takes 54 to 60, with 80 applications of the inverse at 297 nodes). It starts from one vector, though: of a round beam's pairs of
 //! equal eigenvalues it missed one or two among 20 to 34 at three of four shifts when asked for 1e-12. It gives neither residuals nor
-//! what has not converged, so that no radius can be stated within which nothing is missing.
+//! what has not converged, so that no radius can be stated within which nothing is missing. The projected matrix stays with nalgebra's
+//! complex Schur decomposition, too: 60 ms at 160 rows, where faer's takes 98.
 
 use nalgebra::{Complex, DMatrix, Schur};
 

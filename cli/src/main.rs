@@ -21,6 +21,8 @@ mod text;
 mod token;
 mod watch;
 
+use std::io::Write as _;
+
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use tracing_subscriber::Layer as _;
@@ -181,7 +183,14 @@ fn run() -> anyhow::Result<()> {
 }
 
 /// The command's own output; everything else goes to standard error.
-#[expect(clippy::print_stdout, reason = "this is what the commands are asked for")]
 fn print(text: &str) {
-    println!("{text}");
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Ok(()) => {}
+        // The reader has what it wanted, as `head` has.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) => {
+            tracing::error!(%error, "the output cannot be written");
+            std::process::exit(1);
+        }
+    }
 }

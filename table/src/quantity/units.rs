@@ -155,7 +155,7 @@ mod tests {
         ] {
             assert_eq!(units.field.symbol, symbol);
             let off = (units.field.size / published - 1.0).abs();
-            assert!(off < 0.5 * 10_f64.powi(2 - digits), "{symbol}: {} off by {off:e}", units.field.size);
+            assert!(off < 0.5 * 10_f64.powi(1 - digits), "{symbol}: {} off by {off:e}", units.field.size);
         }
     }
 

@@ -1,44 +1,35 @@
 //! One axis of a sweep: the values that one parameter takes.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
 /// The values of one swept parameter, listed or spaced between two ends.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(untagged, try_from = "AxisFields", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, try_from = "AxisFields")]
 pub enum Axis {
     /// `{"values": [...]}`: the values as listed, in that order.
-    #[schema(title = "AxisValues")]
     Values {
         /// The values, in the units of the field; 1 or more.
-        #[schema(min_items = 1)]
         values: Vec<f64>,
     },
     /// `{"from", "to", "count", "scale"}`: `count` values from `from` to `to`, both ends included and exact.
-    #[schema(title = "AxisRange")]
     Range {
         /// First value.
         from: f64,
         /// Last value.
         to: f64,
-        /// Number of values, 2 to 100,000; usual 3 to 20, since a grid has the product of all axes' counts.
-        #[schema(minimum = 2)]
+        /// Number of values, 2 or more.
         count: u32,
-        /// How the values between are spaced; absent means `linear`.
-        #[serde(default)]
-        #[schema(inline)]
+        /// How the values between are spaced.
         scale: Scale,
     },
     /// `{"from", "to", "scale"}`: anything between, where the design draws the values (Latin hypercube, Sobol).
-    #[schema(title = "AxisInterval")]
     Interval {
         /// Lower or upper end.
         from: f64,
         /// The other end.
         to: f64,
         /// How the values are spread.
-        #[serde(default)]
-        #[schema(inline)]
         scale: Scale,
     },
 }
@@ -145,11 +136,21 @@ impl Scale {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AxisFields {
+    #[serde(default, deserialize_with = "present")]
     values: Option<Vec<f64>>,
+    #[serde(default, deserialize_with = "present")]
     from: Option<f64>,
+    #[serde(default, deserialize_with = "present")]
     to: Option<f64>,
+    #[serde(default, deserialize_with = "present")]
     count: Option<u32>,
+    #[serde(default, deserialize_with = "present")]
     scale: Option<Scale>,
+}
+
+/// What is given is a value: a `null` is neither one nor the absence of one.
+fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 impl TryFrom<AxisFields> for Axis {
@@ -172,6 +173,86 @@ impl TryFrom<AxisFields> for Axis {
             AxisFields { from: Some(_), .. } => Err("a range needs `to` too".to_owned()),
             AxisFields { to: Some(_), .. } => Err("a range needs `from` too".to_owned()),
             AxisFields { .. } => Err("an axis needs `values`, or `from`, `to` and `count`".to_owned()),
+        }
+    }
+}
+
+/// The schemas of the three forms of an axis, which exclude each other by the members that they require and allow.
+mod schema {
+    use utoipa::openapi::schema::{OneOf, Schema};
+    use utoipa::openapi::{Ref, RefOr};
+    use utoipa::{PartialSchema, ToSchema};
+
+    use super::{Axis, Scale};
+
+    /// The values as listed, in that order.
+    #[derive(ToSchema)]
+    #[schema(as = AxisValues)]
+    #[serde(deny_unknown_fields)]
+    #[expect(dead_code, reason = "only described")]
+    struct Values {
+        /// The values, in the units of the field; 1 or more.
+        #[schema(min_items = 1)]
+        values: Vec<f64>,
+    }
+
+    /// `count` values from `from` to `to`, both ends included and exact.
+    #[derive(ToSchema)]
+    #[schema(as = AxisRange)]
+    #[serde(deny_unknown_fields)]
+    #[expect(dead_code, reason = "only described")]
+    struct Range {
+        /// First value.
+        from: f64,
+        /// Last value.
+        to: f64,
+        /// Number of values, 2 to 100,000; usual 3 to 20, since a grid has the product of all axes' counts.
+        #[schema(minimum = 2)]
+        count: u32,
+        #[serde(default)]
+        scale: Scale,
+    }
+
+    /// Anything from `from` to `to`, where the design draws the values (Latin hypercube, Sobol).
+    #[derive(ToSchema)]
+    #[schema(as = AxisInterval)]
+    #[serde(deny_unknown_fields)]
+    #[expect(dead_code, reason = "only described")]
+    struct Interval {
+        /// Lower or upper end.
+        from: f64,
+        /// The other end.
+        to: f64,
+        #[serde(default)]
+        scale: Scale,
+    }
+
+    impl PartialSchema for Axis {
+        fn schema() -> RefOr<Schema> {
+            let mut forms = OneOf::new();
+            forms.description =
+                Some("The values of one swept parameter, listed or spaced between two ends.".to_owned());
+            forms.items = ["AxisValues", "AxisRange", "AxisInterval"]
+                .map(|name| RefOr::Ref(Ref::from_schema_name(name)))
+                .to_vec();
+            RefOr::T(Schema::OneOf(forms))
+        }
+    }
+
+    impl ToSchema for Axis {
+        fn name() -> std::borrow::Cow<'static, str> {
+            "Axis".into()
+        }
+
+        fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+            fn collect<T: ToSchema>(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+                schemas.push((T::name().into_owned(), T::schema()));
+                T::schemas(schemas);
+            }
+            collect::<Values>(schemas);
+            collect::<Range>(schemas);
+            collect::<Interval>(schemas);
+            collect::<Scale>(schemas);
         }
     }
 }

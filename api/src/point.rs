@@ -195,7 +195,7 @@ impl PointError {
 pub enum FailureClass {
     /// The simulation itself: it diverged, or there is no equilibrium. Would happen again.
     Physical,
-    /// Disk, database or object store, after all retries.
+    /// Disk, database or object store, or a stored scenario that no worker could read, after all retries.
     Infrastructure,
     /// Workers died on it too often.
     Crash,

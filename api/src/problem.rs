@@ -1,5 +1,6 @@
 //! Errors on the wire: RFC 9457 problem details, all of a request's problems at once.
 
+use drillsweep_sim::scenario::Problem;
 use drillsweep_table::Table;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -35,6 +36,10 @@ pub enum ProblemKind {
     NotAcceptable,
     /// The body is larger than the limit.
     BodyTooLarge,
+    /// Path and query are longer than the limit.
+    TargetTooLong,
+    /// The header fields are larger than the limit.
+    HeaderTooLarge,
     /// None of the bytes asked for exist.
     RangeNotSatisfiable,
     /// No such route.
@@ -79,6 +84,8 @@ impl ProblemKind {
         ProblemKind::CrossSite,
         ProblemKind::NotAcceptable,
         ProblemKind::BodyTooLarge,
+        ProblemKind::TargetTooLong,
+        ProblemKind::HeaderTooLarge,
         ProblemKind::RangeNotSatisfiable,
         ProblemKind::NoSuchRoute,
         ProblemKind::MethodNotAllowed,
@@ -130,11 +137,13 @@ impl ProblemKind {
             ProblemKind::CrossSite => ("cross-site", "Requests from other sites are refused", 403),
             ProblemKind::NotAcceptable => ("not-acceptable", "No acceptable format", 406),
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
+            ProblemKind::TargetTooLong => ("target-too-long", "Path and query are too long", 414),
+            ProblemKind::HeaderTooLarge => ("header-too-large", "The header fields are too large", 431),
             ProblemKind::RangeNotSatisfiable => ("range-not-satisfiable", "No such bytes", 416),
             ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
             ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),
             ProblemKind::NotFound => ("not-found", "Not found", 404),
-            ProblemKind::NodeNotRecorded => ("node-not-recorded", "The node was not recorded", 422),
+            ProblemKind::NodeNotRecorded => ("node-not-recorded", "The node was not recorded", 404),
             ProblemKind::WindowNotKept => ("window-not-kept", "No spectrum over this window was kept", 422),
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
@@ -203,6 +212,25 @@ impl ProblemDetails {
             errors: Vec::new(),
             state: None,
         }
+    }
+
+    /// A body that is not JSON, or not of the documented form at the place that the JSON Pointer tells.
+    pub fn malformed_body(pointer: String, error: &serde_json::Error) -> Self {
+        let (message, position) =
+            (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
+        let detail = if error.is_data() {
+            let problem =
+                Problem::from_serde(String::new(), message.strip_suffix(&position).unwrap_or(&message));
+            // A pointer tells the place better than lines do, where there is one.
+            let position = if pointer.is_empty() && error.line() > 0 { position } else { String::new() };
+            format!("{problem}{position}")
+        } else {
+            format!("not JSON: {message}")
+        };
+        let place = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
+        let problem = ProblemDetails::new(ProblemKind::MalformedBody, format!("{place}{detail}"));
+        let error = FieldProblem { pointer: Some(pointer), parameter: None, got: None, detail };
+        ProblemDetails { errors: vec![error], ..problem }
     }
 
     /// A body that cannot be simulated, with everything that was found wrong with it.

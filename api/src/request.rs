@@ -29,7 +29,7 @@ pub struct SweepRequest {
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, example = json!(["campaign-7"]))]
+    #[schema(max_items = 20, value_type = Vec<String>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -106,7 +106,7 @@ pub struct RunRequest {
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, example = json!(["campaign-7"]))]
+    #[schema(max_items = 20, value_type = Vec<String>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -234,7 +234,7 @@ pub struct SweepPatch {
     pub priority: Option<i32>,
     /// Words to find it by, in place of those that it has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_items = 20)]
+    #[schema(max_items = 20, value_type = Option<Vec<String>>)]
     pub tags: Option<BTreeSet<String>>,
     /// Whether the sweep, and all that belongs to it, is kept whatever its age.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -114,11 +114,17 @@ pub fn history(
     Ok(plot.drawing())
 }
 
-/// The path of a node across its hole.
+/// The path of a node across its hole: the whole hole, or with `zoom` the motion alone with the hole as an inset; unless that is said,
+/// the motion alone where it is below a tenth of the hole.
 ///
 /// # Errors
 /// When the table is not an orbit.
-pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
+pub fn orbit(
+    table: &Table,
+    hole: &Hole,
+    title: &str,
+    zoom: Option<bool>,
+) -> Result<Drawing, Box<ProblemDetails>> {
     let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {
         (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
@@ -131,6 +137,7 @@ pub fn orbit(table: &Table, hole: &Hole, title: &str) -> Result<Drawing, Box<Pro
         wall: hole.clearance.map(shown),
         low_side: hole.low_side,
         unit: units::WIDTH.shown.symbol.to_owned(),
+        zoom,
     };
     Ok(plot.drawing())
 }

@@ -57,6 +57,8 @@ pub struct SweepFilter<'a> {
     pub name: Option<&'a str>,
     /// With this tag.
     pub tag: Option<&'a str>,
+    /// With an identifier that begins like this.
+    pub id: Option<&'a str>,
 }
 
 impl Store {
@@ -86,6 +88,7 @@ impl Store {
             .bind(filter.state)
             .bind(filter.name)
             .bind(filter.tag)
+            .bind(filter.id)
             .fetch_all(&self.pool)
             .await?;
         rows.iter().map(SweepRecord::read).collect()

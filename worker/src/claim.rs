@@ -322,6 +322,10 @@ async fn write_end(
         Ended::Computed(Ok(Computation::Suspended(checkpoint))) => {
             halted(store, lease, Some(checkpoint), reason, halt).await
         }
+        Ended::Computed(Err(error)) if error.is_of_this_worker() => {
+            tracing::error!(%error, "this worker cannot read the point's scenario");
+            store.retry_later(lease, &text_of(&error.to_point_error())).await
+        }
         Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
         Ended::Computed(Err(error)) => {
             tracing::warn!(%error, "point failed");

@@ -41,8 +41,10 @@ pub(super) fn check_members(request: &SweepRequest, problems: &mut Found) {
 }
 
 fn check_text(pointer: &str, text: Option<&String>, limit: usize, problems: &mut Found) {
-    if let Some(text) = text.filter(|text| text.is_empty() || text.chars().count() > limit) {
-        let detail = format!("must have 1 to {limit} characters");
+    let is_valid =
+        |text: &str| (1..=limit).contains(&text.chars().count()) && !text.chars().any(char::is_control);
+    if let Some(text) = text.filter(|text| !is_valid(text)) {
+        let detail = format!("must have 1 to {limit} characters, none of them a control character");
         problems.push(pointer, Some(text.as_str().into()), detail);
     }
 }

@@ -15,59 +15,100 @@ pub fn recorded<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
     nodes
 }
 
-/// One node asked for by number, or by the measured depth \[m\] nearest to it.
+/// A node whose motion was recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recorded {
+    /// Its number, 1 at the top.
+    pub node: u32,
+    /// Its measured depth \[m\].
+    pub measured_depth: f64,
+    /// The measured depths \[m\] that mean this node: to the middles of the elements beside it, and at an end of the string as
+    /// far beyond.
+    pub reach: (f64, f64),
+}
+
+impl Recorded {
+    /// The node at `index` of a mesh whose nodes have these measured depths \[m\], from the top down; none if there is none.
+    pub fn of_mesh(depths: &[f64], index: usize) -> Option<Self> {
+        let depth = *depths.get(index)?;
+        let above =
+            index.checked_sub(1).and_then(|above| depths.get(above)).map(|above| (depth - above) / 2.0);
+        let below = depths.get(index + 1).map(|below| (below - depth) / 2.0);
+        let reach = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(0.0);
+        Some(Self {
+            node: u32::try_from(index + 1).ok()?,
+            measured_depth: depth,
+            reach: (depth - reach(above, below), depth + reach(below, above)),
+        })
+    }
+}
+
+/// One node, as it is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Choice {
     /// By number, 1 at the top.
     Node(u32),
-    /// By measured depth \[m\].
-    Depth(f64),
+    /// The one at this measured depth \[m\], to within half an element.
+    At(f64),
+    /// The recorded one nearest to this measured depth \[m\], however far.
+    Nearest(f64),
 }
 
 impl Choice {
-    /// The choice that two query parameters make.
+    /// The choice that query parameters make; `nearest` takes the nearest recorded node to a depth.
     ///
     /// # Errors
-    /// When both are given, or none.
-    pub fn from_parameters(node: Option<u32>, depth: Option<f64>) -> Result<Self, Box<ProblemDetails>> {
+    /// When both `node` and `depth` are given, or none, or `nearest` without a depth.
+    pub fn from_parameters(
+        node: Option<u32>,
+        depth: Option<f64>,
+        nearest: bool,
+    ) -> Result<Self, Box<ProblemDetails>> {
+        let refused =
+            |name: &str, detail: &str| Err(ProblemDetails::invalid_parameter(name, None, detail).into());
         match (node, depth) {
+            (Some(_), None) if nearest => refused("nearest", "is for a `depth`"),
             (Some(node), None) => Ok(Choice::Node(node)),
-            (None, Some(depth)) => Ok(Choice::Depth(depth)),
-            (Some(_), Some(_)) => {
-                Err(ProblemDetails::invalid_parameter("depth", None, "`node` and `depth` exclude each other")
-                    .into())
-            }
-            (None, None) => {
-                Err(ProblemDetails::invalid_parameter("node", None, "either `node` or `depth` must be given")
-                    .into())
-            }
+            (None, Some(depth)) if nearest => Ok(Choice::Nearest(depth)),
+            (None, Some(depth)) => Ok(Choice::At(depth)),
+            (Some(_), Some(_)) => refused("depth", "`node` and `depth` exclude each other"),
+            (None, None) => refused("node", "either `node` or `depth` must be given"),
         }
     }
 
-    /// The recorded node that is meant: of that number, or the one nearest to the depth. `recorded` are the
-    /// recorded nodes with their measured depths \[m\].
+    /// The recorded node that is meant.
     ///
     /// # Errors
     /// A problem that lists the recorded nodes, when the one asked for is not among them.
-    pub fn among(self, recorded: &[(u32, f64)]) -> Result<(u32, f64), Box<ProblemDetails>> {
+    pub fn among(self, recorded: &[Recorded]) -> Result<Recorded, Box<ProblemDetails>> {
+        let nearest = |depth: f64| {
+            let distance = |node: &Recorded| (node.measured_depth - depth).abs();
+            recorded.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
         let found = match self {
-            Choice::Node(asked) => recorded.iter().find(|(node, _)| *node == asked),
-            Choice::Depth(depth) => {
-                recorded.iter().min_by(|(_, a), (_, b)| (a - depth).abs().total_cmp(&(b - depth).abs()))
-            }
+            Choice::Node(asked) => recorded.iter().find(|node| node.node == asked),
+            Choice::At(depth) => nearest(depth).filter(|node| (node.reach.0..=node.reach.1).contains(&depth)),
+            Choice::Nearest(depth) => nearest(depth),
         };
         found.copied().ok_or_else(|| Box::new(self.not_among(recorded)))
     }
 
-    fn not_among(self, recorded: &[(u32, f64)]) -> ProblemDetails {
-        let names: Vec<_> = recorded.iter().map(|(node, depth)| format!("{node} ({depth:.2} m)")).collect();
+    fn not_among(self, recorded: &[Recorded]) -> ProblemDetails {
+        let names: Vec<_> =
+            recorded.iter().map(|node| format!("{} ({:.2} m)", node.node, node.measured_depth)).collect();
         let nodes = match names.as_slice() {
             [] => "no node was recorded".to_owned(),
-            names => format!("recorded are the nodes {}", names.join(", ")),
+            names => {
+                let hint = match self {
+                    Choice::At(_) => "; nearest=true takes the nearest",
+                    _ => "",
+                };
+                format!("recorded are the nodes {}{hint}", names.join(", "))
+            }
         };
         let (parameter, got) = match self {
             Choice::Node(node) => ("node", node.into()),
-            Choice::Depth(depth) => ("depth", depth.into()),
+            Choice::At(depth) | Choice::Nearest(depth) => ("depth", depth.into()),
         };
         let error = FieldProblem {
             pointer: None,
@@ -84,7 +125,15 @@ impl Choice {
 mod tests {
     use super::*;
 
-    const RECORDED: [(u32, f64); 3] = [(10, 11.72), (49, 57.73), (282, 192.5)];
+    /// Three nodes of a mesh of 1.5 m, which ends at 192.5 m, where elements have 0.5 m.
+    fn recorded_nodes() -> [Recorded; 3] {
+        let near = |node, measured_depth: f64, above: f64, below: f64| Recorded {
+            node,
+            measured_depth,
+            reach: (measured_depth - above, measured_depth + below),
+        };
+        [near(10, 11.72, 0.75, 0.75), near(49, 57.73, 0.75, 0.15), near(282, 192.5, 0.25, 0.25)]
+    }
 
     #[test]
     fn nodes_are_read_off_the_column_names() {
@@ -93,19 +142,47 @@ mod tests {
     }
 
     #[test]
-    fn a_depth_means_the_nearest_recorded_node() {
-        for (depth, node) in [(0.0, 10), (34.0, 10), (35.0, 49), (125.0, 49), (126.0, 282), (1e4, 282)] {
-            assert_eq!(Choice::Depth(depth).among(&RECORDED).unwrap().0, node, "{depth} m");
+    fn a_node_reaches_to_the_middles_of_its_elements_and_as_far_beyond_an_end() {
+        let depths = [0.0, 2.0, 3.0, 3.5];
+        let reach = |index| Recorded::of_mesh(&depths, index).unwrap().reach;
+        assert_eq!((reach(0), reach(1), reach(3)), ((-1.0, 1.0), (1.0, 2.5), (3.25, 3.75)));
+        assert_eq!(Recorded::of_mesh(&depths, 1).unwrap().node, 2);
+        assert_eq!(Recorded::of_mesh(&depths, 4), None);
+    }
+
+    #[test]
+    fn a_depth_means_the_node_within_half_an_element() {
+        let nodes = recorded_nodes();
+        for (depth, node) in [(11.0, 10), (57.7, 49), (57.88, 49), (192.7, 282)] {
+            assert_eq!(Choice::At(depth).among(&nodes).unwrap().node, node, "{depth} m");
+        }
+        for depth in [0.0, 57.9, 120.0, 5000.0] {
+            let problem = Choice::At(depth).among(&nodes).unwrap_err();
+            assert_eq!(problem.status, 404);
+            assert!(
+                problem.detail.contains("49 (57.73 m)") && problem.detail.contains("nearest=true"),
+                "{problem}"
+            );
         }
     }
 
     #[test]
+    fn the_nearest_recorded_node_may_be_asked_for() {
+        for (depth, node) in [(0.0, 10), (34.0, 10), (35.0, 49), (125.0, 49), (126.0, 282), (1e4, 282)] {
+            assert_eq!(Choice::Nearest(depth).among(&recorded_nodes()).unwrap().node, node, "{depth} m");
+        }
+        assert!(Choice::from_parameters(Some(3), None, true).is_err());
+        assert_eq!(Choice::from_parameters(None, Some(3.0), true), Ok(Choice::Nearest(3.0)));
+    }
+
+    #[test]
     fn a_node_that_was_not_recorded_is_answered_with_those_that_were() {
-        assert_eq!(Choice::Node(49).among(&RECORDED).unwrap(), (49, 57.73));
-        let problem = Choice::Node(50).among(&RECORDED).unwrap_err();
-        assert_eq!(problem.status, 422);
+        let nodes = recorded_nodes();
+        assert_eq!(Choice::Node(49).among(&nodes).unwrap(), nodes[1]);
+        let problem = Choice::Node(50).among(&nodes).unwrap_err();
+        assert_eq!(problem.status, 404);
         assert_eq!(problem.errors[0].parameter.as_deref(), Some("node"));
         assert!(problem.detail.contains("10 (11.72 m), 49 (57.73 m), 282 (192.50 m)"), "{}", problem.detail);
-        assert!(Choice::Depth(1.0).among(&[]).unwrap_err().detail.contains("no node was recorded"));
+        assert!(Choice::Nearest(1.0).among(&[]).unwrap_err().detail.contains("no node was recorded"));
     }
 }

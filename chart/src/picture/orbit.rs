@@ -20,6 +20,12 @@ const CIRCLE_SIDES: usize = 180;
 const NEAR: f64 = 0.3;
 /// How much wider than what it shows the view is.
 const MARGIN: f64 = 1.08;
+/// Side of the inset that shows the whole hole beside a view of the motion alone.
+const INSET_SIDE: f64 = 120.0;
+/// Distance of the inset from the corner of the plot.
+const INSET_GAP: f64 = 10.0;
+/// A motion below this part of the hole is shown by itself unless the whole hole is asked for.
+const SMALL_MOTION: f64 = 0.1;
 
 /// The path of one node across its hole, looking down the hole, with the low side down where there is one.
 ///
@@ -38,6 +44,39 @@ pub struct OrbitPlot {
     pub low_side: Option<f64>,
     /// The unit of the picture, such as `mm`.
     pub unit: String,
+    /// Whether the motion alone fills the picture, with the whole hole as an inset; none where that is so if it is below a tenth of
+    /// the hole.
+    pub zoom: Option<bool>,
+}
+
+/// A square part of the cross-section.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    middle: Position,
+    half: f64,
+}
+
+impl View {
+    /// The smallest about these places; none if there is none.
+    fn about(path: &[Position]) -> Option<Self> {
+        let extent = |k: usize| {
+            let values = path.iter().map(|place| place[k]);
+            values.fold(None, |extent: Option<(f64, f64)>, value| {
+                Some(extent.map_or((value, value), |(least, most)| (least.min(value), most.max(value))))
+            })
+        };
+        let (x, y) = (extent(0)?, extent(1)?);
+        let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
+        Some(Self { middle: [f64::midpoint(x.0, x.1), f64::midpoint(y.0, y.1)], half })
+    }
+
+    fn axis(self, k: usize) -> Option<PlotAxis> {
+        PlotAxis::between(self.middle[k] - self.half, self.middle[k] + self.half)
+    }
+
+    fn holds(self, place: Position) -> bool {
+        (0..2).all(|k| (place[k] - self.middle[k]).abs() <= self.half)
+    }
 }
 
 impl OrbitPlot {
@@ -54,13 +93,22 @@ impl OrbitPlot {
         self.drawing().png(width)
     }
 
-    /// The plot laid out on a page. The whole hole is shown.
+    /// The plot laid out on a page.
     pub fn drawing(&self) -> Drawing {
         let path: Vec<Position> = self.path.iter().filter_map(|[u, v]| self.seen(*u, *v)).collect();
+        let wall = self.wall.filter(|wall| wall.is_finite()).map(f64::abs);
         let reach = path.iter().map(|[x, y]| x.abs().max(y.abs())).fold(0.0, f64::max);
-        let half = MARGIN * reach.max(self.wall.filter(|wall| wall.is_finite()).unwrap_or(0.0).abs());
-        let axis = PlotAxis::between(-half, half);
-        let ticks = axis.map(|axis| axis.ticks()).unwrap_or_default();
+        let whole = View { middle: [0.0, 0.0], half: MARGIN * reach.max(wall.unwrap_or(0.0)) };
+        let motion = View::about(&path).map(|view| View { half: MARGIN * view.half, ..view });
+        let is_small = |motion: &View| wall.is_some_and(|wall| motion.half < SMALL_MOTION * wall);
+        let motion = motion
+            .filter(|motion| self.zoom.unwrap_or_else(|| is_small(motion)))
+            // What does not move fills no picture, nor what moves by less than the numbers resolve.
+            .filter(|motion| motion.half > 1e-9 * whole.half);
+        let view = motion.unwrap_or(whole);
+        let (across, down) = (view.axis(0), view.axis(1));
+        let ticks = |axis: Option<PlotAxis>| axis.map(|axis| axis.ticks()).unwrap_or_default();
+        let (x_ticks, y_ticks) = (ticks(across), ticks(down));
 
         let (left, right) = (LEFT_MARGIN, LEFT_MARGIN + PLOT_SIDE);
         let mut shapes = Vec::new();
@@ -68,15 +116,20 @@ impl OrbitPlot {
         let bottom = heading::subtitle(&mut shapes, &self.subtitle, left, right, bottom);
         let top = bottom + 10.0;
         let area = Rectangle { left, top, right, bottom: top + PLOT_SIDE };
-        shapes.push(plot_area::grid(&area, &ticks, &ticks));
-        let (across, vertical) = match self.low_side {
+        shapes.push(plot_area::grid(&area, &x_ticks, &y_ticks));
+        let (x_name, y_name) = match self.low_side {
             Some(_) => ("to the right, looking down the hole", "above the axis of the hole"),
             None => ("against v, looking down the hole", "against u; no low side"),
         };
         let name = |text: &str| format!("{text} [{}]", self.unit);
-        shapes.push(plot_area::axes(&area, &ticks, &ticks, &name(across), &name(vertical)));
-        match axis {
-            Some(axis) if !path.is_empty() => self.data(&mut shapes, &area, &axis, &path),
+        shapes.push(plot_area::axes(&area, &x_ticks, &y_ticks, &name(x_name), &name(y_name)));
+        match across.zip(down) {
+            Some(axes) if !path.is_empty() => {
+                self.data(&mut shapes, &area, axes, view, &path, motion.is_none());
+                if motion.is_some() {
+                    shapes.push(inset(&area, whole, view, wall, &path));
+                }
+            }
             _ => shapes.push(heading::no_data(plot_area::position(&area, 0.5, 0.5))),
         }
         Drawing { title, width: PAGE_WIDTH, height: area.bottom + plot_area::BELOW, shapes }
@@ -90,26 +143,38 @@ impl OrbitPlot {
         (u.is_finite() && v.is_finite()).then_some([-clockwise, -along_low_side])
     }
 
-    fn data(&self, shapes: &mut Vec<Shape>, area: &Rectangle, axis: &PlotAxis, path: &[Position]) {
+    fn data(
+        &self,
+        shapes: &mut Vec<Shape>,
+        area: &Rectangle,
+        (across, down): (PlotAxis, PlotAxis),
+        view: View,
+        path: &[Position],
+        is_whole: bool,
+    ) {
         let position = |[x, y]: Position| {
-            plot_area::position(area, axis.fraction(x).unwrap_or(0.5), axis.fraction(y).unwrap_or(0.5))
+            plot_area::position(area, across.fraction(x).unwrap_or(0.5), down.fraction(y).unwrap_or(0.5))
         };
         if let Some(wall) = self.wall.filter(|wall| wall.is_finite()) {
-            let circle = (0..=CIRCLE_SIDES).map(|side| {
-                let (sin, cos) = (TAU * side as f64 / CIRCLE_SIDES as f64).sin_cos();
-                position([wall * cos, wall * sin])
-            });
-            let circle = Shape::Polyline(circle.collect(), Stroke::dashed(Colour::QUIET_TEXT, 1.3));
-            let [x, y] = position([wall * FRAC_1_SQRT_2, wall * FRAC_1_SQRT_2]);
-            let text =
-                Text::new("string touches wall", [x + 6.0, y - 6.0], Anchor::Start, 11.5, Colour::QUIET_TEXT);
-            let fits = area.right - x > 130.0;
-            let text = if fits {
-                text
-            } else {
-                Text { at: [area.right - 8.0, area.top + 18.0], anchor: Anchor::End, ..text }
-            };
-            shapes.push(Shape::Group("wall", vec![circle, Shape::Text(text)]));
+            let mut group: Vec<Shape> = arcs(wall, view)
+                .into_iter()
+                .map(|arc| {
+                    let places = arc.into_iter().map(position).collect();
+                    Shape::Polyline(places, Stroke::dashed(Colour::QUIET_TEXT, 1.3))
+                })
+                .collect();
+            if is_whole {
+                let [x, y] = position([wall * FRAC_1_SQRT_2, wall * FRAC_1_SQRT_2]);
+                let words = "string touches wall";
+                let text = Text::new(words, [x + 6.0, y - 6.0], Anchor::Start, 11.5, Colour::QUIET_TEXT);
+                let fits = area.right - x > 130.0;
+                group.push(Shape::Text(if fits {
+                    text
+                } else {
+                    Text { at: [area.right - 8.0, area.top + 18.0], anchor: Anchor::End, ..text }
+                }));
+            }
+            shapes.push(Shape::Group("wall", group));
         }
         if self.low_side.is_some() {
             let [x, y] = plot_area::position(area, 0.5, 0.0);
@@ -124,6 +189,63 @@ impl OrbitPlot {
         let line = Shape::Polyline(places, Stroke::solid(colour, 1.0));
         shapes.push(Shape::Group("series", vec![line, Shape::Marker(end, end_marker, end_colour)]));
     }
+}
+
+/// The parts of the wall's circle that a view holds.
+fn arcs(wall: f64, view: View) -> Vec<Vec<Position>> {
+    /// So many sides make a circle round at any magnification that is drawn.
+    const MOST_SIDES: f64 = 1e6;
+    let magnification = (wall.abs() / view.half).clamp(1.0, MOST_SIDES / CIRCLE_SIDES as f64);
+    let sides = CIRCLE_SIDES * magnification.ceil() as usize;
+    let mut arcs = Vec::new();
+    let mut arc = Vec::new();
+    for side in 0..=sides {
+        let (sin, cos) = (TAU * side as f64 / sides as f64).sin_cos();
+        let place = [wall * cos, wall * sin];
+        if view.holds(place) {
+            arc.push(place);
+        } else if !arc.is_empty() {
+            arcs.push(std::mem::take(&mut arc));
+        }
+    }
+    arcs.push(arc);
+    arcs.retain(|arc| !arc.is_empty());
+    arcs
+}
+
+/// The whole hole in a corner of the plot, with the place of the view in it.
+fn inset(area: &Rectangle, whole: View, view: View, wall: Option<f64>, path: &[Position]) -> Shape {
+    let right = area.right - INSET_GAP;
+    let top = area.top + INSET_GAP;
+    let frame = Rectangle { left: right - INSET_SIDE, top, right, bottom: top + INSET_SIDE };
+    let scale = INSET_SIDE / (2.0 * whole.half);
+    let middle = [f64::midpoint(frame.left, frame.right), f64::midpoint(frame.top, frame.bottom)];
+    let position = |[x, y]: Position| [middle[0] + scale * x, middle[1] - scale * y];
+    let mut shapes =
+        vec![Shape::Filled(frame, Colour::WHITE), Shape::Rectangle(frame, Stroke::solid(Colour::FRAME, 1.0))];
+    for arc in wall.iter().flat_map(|wall| arcs(*wall, whole)) {
+        let places = arc.into_iter().map(position).collect();
+        shapes.push(Shape::Polyline(places, Stroke::dashed(Colour::QUIET_TEXT, 1.0)));
+    }
+    let (colour, _) = series_style(0);
+    shapes.push(Shape::Polyline(
+        without_near(path.iter().map(|place| position(*place))),
+        Stroke::solid(colour, 1.0),
+    ));
+    // A view too small to see is marked all the same.
+    let half = (scale * view.half).max(2.0);
+    let [x, y] = position(view.middle);
+    let marked = Rectangle { left: x - half, top: y - half, right: x + half, bottom: y + half };
+    shapes.push(Shape::Rectangle(marked, Stroke::solid(Colour::TEXT, 1.0)));
+    let text = Text::new(
+        "whole hole",
+        [frame.left + 5.0, frame.bottom - 5.0],
+        Anchor::Start,
+        10.5,
+        Colour::QUIET_TEXT,
+    );
+    shapes.push(Shape::Text(text));
+    Shape::Group("inset", shapes)
 }
 
 /// The positions that are distinguishable from the one before.
@@ -220,6 +342,47 @@ mod tests {
                 assert!(plot.png(200).is_ok());
             }
         }
+    }
+
+    #[test]
+    fn a_small_motion_fills_the_picture_and_the_hole_is_an_inset() {
+        // A circle of 1 mm about (30, 5) in a hole of 38 mm; without a low side u points down and v to the left.
+        let path: Vec<[f64; 2]> = (0..=200)
+            .map(|k| {
+                let (sin, cos) = (TAU * f64::from(k) / 200.0).sin_cos();
+                [30.0 + cos, 5.0 + sin]
+            })
+            .collect();
+        let plot = OrbitPlot { path, wall: Some(38.0), ..OrbitPlot::default() };
+        let width = |svg: &str| {
+            let xs = points(svg, "series").into_iter().map(|place| place[0]);
+            xs.clone().fold(f64::NEG_INFINITY, f64::max) - xs.fold(f64::INFINITY, f64::min)
+        };
+        let zoomed = plot.svg();
+        assert!((width(&zoomed) - PLOT_SIDE / MARGIN).abs() < 1.0, "{}", width(&zoomed));
+        assert!(zoomed.contains(r#"class="inset""#) && zoomed.contains("whole hole"));
+        assert!(Document::parse(&zoomed).is_ok() && plot.png(300).is_ok());
+        // The ticks tell where it is: from 29 to 31 below the axis, from 4 to 6 to the left.
+        assert!(zoomed.contains(">−30") && zoomed.contains(">−5"), "{zoomed}");
+
+        let whole = OrbitPlot { zoom: Some(false), ..plot.clone() }.svg();
+        assert!((width(&whole) - PLOT_SIDE / MARGIN / 38.0).abs() < 1.0 && !whole.contains("inset"));
+        let large = OrbitPlot { wall: Some(9.0), ..plot.clone() };
+        assert!(!large.svg().contains("inset"), "a motion of a ninth of the hole");
+        assert!(OrbitPlot { zoom: Some(true), ..large }.svg().contains("inset"));
+        let resting = OrbitPlot { path: vec![[30.0, 5.0]; 3], zoom: Some(true), ..plot };
+        assert!(!resting.svg().contains("inset"), "what rests has no motion to show");
+    }
+
+    #[test]
+    fn the_wall_beside_a_small_motion_is_an_arc() {
+        let arcs = arcs(38.0, View { middle: [38.0, 0.0], half: 0.1 });
+        assert_eq!(arcs.len(), 2, "the circle begins in the view");
+        let places: Vec<Position> = arcs.concat();
+        assert!(
+            places.len() > 50
+                && places.iter().all(|[x, y]| (x.hypot(*y) - 38.0).abs() < 1e-9 && y.abs() <= 0.1)
+        );
     }
 
     #[test]

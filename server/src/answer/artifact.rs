@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use axum::body::Bytes;
-use drillsweep_api::view::node::{self, Choice};
+use drillsweep_api::view::node::{self, Choice, Recorded};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
@@ -148,7 +148,7 @@ impl KeptSpectra {
             (column(&FROM)?, column(&TO)?, column(&FREQUENCY)?, column(amplitude)?);
         let recorded: BTreeSet<u32> =
             nodes.iter().flatten().filter_map(|&node| u32::try_from(node).ok()).collect();
-        let (node, measured_depth) = choice.among(&depths(&self.statics, recorded)?)?;
+        let Recorded { node, measured_depth, .. } = choice.among(&nodes_among(&self.statics, recorded)?)?;
         let mut windows: Vec<KeptWindow> = Vec::new();
         for (&from, &to) in starts.iter().zip(ends) {
             let window = KeptWindow { from, to };
@@ -200,7 +200,7 @@ impl Recording {
     /// The recording of one node.
     pub(crate) fn table_of(&self, choice: Choice) -> Result<Table> {
         let columns = column_names(self.history.clone())?;
-        let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
+        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
         let is_wanted = |name: &&str| {
             Name::parse(name).is_some_and(|name| match name.node {
                 Some(of) => of == node as usize,
@@ -214,7 +214,7 @@ impl Recording {
     /// The lateral motion of one node.
     pub(crate) fn motion_of(&self, choice: Choice) -> Result<NodeMotion> {
         let columns = column_names(self.history.clone())?;
-        let (node, measured_depth) = choice.among(&self.nodes(&columns)?)?;
+        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
         let (u, v) = (U.at_node(node as usize), V.at_node(node as usize));
         let mut table = decode(self.history.clone(), Some(&[TIME.name, &u, &v]))?;
         let mut take = |name: &str| match table.columns.swap_remove(name) {
@@ -250,9 +250,9 @@ impl Recording {
         })
     }
 
-    /// The recorded nodes with their measured depths \[m\].
-    fn nodes(&self, columns: &[String]) -> Result<Vec<(u32, f64)>> {
-        depths(&self.statics, node::recorded(columns.iter().map(String::as_str)))
+    /// The recorded nodes.
+    fn nodes(&self, columns: &[String]) -> Result<Vec<Recorded>> {
+        nodes_among(&self.statics, node::recorded(columns.iter().map(String::as_str)))
     }
 }
 
@@ -261,19 +261,19 @@ fn of_node(table: Table, node: u32, measured_depth: f64) -> Table {
     table.attribute(NODE.name, node).attribute(MEASURED_DEPTH.name, measured_depth)
 }
 
-/// Nodes with their measured depths \[m\], from the table of the statics.
-fn depths(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<(u32, f64)>> {
+/// The nodes of these numbers, from the table of the statics, which has all of the mesh.
+fn nodes_among(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<Recorded>> {
     let statics = decode(statics.clone(), Some(&[NODE.name, MEASURED_DEPTH.name]))?;
     let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
         (statics.columns.get(NODE.name), statics.columns.get(MEASURED_DEPTH.name))
     else {
         return Err(Error::internal("a table of statics without nodes and their depths"));
     };
-    let depth_of = |recorded: u32| {
+    let of_mesh = |recorded: u32| {
         let row = nodes.iter().position(|node| *node == Some(recorded.into()))?;
-        Some((recorded, depths[row]))
+        Recorded::of_mesh(depths, row)
     };
-    Ok(recorded.into_iter().filter_map(depth_of).collect())
+    Ok(recorded.into_iter().filter_map(of_mesh).collect())
 }
 
 impl NodeMotion {

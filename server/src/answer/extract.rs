@@ -3,9 +3,9 @@
 use axum::body::Bytes;
 use axum::extract::{FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
-use axum::http::{StatusCode, header};
+use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
-use drillsweep_api::{FieldProblem, LIMITS, ProblemDetails, ProblemKind};
+use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind};
 use serde::de::{DeserializeOwned, Error as _};
 
 use crate::answer::error::Error;
@@ -28,6 +28,11 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
         if !essence.eq_ignore_ascii_case("application/json") {
             let found = if essence.is_empty() { "without one" } else { essence };
             let detail = format!("the body must come with Content-Type: application/json, not {found}");
+            return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
+        }
+        let encoding = request.headers().get(header::CONTENT_ENCODING).map(HeaderValue::as_bytes);
+        if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(b"identity")) {
+            let detail = "the body must be sent as it is, without Content-Encoding";
             return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
         }
         let bytes = Bytes::from_request(request, state).await.map_err(|rejection| {
@@ -58,11 +63,7 @@ fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
 }
 
 fn malformed(pointer: String, error: &serde_json::Error) -> Error {
-    let detail = error.to_string();
-    let place = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
-    let problem = ProblemDetails::new(ProblemKind::MalformedBody, format!("{place}{detail}"));
-    let error = FieldProblem { pointer: Some(pointer), parameter: None, got: None, detail };
-    ProblemDetails { errors: vec![error], ..problem }.into()
+    ProblemDetails::malformed_body(pointer, error).into()
 }
 
 /// A path of serde's as a JSON Pointer. Enum variants are not members of the document.
@@ -176,6 +177,11 @@ pub(crate) mod value {
     pub(crate) fn truth<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
         let text = String::deserialize(deserializer)?;
         text.parse().map_err(|_| D::Error::custom("must be true or false"))
+    }
+
+    /// `true` or `false` where either is a choice of its own.
+    pub(crate) fn choice<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<bool>, D::Error> {
+        truth(deserializer).map(Some)
     }
 
     /// A time span: `30s`, `500ms` or, in seconds, `30`.

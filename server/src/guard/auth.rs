@@ -15,6 +15,7 @@ use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
 
 use crate::answer::error::{Error, Result};
 use crate::app::App;
+use crate::guard::audit;
 
 /// What everybody may ask for: health checks have no tokens, and the document is what a client begins with.
 const OPEN: [&str; 5] = ["/livez", "/readyz", "/openapi.json", "/docs", "/docs/{name}"];
@@ -77,8 +78,11 @@ pub(crate) async fn guard(
     });
     match admit(&app, request.method(), request.headers(), route, id.as_deref()).await {
         Ok(caller) => {
-            request.extensions_mut().insert(caller);
-            next.run(request).await
+            let (method, uri) = (request.method().clone(), request.uri().clone());
+            request.extensions_mut().insert(caller.clone());
+            let response = next.run(request).await;
+            audit::note(&caller, &method, &uri, &response);
+            response
         }
         Err(error) => error.into_response(),
     }
@@ -157,8 +161,7 @@ async fn permit(
     route: &str,
     id: Option<&str>,
 ) -> Result<()> {
-    let is_reading = matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS);
-    if is_reading || token.scope == TokenScope::Admin {
+    if audit::is_reading(method) || token.scope == TokenScope::Admin {
         return Ok(());
     }
     if token.scope < TokenScope::Submit {

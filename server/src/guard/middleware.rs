@@ -26,8 +26,8 @@ use crate::guard::{auth, measure};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Wraps the routes: request ids, spans, metrics, compression, copies that are still right, problem documents, panics, refusal of other sites'
-/// pages, tokens and rates, body limit; in this order from the outside.
+/// Wraps the routes: request ids, spans, metrics, compression, types that are not guessed, copies that are still right, problem documents,
+/// overlong requests, panics, refusal of other sites' pages, tokens and rates, body limit; in this order from the outside.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let compressible =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
@@ -38,8 +38,10 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
             .layer(from_fn_with_state(app.clone(), measure::measure))
             .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
+            .layer(from_fn(forbid_guessing))
             .layer(from_fn(tell_unchanged))
             .layer(from_fn(write_problems))
+            .layer(from_fn(refuse_long_requests))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
             .layer(from_fn_with_state(app.clone(), auth::guard))
@@ -75,6 +77,31 @@ fn log_response<B>(response: &Response<B>, latency: Duration, span: &Span) {
         latency_ms = latency.as_secs_f64() * 1e3,
         "answered"
     );
+}
+
+/// Keeps browsers from taking an answer for another type than it says.
+async fn forbid_guessing(request: Request, next: Next) -> Response<Body> {
+    let mut response = next.run(request).await;
+    response.headers_mut().insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    response
+}
+
+/// Bytes of a request's target, and of its header fields together, at most: what other servers allow.
+const LONGEST_TARGET: usize = 8 * 1024;
+const LONGEST_HEADER: usize = 32 * 1024;
+
+/// Refuses requests with an overlong target or header.
+async fn refuse_long_requests(request: Request, next: Next) -> Response<Body> {
+    let target = request.uri().path_and_query().map_or(0, |target| target.as_str().len());
+    let fields = request.headers().iter().map(|(name, value)| name.as_str().len() + value.len());
+    let (kind, what, limit) = if target > LONGEST_TARGET {
+        (ProblemKind::TargetTooLong, "the request's path and query", LONGEST_TARGET)
+    } else if fields.sum::<usize>() > LONGEST_HEADER {
+        (ProblemKind::HeaderTooLarge, "the request's header fields", LONGEST_HEADER)
+    } else {
+        return next.run(request).await;
+    };
+    Error::new(kind, format!("{what} have more than {limit} bytes")).into_response()
 }
 
 /// Answers 304 instead of what the client has a copy of.

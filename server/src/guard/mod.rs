@@ -1,5 +1,6 @@
 //! What every request passes through before its route, and what a submission has to pass.
 
+pub(crate) mod audit;
 pub(crate) mod auth;
 pub(crate) mod measure;
 pub(crate) mod middleware;

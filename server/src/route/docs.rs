@@ -21,6 +21,11 @@ static RELEASE: LazyLock<ZipArchive<Cursor<&[u8]>>> = LazyLock::new(|| {
 /// The file that says what the pages show, and its text in place of the release's, which shows an example.
 const INITIALIZER: (&str, &str) = ("swagger-initializer.js", include_str!("swagger-initializer.js"));
 
+/// What the pages may load: files of this service alone, and no page may hold them in a frame. Swagger UI sets styles of its elements,
+/// and has icons in its own text.
+const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'; \
+    base-uri 'none'; form-action 'self'";
+
 /// To the first page, whose other files are beside it.
 pub(crate) async fn start() -> Redirect {
     Redirect::permanent("/docs/index.html")
@@ -34,7 +39,13 @@ pub(crate) async fn file(uri: Uri, Path(name): Path<String>) -> Result<Response>
         page(&name).map_err(|error| Error::internal(&error))?
     };
     let missing = || Error::new(ProblemKind::NoSuchRoute, format!("there is nothing at {}", uri.path()));
-    Ok(([(header::CONTENT_TYPE, content_type(&name))], bytes.ok_or_else(missing)?).into_response())
+    let usual = [
+        (header::CONTENT_TYPE, content_type(&name)),
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ];
+    Ok((usual, bytes.ok_or_else(missing)?).into_response())
 }
 
 /// A file of the release's pages; none if there is no such file.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use axum::Json;
 use axum::extract::State;
-use drillsweep_api::Health;
+use drillsweep_api::{Health, ProblemKind};
 use tokio::time::{Instant, timeout};
 
 use crate::answer::document::Problems;
@@ -48,6 +48,10 @@ pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
         *seen = None;
         match timeout(PATIENCE, app.store.probe()).await {
             Ok(Ok(())) => *seen = Some(Instant::now()),
+            Ok(Err(error)) if error.is_full() => {
+                tracing::error!(%error, "the disk is full");
+                return Err(Error::new(ProblemKind::Unavailable, "the store's disk is full"));
+            }
             Ok(Err(error)) => return Err(Error::unavailable(&error)),
             Err(_) => return Err(Error::unavailable("the store did not answer in time")),
         }

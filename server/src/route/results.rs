@@ -176,9 +176,12 @@ pub(crate) struct HistoryQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
     node: Option<u32>,
-    /// Measured depth \[m\]; the nearest recorded node is taken.
+    /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
     depth: Option<f64>,
+    /// Take the recorded node nearest to `depth`, however far.
+    #[serde(default, deserialize_with = "value::truth")]
+    nearest: bool,
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
@@ -202,6 +205,7 @@ impl HistoryQuery {
     fn is_whole(&self) -> bool {
         self.node.is_none()
             && self.depth.is_none()
+            && !self.nearest
             && self.from.is_none()
             && self.to.is_none()
             && self.max_points.is_none()
@@ -229,8 +233,8 @@ pub(crate) async fn history(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let choice = match (query.node, query.depth) {
-        (None, None) => None,
-        (node, depth) => Some(node::Choice::from_parameters(node, depth)?),
+        (None, None) if !query.nearest => None,
+        (node, depth) => Some(node::Choice::from_parameters(node, depth, query.nearest)?),
     };
     let file_name = file_name(&id, n, tables::HISTORY.name);
     if format == Format::Parquet && query.is_whole() {
@@ -263,9 +267,12 @@ pub(crate) struct OrbitQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
     node: Option<u32>,
-    /// Measured depth \[m\]; the nearest recorded node is taken.
+    /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
     depth: Option<f64>,
+    /// Take the recorded node nearest to `depth`, however far.
+    #[serde(default, deserialize_with = "value::truth")]
+    nearest: bool,
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
@@ -277,6 +284,10 @@ pub(crate) struct OrbitQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 4)]
     max_points: Option<u32>,
+    /// Of a picture: whether the motion alone is shown, with the whole hole as an inset; absent means where the motion is below a
+    /// tenth of the hole.
+    #[serde(default, deserialize_with = "value::choice")]
+    zoom: Option<bool>,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
@@ -302,7 +313,7 @@ pub(crate) async fn orbit(
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
-    let choice = node::Choice::from_parameters(query.node, query.depth)?;
+    let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let max_points = query.max_points.map(|points| points as usize);
     if let Some(points) = max_points.filter(|points| *points < orbit::FEWEST_POINTS) {
         let detail = format!("must be {} or more", orbit::FEWEST_POINTS);
@@ -315,7 +326,9 @@ pub(crate) async fn orbit(
         let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
         let hole = recording.hole_at(motion.node)?;
         let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
-        format::respond_or_draw(&table, None, format, &file_name, |table| chart::orbit(table, &hole, &title))
+        format::respond_or_draw(&table, None, format, &file_name, |table| {
+            chart::orbit(table, &hole, &title, query.zoom)
+        })
     })
     .await
 }
@@ -329,9 +342,12 @@ pub(crate) struct SpectrumQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
     node: Option<u32>,
-    /// Measured depth \[m\]; the nearest recorded node is taken.
+    /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
     depth: Option<f64>,
+    /// Take the recorded node nearest to `depth`, however far.
+    #[serde(default, deserialize_with = "value::truth")]
+    nearest: bool,
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
@@ -396,7 +412,7 @@ pub(crate) async fn spectrum(
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
-    let choice = node::Choice::from_parameters(query.node, query.depth)?;
+    let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     let point = app.store.point(&id, n.into()).await?;

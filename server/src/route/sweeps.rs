@@ -251,6 +251,8 @@ pub(crate) struct ListQuery {
     name: Option<String>,
     /// Only sweeps with this tag.
     tag: Option<String>,
+    /// Only sweeps whose identifier begins like this.
+    id: Option<String>,
 }
 
 /// The sweeps, newest first
@@ -264,12 +266,16 @@ pub(crate) struct ListQuery {
 )]
 pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
     let limit = extract::page_size(query.limit)?;
+    if let Some(cursor) = query.cursor.as_deref().filter(|cursor| uuid::Uuid::parse_str(cursor).is_err()) {
+        return Err(Error::parameter("cursor", Some(cursor), "must be `next` of the page before"));
+    }
     // One more than asked for shows whether there is a next page.
     let filter = SweepFilter {
         owner: query.owner.as_deref(),
         state: query.state.map(SweepState::as_str),
         name: query.name.as_deref(),
         tag: query.tag.as_deref(),
+        id: query.id.as_deref(),
     };
     let mut records = app.store.sweeps(&filter, query.cursor.as_deref(), i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;

@@ -15,6 +15,8 @@ use tempfile::TempDir;
 use tokio::sync::watch;
 use tower::ServiceExt;
 
+use crate::schema;
+
 pub(crate) struct Bench {
     pub(crate) store: Store,
     pub(crate) stop: watch::Sender<bool>,
@@ -64,9 +66,14 @@ impl Bench {
     }
 
     pub(crate) async fn send(&self, request: Request<Body>) -> Answer {
+        let (parts, body) = request.into_parts();
+        let sent = body.collect().await.unwrap().to_bytes();
+        let (method, path) = (parts.method.clone(), parts.uri.path().to_owned());
+        let request = Request::from_parts(parts, Body::from(sent.clone()));
         let response = self.routes.clone().oneshot(request).await.unwrap();
         let (parts, body) = response.into_parts();
         let body = body.collect().await.unwrap().to_bytes();
+        schema::check(&method, &path, &sent, parts.status, &body);
         Answer { status: parts.status, headers: parts.headers, body }
     }
 

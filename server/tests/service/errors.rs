@@ -121,3 +121,67 @@ async fn the_service_describes_itself() {
         assert_eq!(detail["scenario"]["name"], entry["name"]);
     }
 }
+
+#[tokio::test]
+async fn overlong_and_encoded_requests_are_refused_with_problems() {
+    let bench = Bench::new().await;
+    let long = format!("/v1/sweeps?name={}", "x".repeat(8 * 1024));
+    bench.get(&long).await.problem(414, "target-too-long");
+    let heavy =
+        Request::get("/v1/sweeps").header("x-padding", "x".repeat(32 * 1024)).body(Body::empty()).unwrap();
+    bench.send(heavy).await.problem(431, "header-too-large");
+    let encoded = Request::post("/v1/sweeps")
+        .header(header::CONTENT_TYPE, "application/json")
+        .header(header::CONTENT_ENCODING, "gzip")
+        .body(Body::from("{\"preset\": \"paper-200m\"}"))
+        .unwrap();
+    bench.send(encoded).await.problem(415, "unsupported-media-type");
+}
+
+#[tokio::test]
+async fn malformed_bodies_are_told_of_without_the_names_of_types() {
+    let bench = Bench::new().await;
+    for (body, pointer, words) in [
+        (
+            json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": ["fast"]}}}),
+            "/axes/flow_rate/values/0",
+            "number",
+        ),
+        (
+            json!({"preset": "paper-200m", "axes": {"flow_rate": {"from": 0.01, "to": 0.04, "count": "3"}}}),
+            "/axes/flow_rate/count",
+            "a whole number, 0 or more",
+        ),
+        (json!({"preset": 3}), "/preset", "a string"),
+        (json!({"scenario": "paper-200m"}), "/scenario", "an object"),
+        (json!({"preset": "paper-200m", "tags": "x"}), "/tags", "a list"),
+        (json!({"preset": "paper-200m", "set": 3}), "/set", "an object"),
+    ] {
+        let problem = bench.post("/v1/sweeps", body).await.problem(400, "malformed-body");
+        let detail = problem["errors"][0]["detail"].as_str().unwrap();
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
+        assert!(detail.contains(words), "{problem}");
+        for name in ["f64", "u32", "struct", "enum", "Vec", "sequence"] {
+            assert!(!detail.contains(name), "{problem}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn cursors_and_control_characters_that_nothing_gave_out_are_refused() {
+    let bench = Bench::new().await;
+    let problem = bench.get("/v1/sweeps?cursor=zzz").await.problem(400, "invalid-parameter");
+    assert_eq!(problem["errors"][0]["parameter"], "cursor");
+    let hostile = json!({"preset": "paper-200m", "name": "a\u{1b}]0;b\u{7}"});
+    let problem = bench.post("/v1/sweeps", hostile).await.problem(422, "invalid-request");
+    assert_eq!(problem["errors"][0]["pointer"], "/name");
+}
+
+#[tokio::test]
+async fn pages_for_people_are_kept_to_themselves() {
+    let answer = Bench::new().await.get("/docs/index.html").await;
+    assert_eq!(answer.headers["x-frame-options"], "DENY");
+    assert_eq!(answer.headers["x-content-type-options"], "nosniff");
+    let policy = answer.headers["content-security-policy"].to_str().unwrap();
+    assert!(policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"), "{policy}");
+}

@@ -11,6 +11,7 @@ mod follow;
 mod openapi;
 mod pictures;
 mod results;
+mod schema;
 mod shutdown;
 mod submit;
 mod trust;

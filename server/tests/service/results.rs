@@ -96,14 +96,16 @@ async fn an_orbit_is_cut_from_the_history() {
         assert_eq!(u[i], 0.004 + 0.03 * (2.0 * TAU * t).cos() + 0.01 * (3.0 * TAU * t).cos());
         assert_eq!(radius[i], u[i].hypot(v[i]));
     }
-    let thinned =
-        bench.get(&format!("{path}/points/1/orbit?depth=55&from=2&to=3&max_points=100")).await.json();
+    let thinned = bench
+        .get(&format!("{path}/points/1/orbit?depth=55&nearest=true&from=2&to=3&max_points=100"))
+        .await
+        .json();
     assert_eq!(thinned["attributes"]["node"], 49);
     let thin_u = numbers(&thinned, "u");
     assert!(thin_u.len() <= 100 && thin_u.len() > 50, "{}", thin_u.len());
     let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     assert_eq!(largest(&thin_u), largest(&u));
-    let csv = bench.get(&format!("{path}/points/1/orbit?depth=0&to=0.002&format=csv")).await;
+    let csv = bench.get(&format!("{path}/points/1/orbit?depth=0&nearest=true&to=0.002&format=csv")).await;
     assert_eq!(csv.text(), "time,u,v,radius\n0.0,0.01,0.0,0.01\n0.001,0.01,0.0,0.01\n");
 }
 
@@ -172,10 +174,10 @@ async fn a_history_is_served_whole_or_of_one_node() {
 async fn a_node_that_was_not_recorded_is_answered_with_those_that_were() {
     let (bench, path) = finished().await;
     let problem =
-        bench.get(&format!("{path}/points/1/orbit?node=50")).await.problem(422, "node-not-recorded");
+        bench.get(&format!("{path}/points/1/orbit?node=50")).await.problem(404, "node-not-recorded");
     let detail = problem["detail"].as_str().unwrap();
     assert!(detail.contains("10 (11.72 m), 49 (57.73 m)"), "{detail}");
-    bench.get(&format!("{path}/points/1/spectrum?node=50")).await.problem(422, "node-not-recorded");
+    bench.get(&format!("{path}/points/1/spectrum?node=50")).await.problem(404, "node-not-recorded");
 }
 
 #[tokio::test]

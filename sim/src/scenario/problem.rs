@@ -27,24 +27,41 @@ impl Problem {
 
     /// A problem from the words of a serde error: what it got and what it expected are separated, and Rust's
     /// names of types become words.
-    pub(super) fn from_serde(path: String, message: &str) -> Self {
+    pub fn from_serde(path: String, message: &str) -> Self {
         let parted = ["invalid type: ", "invalid value: "]
             .iter()
             .find_map(|prefix| message.strip_prefix(prefix)?.rsplit_once(", expected "));
         let path = if path == "." { String::new() } else { path };
         match parted {
-            Some((got, expected)) => {
-                let expected = match expected {
-                    "f64" => "a number",
-                    "u32" => "a whole number, 0 or more",
-                    "a boolean" => "true or false",
-                    structure if structure.starts_with("struct ") => "an object",
-                    other => other,
-                };
-                Self::new(path, got, format!("must be {expected}"))
-            }
+            Some((got, expected)) => Self::new(path, got, format!("must be {}", in_words(expected))),
             None => Self::new(path, "", message),
         }
+    }
+}
+
+/// What serde expected, without Rust's names of types.
+fn in_words(expected: &str) -> &str {
+    let names_a_type = |kinds: &[&str]| {
+        kinds.iter().any(|kind| expected.strip_prefix(kind).is_some_and(|rest| rest.starts_with(' ')))
+    };
+    match expected {
+        "f64" | "f32" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, 0 or more",
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+        "a boolean" => "true or false",
+        "a sequence" => "a list",
+        "a map" => "an object",
+        _ if names_a_type(&[
+            "struct",
+            "struct variant",
+            "internally tagged enum",
+            "adjacently tagged enum",
+        ]) =>
+        {
+            "an object"
+        }
+        _ if names_a_type(&["enum"]) => "a name, or an object with a name as its only field",
+        other => other,
     }
 }
 

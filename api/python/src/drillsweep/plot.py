@@ -21,6 +21,7 @@ def orbit(
     *,
     node: int | None = None,
     depth: float | None = None,
+    nearest: bool = False,
     time: TimeWindow = (None, None),
     axes: Axes | None = None,
 ) -> Axes:
@@ -30,7 +31,7 @@ def orbit(
     the string, goes clockwise. In a vertical hole, which has no low side, the frame's first axis points down.
     """
     np = require("numpy", "plot")
-    table = point.orbit(node=node, depth=depth, time=time)
+    table = point.orbit(node=node, depth=depth, nearest=nearest, time=time)
     number = int(table.attributes["node"])
     statics = point.statics()
     row = statics.columns["node"].index(number)
@@ -58,6 +59,7 @@ def spectrum(
     *,
     node: int | None = None,
     depth: float | None = None,
+    nearest: bool = False,
     time: TimeWindow = (None, None),
     window: str | None = None,
     range_hz: float | None = None,
@@ -70,7 +72,7 @@ def spectrum(
     run's steps resolve is shaded, and no line there is labelled.
     """
     np = require("numpy", "plot")
-    table = point.spectrum(node=node, depth=depth, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
+    table = point.spectrum(node=node, depth=depth, nearest=nearest, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
     # As wide as the line that any window makes of a mean.
     is_mean = np.abs(table["frequency"]) < 2.5 * table.attributes["resolution"]
     shown = _shown("amplitude")

@@ -126,17 +126,19 @@ class Point:
         *,
         node: int | None = None,
         depth: float | None = None,
+        nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
     ) -> Table:
         """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `theta_z_rate_N` for node N."""
-        return self.view("history", **_node_window(node, depth, time), max_points=max_points)
+        return self.view("history", **_node_window(node, depth, nearest, time), max_points=max_points)
 
     def orbit(
         self,
         *,
         node: int | None = None,
         depth: float | None = None,
+        nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
     ) -> Table:
@@ -144,17 +146,19 @@ class Point:
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.
-            depth: Measured depth [m]; the nearest recorded node is taken.
+            depth: Measured depth [m] of a recorded node, to within half an element.
+            nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
             max_points: At most so many points; the extremes stay.
         """
-        return self.view("orbit", **_node_window(node, depth, time), max_points=max_points)
+        return self.view("orbit", **_node_window(node, depth, nearest, time), max_points=max_points)
 
     def spectrum(
         self,
         *,
         node: int | None = None,
         depth: float | None = None,
+        nearest: bool = False,
         time: TimeWindow = (None, None),
         window: str | None = None,
         range_hz: float | None = None,
@@ -167,14 +171,15 @@ class Point:
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.
-            depth: Measured depth [m]; the nearest recorded node is taken.
+            depth: Measured depth [m] of a recorded node, to within half an element.
+            nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
             window: Weighting of the samples, such as `hann`.
             range_hz: Frequencies from minus to plus this [Hz].
             peaks: At most so many of the highest peaks are listed.
         """
         query = {"window": window, "range_hz": range_hz, "peaks": peaks}
-        return self.view("spectrum", **_node_window(node, depth, time), **query)
+        return self.view("spectrum", **_node_window(node, depth, nearest, time), **query)
 
     def contacts(self) -> Table:
         """Contacts of every node with the hole over the run."""
@@ -207,5 +212,5 @@ class Point:
         return f"Point({self.ordinal}, {self.state}{parameters})"
 
 
-def _node_window(node: int | None, depth: float | None, time: TimeWindow) -> dict[str, Any]:
-    return {"node": node, "depth": depth, "from": time[0], "to": time[1]}
+def _node_window(node: int | None, depth: float | None, nearest: bool, time: TimeWindow) -> dict[str, Any]:
+    return {"node": node, "depth": depth, "nearest": nearest or None, "from": time[0], "to": time[1]}

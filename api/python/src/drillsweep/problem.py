@@ -120,7 +120,7 @@ _BY_KIND: dict[str, type[Problem]] = {
     "invalid-request": InvalidRequest,
     "invalid-parameter": InvalidRequest,
     "body-too-large": InvalidRequest,
-    "node-not-recorded": InvalidRequest,
+    "node-not-recorded": NotFound,
     "not-found": NotFound,
     "no-such-table": NotFound,
     "no-result": NoResult,

@@ -1,5 +1,5 @@
 -- Sweeps, newest first; what is none lets all through.
--- ?1 owner, ?2 sweep before which they are, ?3 how many at most, ?4 state, ?5 part of the name, ?6 tag.
+-- ?1 owner, ?2 sweep before which they are, ?3 how many at most, ?4 state, ?5 part of the name, ?6 tag, ?7 what the identifier begins with.
 -- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
 -- are few.
 SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags, created, finished,
@@ -17,4 +17,5 @@ WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
                                ELSE 'running' END)
   AND (?5 IS NULL OR instr(lower(name), lower(?5)) > 0)
   AND (?6 IS NULL OR EXISTS (SELECT 1 FROM json_each(tags) WHERE value = ?6))
+  AND (?7 IS NULL OR substr(id, 1, length(?7)) = lower(?7))
 ORDER BY id DESC LIMIT ?3

@@ -1,0 +1,74 @@
+//! Requests of the tests against the schemas of the OpenAPI document: a body that the server takes, its schema takes, and one that the
+//! server finds malformed, its schema does not.
+
+use std::sync::LazyLock;
+
+use axum::http::{Method, StatusCode};
+use drillsweep_api::ProblemKind;
+use drillsweep_server::openapi_json;
+use jsonschema::Validator;
+use serde_json::Value;
+
+/// The schema of an operation's body.
+struct Operation {
+    method: String,
+    path: String,
+    body: Validator,
+}
+
+static OPERATIONS: LazyLock<Vec<Operation>> = LazyLock::new(|| {
+    let document: Value = serde_json::from_str(openapi_json()).unwrap();
+    let mut operations = Vec::new();
+    for (path, methods) in document["paths"].as_object().unwrap() {
+        for (method, operation) in methods.as_object().unwrap() {
+            let mut schema = operation["requestBody"]["content"]["application/json"]["schema"].clone();
+            if schema.is_null() {
+                continue;
+            }
+            // What its references name.
+            schema["components"] = document["components"].clone();
+            operations.push(Operation {
+                method: method.to_uppercase(),
+                path: path.clone(),
+                body: jsonschema::draft202012::new(&schema).unwrap(),
+            });
+        }
+    }
+    operations
+});
+
+/// Compares what the server made of a body with what its schema makes of it.
+pub(crate) fn check(method: &Method, path: &str, body: &[u8], status: StatusCode, answer: &[u8]) {
+    let Some(operation) = OPERATIONS
+        .iter()
+        .find(|operation| operation.method == method.as_str() && is_of(path, &operation.path))
+    else {
+        return;
+    };
+    let Ok(instance) = serde_json::from_slice::<Value>(body) else { return };
+    let is_malformed = || {
+        let problem: Value = serde_json::from_slice(answer).unwrap_or_default();
+        problem["type"] == ProblemKind::MalformedBody.uri()
+    };
+    if status.is_success() {
+        let errors: Vec<String> = operation
+            .body
+            .iter_errors(&instance)
+            .map(|error| format!("{}: {error}", error.instance_path()))
+            .collect();
+        assert!(errors.is_empty(), "{method} {path} took what its schema refuses: {instance}\n{errors:#?}");
+    } else if status == StatusCode::BAD_REQUEST && is_malformed() {
+        assert!(
+            !operation.body.is_valid(&instance),
+            "{method} {path} finds malformed what its schema takes: {instance}\n{}",
+            String::from_utf8_lossy(answer)
+        );
+    }
+}
+
+/// Whether a path is one of a template such as `/v1/sweeps/{id}`.
+fn is_of(path: &str, template: &str) -> bool {
+    let path = path.split('?').next().unwrap_or_default();
+    let (path, template): (Vec<_>, Vec<_>) = (path.split('/').collect(), template.split('/').collect());
+    path.len() == template.len() && path.iter().zip(&template).all(|(a, b)| b.starts_with('{') || a == b)
+}

@@ -240,3 +240,86 @@ fn several_scenarios_are_studied_by_one_command() {
     );
     assert!(!refused.status.success() && !unwritten.exists());
 }
+
+#[test]
+fn sweeps_are_found_by_the_beginning_of_their_identifier_and_by_their_name() {
+    let data = tempfile::tempdir().unwrap();
+    let (_serve, server) = listen(data.path(), &["serve"]);
+    let named = |name: &str| {
+        let submit = ["submit", "paper-200m", "--name", name, "--detach"];
+        text(&server, &[&submit[..], &SHORT].concat()).trim().to_owned()
+    };
+    let (first, second) = (named("first"), named("twice"));
+    named("twice");
+    let found = |text: &str| json(&server, &["show", text, "--json"])["id"].as_str().unwrap().to_owned();
+    assert_eq!((found("first"), found(&first)), (first.clone(), first.clone()));
+    assert_eq!(found(&second[..35]), second);
+    // Identifiers begin with the time: these were made within the same minutes.
+    for ambiguous in [&first[..4], "twice"] {
+        let output = run(&server, &["show", ambiguous]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && error.contains(&second), "{ambiguous}: {error}");
+    }
+    assert!(!run(&server, &["show", "third"]).status.success());
+}
+
+#[test]
+fn a_dry_run_is_a_table_and_a_submission_says_how_to_go_on() {
+    let data = tempfile::tempdir().unwrap();
+    let (_serve, server) = listen(data.path(), &["serve"]);
+    let submit = [&["submit", "paper-200m", "--flow-rate", "0.01:0.04:4"][..], &SHORT].concat();
+    let shown = text(&server, &[&submit[..], &["--dry-run"]].concat());
+    assert!(shown.starts_with("4 points, 0 with a result already"), "{shown}");
+    assert!(
+        shown.contains("flow_rate m3/s") && shown.lines().any(|line| line.contains("  0.02  ")),
+        "{shown}"
+    );
+    let whole = json(&server, &[&submit[..], &["--dry-run", "--json"]].concat());
+    assert_eq!(whole["points"].as_array().unwrap().len(), 4);
+    let output = run(&server, &[&submit[..], &["--detach"]].concat());
+    let (id, hints) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(id.lines().count(), 1, "{id}");
+    for hint in ["drillsweep watch", "drillsweep fetch", "orbit?format=svg"] {
+        assert!(hints.lines().any(|line| line.contains(hint) && line.contains(id.trim())), "{hints}");
+    }
+}
+
+#[test]
+fn output_ends_quietly_where_nobody_reads_and_errors_are_messages() {
+    // The reading end is closed before the command starts.
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = Command::new(BINARY).args(["scenario", "paper-200m"]).stdout(writer).output().unwrap();
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+
+    let failing = Command::new(BINARY)
+        .args(["check", "--data", "/nowhere"])
+        .env("RUST_BACKTRACE", "1")
+        .env_remove("NO_COLOR")
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8(failing.stderr).unwrap(), "Error: there is no store in /nowhere\n");
+    for arguments in
+        [&["gc"][..], &["token", "list"], &["token", "revoke", "x"], &["check"], &["health", "--worker"]]
+    {
+        let nowhere = tempfile::tempdir().unwrap().path().join("missing");
+        let data = ["--data", nowhere.to_str().unwrap()];
+        assert!(!run("127.0.0.1:9", &[arguments, &data].concat()).status.success(), "{arguments:?}");
+        assert!(!nowhere.exists(), "{arguments:?} made a store");
+    }
+    let data = tempfile::tempdir().unwrap();
+    let (_serve, server) = listen(data.path(), &["serve"]);
+    let host_and_port = server.strip_prefix("http://").unwrap();
+    assert!(run(host_and_port, &["health"]).status.success());
+    let refused = run(&server, &["submit", "paper-200m", "--set", "mud.density=-1", "--detach"]);
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(error.matches("must be greater than 0").count(), 1, "{error}");
+    for command in ["submit", "up", "fetch", "simulate"] {
+        let help = text(&server, &[command, "--help"]);
+        assert!(!help.contains("\\["), "{help}");
+    }
+}

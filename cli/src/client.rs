@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::Args;
-use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails};
+use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails, Sweep, SweepList};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -14,11 +14,17 @@ use ureq::{Body, RequestBuilder};
 /// The environment variable with the token; an argument would show in the list of processes.
 const TOKEN: &str = "DRILLSWEEP_TOKEN";
 
+/// Where a service of this machine listens.
+pub(crate) const DEFAULT_SERVER: &str = "http://127.0.0.1:7340";
+
+/// Characters of a sweep's identifier, a UUID.
+const IDENTIFIER_LENGTH: usize = 36;
+
 /// Which server.
 #[derive(Args, Clone)]
 pub(crate) struct ServerArguments {
-    /// Address of the server. Its token, where it needs one, comes from the environment variable DRILLSWEEP_TOKEN.
-    #[arg(long, env = "DRILLSWEEP_SERVER", default_value = "http://127.0.0.1:7340")]
+    /// Address of the server, as a URL or `host:port`. Its token, where it needs one, comes from the environment variable DRILLSWEEP_TOKEN.
+    #[arg(long, env = "DRILLSWEEP_SERVER", default_value = DEFAULT_SERVER)]
     pub(crate) server: String,
 }
 
@@ -39,7 +45,12 @@ impl Client {
     pub(crate) fn new(arguments: &ServerArguments) -> Self {
         let config = ureq::Agent::config_builder().http_status_as_error(false).build();
         let token = std::env::var(TOKEN).ok().filter(|token| !token.is_empty());
-        Self { agent: config.into(), server: arguments.server.trim_end_matches('/').to_owned(), token }
+        Self { agent: config.into(), server: address(&arguments.server), token }
+    }
+
+    /// The server's address as a URL, without a slash at its end.
+    pub(crate) fn server(&self) -> &str {
+        &self.server
     }
 
     /// Posts JSON and reads JSON.
@@ -92,6 +103,45 @@ impl Client {
         }
     }
 
+    /// The identifier of the sweep that a text means: its identifier, the beginning of it, or its name.
+    pub(crate) fn sweep_id(&self, text: &str) -> anyhow::Result<String> {
+        const FEWEST_CHARACTERS: usize = 4;
+        let is_identifier = |text: &str| text.chars().all(|c| c.is_ascii_hexdigit() || c == '-');
+        if is_identifier(text) && text.len() == IDENTIFIER_LENGTH {
+            return Ok(text.to_owned());
+        }
+        let found = |filter: &str| -> anyhow::Result<Vec<Sweep>> {
+            let path = format!("/v1/sweeps?limit={}&{filter}={}", LIMITS.page_size, path_segment(text));
+            Ok(self.get::<SweepList>(&path)?.sweeps)
+        };
+        let by_identifier = match is_identifier(text) && text.len() >= FEWEST_CHARACTERS {
+            true => found("id")?,
+            false => Vec::new(),
+        };
+        let candidates = match by_identifier.is_empty() {
+            true => {
+                let named = found("name")?;
+                named.into_iter().filter(|sweep| sweep.name.as_deref() == Some(text)).collect()
+            }
+            false => by_identifier,
+        };
+        match candidates.as_slice() {
+            [only] => Ok(only.id.clone()),
+            [] => bail!(
+                "there is no sweep {text:?}: give its identifier, the beginning of it, or its name (`drillsweep list`)"
+            ),
+            several => {
+                let shown = several.iter().take(10);
+                let lines: Vec<_> = shown.map(|sweep| format!("{} of {}", sweep.id, sweep.created)).collect();
+                bail!(
+                    "{} sweeps are meant by {text:?}; give an identifier, such as\n  {}",
+                    several.len(),
+                    lines.join("\n  ")
+                )
+            }
+        }
+    }
+
     /// All points of a sweep, which are served in pages.
     pub(crate) fn points(&self, sweep: &str) -> anyhow::Result<Vec<PointRow>> {
         let path = format!("/v1/sweeps/{}/points?limit={}", path_segment(sweep), LIMITS.page_size);
@@ -129,6 +179,12 @@ impl Client {
     }
 }
 
+/// An address as a URL without its last slash; `host:port` is one of HTTP.
+fn address(text: &str) -> String {
+    let text = text.trim().trim_end_matches('/');
+    if text.contains("://") { text.to_owned() } else { format!("http://{text}") }
+}
+
 fn no_answer(url: &str) -> String {
     format!("no answer from {url}; is the server up?")
 }
@@ -149,15 +205,10 @@ fn retry_after(headers: &HeaderMap) -> Option<Duration> {
 /// A problem document in lines for people.
 fn problem(response: &mut Response<Body>) -> String {
     let status = response.status();
-    let Ok(problem) = response.body_mut().read_json::<ProblemDetails>() else {
-        return format!("the server answered {status}");
-    };
-    let mut lines = vec![format!("{status}: {}", problem.title), problem.detail];
-    for error in problem.errors {
-        let place = error.pointer.or(error.parameter).map_or_else(String::new, |place| format!("{place}: "));
-        lines.push(format!("  {place}{}", error.detail));
+    match response.body_mut().read_json::<ProblemDetails>() {
+        Ok(problem) => format!("{status}: {problem}"),
+        Err(_) => format!("the server answered {status}"),
     }
-    lines.join("\n")
 }
 
 /// What does not stand for itself in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.
@@ -171,6 +222,14 @@ pub(crate) fn path_segment(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_server_is_a_url_or_host_and_port() {
+        for text in ["http://a:7340", "http://a:7340/", "a:7340", " a:7340/ "] {
+            assert_eq!(address(text), "http://a:7340");
+        }
+        assert_eq!(address("https://a/drillsweep/"), "https://a/drillsweep");
+    }
 
     #[test]
     fn identifiers_cannot_leave_their_place_in_a_path() {

@@ -15,16 +15,16 @@ use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 
 use crate::print;
-use crate::simulate::{parse_set, read_scenario, with_progress};
+use crate::scenario::ChangeArguments;
+use crate::simulate::with_progress;
 
 #[derive(Args)]
 pub(crate) struct CostArguments {
     /// Presets by name (see `drillsweep scenario`) or scenario files (.toml or .json); several are studied one after the other.
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<String>,
-    /// Change a field of every scenario, such as `mud.flow_rate=0.04` or `mud=null`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
+    #[command(flatten)]
+    changes: ChangeArguments,
     /// Seconds of simulated time of each run in place of the scenario's own; orbits are then looked at over the last third,
     /// spectra over the last sixth.
     #[arg(long)]
@@ -137,13 +137,10 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
 
 /// The scenario of this name with the study that the arguments ask for.
 fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
-    let mut scenario = read_scenario(name)?;
+    let mut scenario = arguments.changes.applied_to(name, None)?.resolve()?;
     if scenario.name.is_empty() {
         let stem = Path::new(name).file_stem();
         scenario.name = stem.map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    }
-    for (path, value) in arguments.set.iter().cloned() {
-        scenario = scenario.with(&path, value)?;
     }
     scenario.cost_study.get_or_insert_default();
     let duration = arguments.duration.map(|duration| ("cost_study.duration", json!(duration)));

@@ -22,7 +22,7 @@ static TABLES: [&Layout; 5] =
 pub(crate) struct FetchArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     /// Directory to write to; made if it does not exist.
     #[arg(long, default_value = "results")]
@@ -58,7 +58,7 @@ impl Format {
 /// Writes `table.csv` with a row a point, and a folder a point with its tables and full spectra.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let id = &path_segment(&arguments.sweep);
+    let id = &path_segment(&client.sweep_id(&arguments.sweep)?);
     let format = arguments.format.name();
     std::fs::create_dir_all(&arguments.output)
         .with_context(|| format!("cannot make {}", arguments.output.display()))?;
@@ -99,7 +99,7 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
         }
         if has(tables::HISTORY.name) {
             for node in point.summary.iter().flat_map(recorded_nodes) {
-                for window in &point.scenario.recording.spectrum_windows {
+                for window in point.scenario.spectrum_windows() {
                     let (from, to) = (json!(window.from), json!(window.to));
                     let query = format!("node={node}&from={from}&to={to}&window=hann&format={format}");
                     let bytes = client.bytes(&format!("{path}/spectrum?{query}"))?;

@@ -54,7 +54,7 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let garbage = runtime.block_on(async {
-        let store = Store::open(&arguments.data.store(Role::Server)).await?;
+        let store = Store::open(&arguments.data.existing_store(Role::Server)?).await?;
         let garbage =
             store.collect_garbage(&policy, arguments.dry_run).await.context("garbage cannot be collected")?;
         store.close().await;

@@ -10,6 +10,7 @@ mod modes;
 mod plan;
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 mod processor;
+mod scenario;
 mod service;
 mod simulate;
 mod soak;
@@ -21,10 +22,12 @@ mod text;
 mod token;
 mod watch;
 
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
+use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
+use text::visible;
 use tracing_subscriber::Layer as _;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
@@ -120,10 +123,16 @@ impl Command {
     }
 }
 
-fn main() -> anyhow::Result<()> {
-    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
-    processor::check().map_err(anyhow::Error::msg)?;
-    run()
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Without the backtrace that anyhow's own way of printing adds where RUST_BACKTRACE is set: what ends here is a
+            // message to the user; panics have theirs.
+            let _ = writeln!(std::io::stderr().lock(), "Error: {}", visible(&format!("{error:#}")));
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// What `DRILLSWEEP_LOG` lets through: levels, of all targets or by target (`warn,drillsweep_server=debug`); `info` where it says
@@ -136,8 +145,15 @@ fn log_filter() -> Targets {
 }
 
 fn run() -> anyhow::Result<()> {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+    processor::check().map_err(anyhow::Error::msg)?;
     let arguments = Arguments::parse();
-    let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).with_filter(log_filter());
+    let has_colours =
+        std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let log = tracing_subscriber::fmt::layer()
+        .with_writer(std::io::stderr)
+        .with_ansi(has_colours)
+        .with_filter(log_filter());
     let registry = tracing_subscriber::registry().with(log);
     #[cfg(feature = "opentelemetry")]
     let telemetry = telemetry::Telemetry::new(arguments.command.service())?;
@@ -184,7 +200,7 @@ fn run() -> anyhow::Result<()> {
 
 /// The command's own output; everything else goes to standard error.
 fn print(text: &str) {
-    match writeln!(std::io::stdout().lock(), "{text}") {
+    match writeln!(std::io::stdout().lock(), "{}", visible(text)) {
         Ok(()) => {}
         // The reader has what it wanted, as `head` has.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),

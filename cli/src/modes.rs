@@ -6,18 +6,14 @@ use clap::Args;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::{ModeSearch, Modes, modes};
 use drillsweep_sim::statics::Equilibrium;
-use serde_json::Value;
 
 use crate::print;
-use crate::simulate::{parse_set, read_scenario};
+use crate::scenario::ScenarioArguments;
 
 #[derive(Args)]
 pub(crate) struct ModesArguments {
-    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
-    scenario: String,
-    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
+    #[command(flatten)]
+    scenario: ScenarioArguments,
     /// Lowest frequency in Hz.
     #[arg(long, default_value_t = 0.0)]
     from: f64,
@@ -34,10 +30,7 @@ pub(crate) struct ModesArguments {
 
 /// Finds the modes and prints them.
 pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
-    let mut scenario = read_scenario(&arguments.scenario)?;
-    for (path, value) in arguments.set.iter().cloned() {
-        scenario = scenario.with(&path, value)?;
-    }
+    let scenario = arguments.scenario.resolve(None)?;
     scenario.validate()?;
     let model = Model::new(&scenario)?;
     let equilibrium = Equilibrium::find(&model)?;

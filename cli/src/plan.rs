@@ -5,18 +5,15 @@ use std::fmt::Write as _;
 use clap::Args;
 use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::print;
-use crate::simulate::{parse_set, read_scenario};
+use crate::scenario::ScenarioArguments;
 
 #[derive(Args)]
 pub(crate) struct PlanArguments {
-    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
-    scenario: String,
-    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
+    #[command(flatten)]
+    scenario: ScenarioArguments,
     /// Print the plan as JSON.
     #[arg(long)]
     json: bool,
@@ -24,10 +21,7 @@ pub(crate) struct PlanArguments {
 
 /// Prints the plan of a scenario, with processor times from some short runs on this machine.
 pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
-    let mut scenario = read_scenario(&arguments.scenario)?;
-    for (path, value) in arguments.set.iter().cloned() {
-        scenario = scenario.with(&path, value)?;
-    }
+    let scenario = arguments.scenario.resolve(None)?;
     for warning in scenario.validate()? {
         tracing::warn!("{}: {}", warning.path, warning.message);
     }

@@ -12,6 +12,7 @@ use drillsweep_api::time_span;
 use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::{WorkerConfig, host_name};
+use rustix::fs::Mode;
 use rustix::process::{Signal, set_parent_process_death_signal};
 use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
@@ -106,10 +107,12 @@ pub(crate) struct WorkerArguments {
 
 impl DataArguments {
     pub(crate) fn store(&self, role: Role) -> StoreConfig {
+        // Whoever may read the files needs no token: what is made from here on is for this user alone.
+        rustix::process::umask(Mode::RWXG | Mode::RWXO);
         StoreConfig::in_directory(&self.data, role)
     }
 
-    /// The same for commands that only look: they make no store where there is none.
+    /// The same for commands that look at what there is: they make no store where there is none.
     pub(crate) fn existing_store(&self, role: Role) -> anyhow::Result<StoreConfig> {
         let config = self.store(role);
         anyhow::ensure!(config.exists(), "there is no store in {}", self.data.display());

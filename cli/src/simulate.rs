@@ -6,24 +6,22 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::Context;
 use clap::Args;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::{PRESETS, Scenario, preset};
+use drillsweep_sim::scenario::{PRESETS, Scenario};
 use drillsweep_sim::study::errors::ResultErrors;
 use drillsweep_worker::{Computed, compute, simulated_time_total};
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::print;
+use crate::scenario::{self, ScenarioArguments};
 
 #[derive(Args)]
 pub(crate) struct SimulateArguments {
-    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
-    scenario: String,
-    /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
+    #[command(flatten)]
+    scenario: ScenarioArguments,
     /// Accuracy: draft, standard or reference.
     #[arg(long)]
     accuracy: Option<String>,
@@ -37,11 +35,7 @@ pub(crate) struct SimulateArguments {
 
 /// Simulates and prints a summary.
 pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
-    let mut scenario = read_scenario(&arguments.scenario)?;
-    let accuracy = arguments.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
-    for (path, value) in arguments.set.iter().cloned().chain(accuracy) {
-        scenario = scenario.with(&path, value)?;
-    }
+    let scenario = arguments.scenario.resolve(arguments.accuracy.as_deref())?;
     let warnings = scenario.validate()?;
     for warning in warnings {
         tracing::warn!("{}: {}", warning.path, warning.message);
@@ -73,46 +67,10 @@ pub(crate) fn print_scenario(name: Option<&str>, as_json: bool) -> anyhow::Resul
                 PRESETS.iter().map(|(name, description)| json!({"name": name, "description": description}));
             print(&serde_json::to_string_pretty(&presets.collect::<Vec<_>>())?);
         }
-        (Some(name), false) => print(&read_scenario(name)?.to_toml()),
-        (Some(name), true) => print(&read_scenario(name)?.to_json()),
+        (Some(name), false) => print(&scenario::read(name)?.resolve()?.to_toml()),
+        (Some(name), true) => print(&scenario::read(name)?.resolve()?.to_json()),
     }
     Ok(())
-}
-
-/// A preset by name, or a scenario from a file.
-pub(crate) fn read_scenario(name: &str) -> anyhow::Result<Scenario> {
-    let path = Path::new(name);
-    let read = || std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"));
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("toml") => Scenario::from_toml(&read()?).with_context(|| name.to_owned()),
-        Some("json") => Scenario::from_json(&read()?).with_context(|| name.to_owned()),
-        _ => match preset(name) {
-            Some(scenario) => Ok(scenario),
-            None => {
-                let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-                bail!("no scenario {name:?}: presets are {}, files end in .toml or .json", names.join(", "))
-            }
-        },
-    }
-}
-
-/// `path=value`; the value is JSON, or else a text.
-pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
-    let (path, value) = text.split_once('=').with_context(|| format!("write PATH=VALUE, got {text:?}"))?;
-    let value = parse_value(value).map_err(|error| anyhow!("{path} {error}"))?;
-    Ok((path.trim().to_owned(), value))
-}
-
-/// JSON, or else the text itself.
-pub(crate) fn parse_value(text: &str) -> anyhow::Result<Value> {
-    match serde_json::from_str(text) {
-        Ok(value) => Ok(value),
-        // What begins like JSON was meant to be: as a text it would only be refused for another reason.
-        Err(error) if text.starts_with(['{', '[', '"']) => {
-            bail!("is not JSON (as in {{\"from\": 2, \"to\": 5}}): {error}")
-        }
-        Err(_) => Ok(json!(text)),
-    }
 }
 
 /// Runs `work` with a progress bar over `total` seconds of simulated time.
@@ -233,12 +191,16 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         for warning in &computed.warnings {
             writeln!(text, "warning: {warning}")?;
         }
-        let ratio = transient.energy_residual_ratio.unwrap_or(0.0);
-        writeln!(
-            text,
-            "energy residual {:.3} J, {:.2e} of the contacts' net work",
-            transient.energy_residual, ratio
-        )?;
+        let residual = transient.energy_residual;
+        match transient.energy_residual_ratio {
+            Some(ratio) => {
+                writeln!(text, "energy residual {residual:.3} J, {ratio:.2e} of the contacts' net work")?;
+            }
+            None => writeln!(
+                text,
+                "energy residual {residual:.1e} J; the contacts did no work to compare it with"
+            )?,
+        }
         writeln!(
             text,
             "steps of {} to {} ms resolve vibrations up to {:.0} Hz; {} captures of sticking nodes",
@@ -265,20 +227,4 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         provenance.hydraulic_passes
     )?;
     Ok(text)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_is_json_or_a_word_and_broken_json_is_no_word() {
-        let set = |text: &str| parse_set(text).map(|(path, value)| (path, value.to_string()));
-        assert_eq!(set("mud.flow_rate=0.04").unwrap(), ("mud.flow_rate".into(), "0.04".into()));
-        assert_eq!(set("accuracy=draft").unwrap(), ("accuracy".into(), "\"draft\"".into()));
-        assert_eq!(set("a={\"from\": 2}").unwrap(), ("a".into(), "{\"from\":2}".into()));
-        let error = set("recording.orbit_window={from=2,to=5}").unwrap_err().to_string();
-        assert!(error.starts_with("recording.orbit_window is not JSON"), "{error}");
-        assert!(set("mud").is_err());
-    }
 }

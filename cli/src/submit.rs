@@ -1,30 +1,35 @@
 //! Submitting a sweep, and adding points to one.
 
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::io::Write as _;
 
 use anyhow::{Context, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use drillsweep_api::{AppendRequest, Axis, AxisName, Design, Scale, Sweep, SweepRequest};
-use serde_json::{Value, json};
+use drillsweep_api::{
+    AppendRequest, Axis, AxisName, Design, FieldProblem, PlannedPoint, PlannedVerification, Scale, Sweep,
+    SweepRequest,
+};
+use drillsweep_sim::scenario::ScenarioRequest;
+use drillsweep_table::quantity::unit;
+use serde::Deserialize;
+use serde_json::Value;
 
-use crate::client::{Client, ServerArguments, path_segment};
+use crate::client::{Client, DEFAULT_SERVER, ServerArguments, path_segment};
 use crate::print;
-use crate::simulate::{parse_set, parse_value};
+use crate::scenario::{ScenarioArguments, parse_value};
 use crate::sweeps::{print_sweep, verification_line, warn_of_bias};
+use crate::text::{Alignment, columns, number};
 use crate::watch::{check, follow};
 
 #[derive(Args)]
 pub(crate) struct SubmitArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// A preset's name (see `drillsweep scenario`) or a scenario file (.toml or .json).
-    scenario: String,
+    #[command(flatten)]
+    scenario: ScenarioArguments,
     #[command(flatten)]
     design: DesignArguments,
-    /// Change a field of the scenario, such as `duration=5` or `operation.rotation_speed_rpm=90`.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = parse_set)]
-    set: Vec<(String, Value)>,
     /// Accuracy: draft, standard or reference.
     #[arg(long)]
     accuracy: Option<String>,
@@ -55,7 +60,7 @@ pub(crate) struct SubmitArguments {
     /// A key of your choice, such as a UUID: the same request with the same key is one sweep, however often it is sent.
     #[arg(long)]
     idempotency_key: Option<String>,
-    /// Print what the request would become, and store nothing.
+    /// Print what the request would become (with --json its plan, too), and store nothing.
     #[arg(long)]
     dry_run: bool,
     /// Return at once instead of watching the sweep.
@@ -69,10 +74,10 @@ pub(crate) struct SubmitArguments {
 /// Which points.
 #[derive(Args)]
 pub(crate) struct DesignArguments {
-    /// Flow rates \[m3/s\]: `0.01,0.04,0.06` or `from:to:count`.
+    /// Flow rates in m3/s: `0.01,0.04,0.06` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
     flow_rate: Option<Axis>,
-    /// Mud densities \[kg/m3\]: `1200,1500` or `from:to:count`.
+    /// Mud densities in kg/m3: `1200,1500` or `from:to:count`.
     #[arg(long, value_parser = parse_axis)]
     mud_density: Option<Axis>,
     /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
@@ -101,7 +106,7 @@ pub(crate) struct DesignArguments {
 pub(crate) struct AppendArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     #[command(flatten)]
     design: DesignArguments,
@@ -129,8 +134,10 @@ impl DesignArguments {
 
 /// Adds points to a sweep; prints how it stands then.
 pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
-    let path = format!("/v1/sweeps/{}/points", path_segment(&arguments.sweep));
-    let sweep = Client::new(&arguments.server).post(&path, &arguments.design.request())?;
+    let client = Client::new(&arguments.server);
+    let id = client.sweep_id(&arguments.sweep)?;
+    let path = format!("/v1/sweeps/{}/points", path_segment(&id));
+    let sweep = client.post(&path, &arguments.design.request())?;
     warn(&sweep);
     print_sweep(&sweep, arguments.json)
 }
@@ -138,22 +145,15 @@ pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
 impl SubmitArguments {
     fn request(&self) -> anyhow::Result<SweepRequest> {
         let AppendRequest { design, axes, points, samples, seed, skip } = self.design.request();
-        let path = PathBuf::from(&self.scenario);
-        let is_file = path.extension().is_some_and(|extension| extension == "toml" || extension == "json");
-        let (preset, scenario) = if is_file {
-            (None, Some(Box::new(crate::simulate::read_scenario(&self.scenario)?)))
-        } else {
-            (Some(self.scenario.clone()), None)
-        };
-        let accuracy = self.accuracy.iter().map(|name| ("accuracy".to_owned(), json!(name)));
+        let ScenarioRequest { preset, scenario, set } = self.scenario.request(self.accuracy.as_deref())?;
         let outputs = self.outputs.clone().map(serde_json::from_value).transpose();
         Ok(SweepRequest {
             name: self.name.clone(),
             owner: self.owner.clone(),
             tags: self.tags.iter().cloned().collect(),
             preset,
-            scenario,
-            set: self.set.iter().cloned().chain(accuracy).collect(),
+            scenario: scenario.map(Box::new),
+            set,
             outputs: outputs.context("--outputs")?,
             design,
             axes,
@@ -174,7 +174,10 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     if arguments.dry_run {
         let dry_run = format!("/v1/sweeps?dry_run=true&cache={}", arguments.cache);
         let answer: Value = client.post(&dry_run, &request)?;
-        print(&serde_json::to_string_pretty(&answer)?);
+        match arguments.json {
+            true => print(&serde_json::to_string_pretty(&answer)?),
+            false => print(&DryRun::deserialize(&answer)?.text()),
+        }
         return Ok(());
     }
     let key = arguments.idempotency_key.as_deref();
@@ -184,6 +187,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     warn(&sweep);
     if !arguments.json {
         print(&sweep.id);
+        hints(&client, &sweep)?;
     }
     let sweep = if arguments.detach { sweep } else { follow(&client, &sweep.id)? };
     if let Some(verification) = &sweep.verification {
@@ -195,6 +199,75 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
         print(&serde_json::to_string_pretty(&sweep)?);
     }
     if arguments.detach { Ok(()) } else { check(&sweep) }
+}
+
+/// Tells how to go on, on standard error: standard output has the identifier alone, for scripts.
+fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
+    let (id, server) = (&sweep.id, client.server());
+    let at = if server == DEFAULT_SERVER { String::new() } else { format!(" --server {server}") };
+    writeln!(
+        std::io::stderr().lock(),
+        "{} points; watch:  drillsweep watch {id}{at}\n\
+         when complete:  drillsweep fetch {id}{at} --output results\n\
+         table of points:  {server}/v1/sweeps/{id}/table?format=csv\n\
+         orbit of a point:  {server}/v1/sweeps/{id}/points/1/orbit?format=svg",
+        sweep.counts.total
+    )
+}
+
+/// What is read of the answer to a dry run.
+#[derive(Deserialize)]
+struct DryRun {
+    total: u64,
+    known: u64,
+    cpu_time: Option<f64>,
+    wall_time: Option<f64>,
+    points: Vec<PlannedPoint>,
+    verification: Option<PlannedVerification>,
+    #[serde(default)]
+    warnings: Vec<FieldProblem>,
+}
+
+/// Points of a dry run that are shown.
+const POINTS_SHOWN: usize = 50;
+
+impl DryRun {
+    fn text(&self) -> String {
+        let mut text = format!("{} points, {} with a result already", self.total, self.known);
+        if let Some(references) = &self.verification {
+            let _ = write!(text, "; {} reference runs, {} with a result", references.total, references.known);
+        }
+        let _ = match self.cpu_time {
+            Some(time) => write!(text, "\nabout {} s of processor time", number(time.ceil())),
+            None => write!(text, "\nprocessor time is not known before a worker has measured its machine"),
+        };
+        if let Some(time) = self.wall_time {
+            let _ = write!(text, ", {} s with the workers there are", number(time.ceil()));
+        }
+        let names: Vec<&String> =
+            self.points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
+        let named = |name: &&String| match unit(name).filter(|unit| *unit != "1") {
+            Some(unit) => format!("{name} {unit}"),
+            None => (*name).clone(),
+        };
+        let titles: Vec<String> = names.iter().map(named).collect();
+        let header: Vec<&str> = ["point"].into_iter().chain(titles.iter().map(String::as_str)).collect();
+        let row = |point: &PlannedPoint| {
+            let values = names
+                .iter()
+                .map(|name| point.parameters.get(*name).map_or_else(String::new, |value| number(*value)));
+            [point.ordinal.to_string()].into_iter().chain(values).collect()
+        };
+        let rows: Vec<Vec<String>> = self.points.iter().take(POINTS_SHOWN).map(row).collect();
+        let _ = write!(text, "\n{}", columns(&header, &rows, |_| Alignment::Right));
+        if self.points.len() > POINTS_SHOWN {
+            let _ = write!(text, "\n... and {} more; --json has all", self.points.len() - POINTS_SHOWN);
+        }
+        for warning in &self.warnings {
+            let _ = write!(text, "\nwarning: {warning}");
+        }
+        text
+    }
 }
 
 /// What can be simulated but is probably not meant.

@@ -63,7 +63,7 @@ pub(crate) struct FailuresArguments {
 pub(crate) struct ShowArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     /// One of its points, from 1.
     point: Option<u32>,
@@ -76,7 +76,7 @@ pub(crate) struct ShowArguments {
 pub(crate) struct SweepArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     /// Print the sweep as JSON.
     #[arg(long)]
@@ -161,13 +161,14 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
 /// Prints a sweep with a line a point, or one point with its results.
 pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
-    let path = format!("/v1/sweeps/{}", path_segment(&arguments.sweep));
+    let id = client.sweep_id(&arguments.sweep)?;
+    let path = format!("/v1/sweeps/{}", path_segment(&id));
     if let Some(number) = arguments.point {
         let point: PointDetail = client.get(&format!("{path}/points/{number}"))?;
         return if arguments.json { print_json(&point) } else { print_point(&point) };
     }
     let sweep: Sweep = client.get(&path)?;
-    let points = client.points(&arguments.sweep)?;
+    let points = client.points(&id)?;
     if arguments.json {
         let mut sweep = json!(sweep);
         sweep["points"] = json!(points);
@@ -223,8 +224,9 @@ pub(crate) fn resume(arguments: &SweepArguments) -> anyhow::Result<()> {
 }
 
 fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
-    let path = format!("/v1/sweeps/{}/{verb}", path_segment(&arguments.sweep));
-    let sweep: Sweep = Client::new(&arguments.server).post(&path, &json!({}))?;
+    let client = Client::new(&arguments.server);
+    let id = client.sweep_id(&arguments.sweep)?;
+    let sweep: Sweep = client.post(&format!("/v1/sweeps/{}/{verb}", path_segment(&id)), &json!({}))?;
     print_sweep(&sweep, arguments.json)
 }
 
@@ -232,7 +234,7 @@ fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
 pub(crate) struct ChangeArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     #[command(flatten)]
     changes: Changes,
@@ -283,8 +285,9 @@ pub(crate) fn change(arguments: &ChangeArguments) -> anyhow::Result<()> {
         pinned: (*pin || *unpin).then_some(*pin),
         expires,
     };
-    let path = format!("/v1/sweeps/{}", path_segment(&arguments.sweep));
-    let sweep: Sweep = Client::new(&arguments.server).patch(&path, &patch)?;
+    let client = Client::new(&arguments.server);
+    let id = client.sweep_id(&arguments.sweep)?;
+    let sweep: Sweep = client.patch(&format!("/v1/sweeps/{}", path_segment(&id)), &patch)?;
     print_sweep(&sweep, arguments.json)
 }
 
@@ -409,6 +412,10 @@ fn text(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
+        Value::Number(number) => match number.as_f64() {
+            Some(value) if number.is_f64() => crate::text::number(value),
+            _ => number.to_string(),
+        },
         value => value.to_string(),
     }
 }

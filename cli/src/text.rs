@@ -1,4 +1,7 @@
-//! Columns of text for people.
+//! Text for people: columns, numbers, and nothing that a terminal would obey.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
 
 /// To which side a column's texts go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,9 +37,59 @@ pub(crate) fn columns(
     lines.join("\n")
 }
 
+/// A text with its control characters but line ends and tabs as `\u001b`, which a terminal shows and JSON reads as the same
+/// character: names and messages of others are printed, and must not move the cursor or rename the window.
+pub(crate) fn visible(text: &str) -> Cow<'_, str> {
+    let is_obeyed = |character: char| character.is_control() && !matches!(character, '\n' | '\t');
+    if !text.contains(is_obeyed) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len());
+    for character in text.chars() {
+        if is_obeyed(character) {
+            let _ = write!(shown, "\\u{:04x}", u32::from(character));
+        } else {
+            shown.push(character);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// A number to six significant digits, as short as it can be; whole numbers in full.
+pub(crate) fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if value.fract() == 0.0 && value.abs() < 1e15 {
+        format!("{value}")
+    } else if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_terminal_shows_what_it_would_obey() {
+        assert_eq!(visible("a\tb\né"), "a\tb\né");
+        let hostile = "\u{1b}]0;owned\u{7}\u{9b}2J";
+        assert_eq!(visible(hostile), "\\u001b]0;owned\\u0007\\u009b2J");
+        let json = serde_json::to_string(hostile).unwrap();
+        assert_eq!(serde_json::from_str::<String>(&visible(&json)).unwrap(), hostile);
+    }
+
+    #[test]
+    fn numbers_have_six_digits() {
+        let numbers =
+            [0.1 + 0.2, 1.0 / 3.0, 1234567.0, -0.04, 0.0, 2.5e-9 / 3.0, 123456.78, 2.03e11 / 3.0, 600.0];
+        let texts: Vec<_> = numbers.into_iter().map(number).collect();
+        assert_eq!(
+            texts,
+            ["0.3", "0.333333", "1234567", "-0.04", "0", "8.33333e-10", "123457", "6.76667e10", "600"]
+        );
+    }
 
     #[test]
     fn columns_are_as_wide_as_their_widest_text() {

@@ -121,7 +121,7 @@ async fn create(arguments: &CreateArguments) -> anyhow::Result<()> {
 }
 
 async fn list(data: &DataArguments, json: bool) -> anyhow::Result<()> {
-    let store = Store::open(&data.store(Role::Server)).await?;
+    let store = Store::open(&data.existing_store(Role::Server)?).await?;
     let (tokens, now) = (store.tokens().await?, store.now_ms().await?);
     store.close().await;
     if json {
@@ -143,7 +143,7 @@ async fn list(data: &DataArguments, json: bool) -> anyhow::Result<()> {
 }
 
 async fn revoke(data: &DataArguments, id: &str) -> anyhow::Result<()> {
-    let store = Store::open(&data.store(Role::Server)).await?;
+    let store = Store::open(&data.existing_store(Role::Server)?).await?;
     let found = store.revoke_token(id).await?;
     store.close().await;
     anyhow::ensure!(found, "there is no token {id}; `drillsweep token list` shows those there are");

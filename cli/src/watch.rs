@@ -13,7 +13,7 @@ use crate::sweeps::{sweep_line, warn_of_bias};
 pub(crate) struct WatchArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep's identifier.
+    /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     /// Print the complete sweep as JSON.
     #[arg(long)]
@@ -22,7 +22,8 @@ pub(crate) struct WatchArguments {
 
 /// Watches a sweep until every point is final, and the reference runs that verify some; fails if points have no result.
 pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
-    let sweep = follow(&Client::new(&arguments.server), &arguments.sweep)?;
+    let client = Client::new(&arguments.server);
+    let sweep = follow(&client, &client.sweep_id(&arguments.sweep)?)?;
     warn_of_bias(&sweep);
     if arguments.json {
         print(&serde_json::to_string_pretty(&sweep)?);

@@ -41,7 +41,7 @@ fn base() -> Scenario {
     let mut scenario = preset("paper-200m").expect("it ships with the program");
     scenario.duration = DURATION;
     scenario.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
-    scenario.recording.spectrum_windows.clear();
+    scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
     scenario
 }

@@ -101,7 +101,7 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     let mut scenario: Scenario = preset("paper-200m").expect("it ships with the program");
     scenario.duration = duration;
     scenario.accuracy = accuracy;
-    scenario.recording.spectrum_windows.clear();
+    scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
     scenario.mesh = scenario.mesh.scaled(lengths);
     let model = Model::new(&scenario).expect("the preset has a model");

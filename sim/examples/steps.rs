@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     scenario.duration = f64::from(steps) * step;
     scenario.recording.rate_hz = 1.0 / step;
     scenario.recording.nodes = vec![NodeChoice::Node(49)];
-    scenario.recording.spectrum_windows.clear();
+    scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
     scenario.validate().map_err(|problems| problems.to_string())?;
 

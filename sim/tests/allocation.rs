@@ -21,7 +21,7 @@ fn steps_allocate_nothing() {
             let mut scenario = preset("paper-200m").expect("it ships with the crate");
             scenario.duration = duration;
             scenario.accuracy = Accuracy::Explicit(stepping);
-            scenario.recording.spectrum_windows.clear();
+            scenario.recording.spectrum_windows = Some(Vec::new());
             scenario.recording.orbit_window = None;
             let model = Model::new(&scenario).expect("the preset has a model");
             let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
@@ -46,7 +46,7 @@ fn memory_grows_with_the_string_and_not_with_the_steps() {
         let mut scenario = preset("paper-200m").expect("it ships with the crate");
         scenario.duration = duration;
         scenario.recording.nodes.truncate(1);
-        scenario.recording.spectrum_windows.clear();
+        scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
         scenario.mesh = scenario.mesh.scaled(lengths);
         let mut nodes = 0;

@@ -18,7 +18,7 @@ const METHODS: [(Integrator, f64); 3] =
 fn base(duration: f64, (integrator, step): (Integrator, f64)) -> Scenario {
     let mut scenario = preset("paper-200m").unwrap();
     scenario.duration = duration;
-    scenario.recording.spectrum_windows.clear();
+    scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
     scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(integrator, step));
     scenario

@@ -15,7 +15,7 @@ const DURATION: f64 = 0.5;
 fn scenes() -> Vec<(&'static str, Scenario)> {
     let mut base = preset("paper-200m").expect("shipped preset");
     base.duration = DURATION;
-    base.recording.spectrum_windows.clear();
+    base.recording.spectrum_windows = Some(Vec::new());
     base.recording.orbit_window = None;
     let change = |name: &'static str, change: &dyn Fn(&mut Scenario)| {
         let mut scenario = base.clone();

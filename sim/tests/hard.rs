@@ -142,7 +142,7 @@ fn a_finer_step_says_the_same_of_every_hard_scene() {
         if let Some((_, duration)) = ASKED_OVER.iter().find(|(asked, _)| *asked == name) {
             scenario.duration = *duration;
             scenario.recording.orbit_window = None;
-            scenario.recording.spectrum_windows.clear();
+            scenario.recording.spectrum_windows = Some(Vec::new());
         }
         let scene = Scene::of(&scenario);
         let own = Measure::new(&scene.model, &scene.equilibrium, &scene.records, 0);

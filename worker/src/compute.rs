@@ -117,9 +117,16 @@ pub enum ComputeError {
 }
 
 impl ComputeError {
+    /// Whether another worker, of a newer version or with a database that has been mended, may get a result.
+    pub(crate) fn is_of_this_worker(&self) -> bool {
+        matches!(self, ComputeError::Invalid(_))
+    }
+
     /// The error as the service shows it: class, reason, and time and node where there are any.
     pub fn to_point_error(&self) -> PointError {
-        let error = PointError::new(FailureClass::Physical, self.to_string());
+        let class =
+            if self.is_of_this_worker() { FailureClass::Infrastructure } else { FailureClass::Physical };
+        let error = PointError::new(class, self.to_string());
         let number = |node: Option<usize>| node.and_then(|node| u32::try_from(node).ok());
         match self {
             ComputeError::Run { error: failure, stability } => {
@@ -378,6 +385,15 @@ mod tests {
     }
 
     #[test]
+    fn a_scenario_that_this_worker_cannot_take_is_no_failure_of_the_physics() {
+        let mut scenario = preset("paper-200m").expect("shipped preset");
+        scenario.well.hole_diameter = -1.0;
+        let error = failure(&scenario);
+        assert_eq!(error["class"], "infrastructure", "{error}");
+        assert!(error["reason"].as_str().unwrap().contains("well.hole_diameter"), "{error}");
+    }
+
+    #[test]
     fn a_run_that_diverges_tells_time_and_node_and_that_the_scene_is_unstable() {
         // Beyond flutter (Paidoussis 1998, chapter 3), with no wall to hold it.
         let mut scenario = preset("hard/flow-flutter").expect("shipped preset");
@@ -398,7 +414,7 @@ mod tests {
         let computed = |name| {
             let mut scenario = preset(name).expect("shipped preset");
             scenario.duration = 0.01;
-            scenario.recording.spectrum_windows.clear();
+            scenario.recording.spectrum_windows = Some(Vec::new());
             scenario.recording.orbit_window = None;
             compute(&scenario, &Control::new()).expect("runs")
         };
@@ -432,7 +448,7 @@ mod tests {
             scenario.ensemble = 2;
             scenario.recording.stability = true;
             scenario.recording.outputs = outputs;
-            scenario.recording.spectrum_windows = vec![TimeWindow { from: 0.0, to: 0.02 }];
+            scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: 0.0, to: 0.02 }]);
             scenario.recording.orbit_window = None;
             compute(&scenario, &Control::new()).expect("runs")
         };

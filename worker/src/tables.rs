@@ -186,6 +186,8 @@ fn statics(model: &Model, equilibrium: &Equilibrium) -> Table {
     integers(&mut table, &NODE, (1..=nodes.len()).map(|number| number as i64));
     numbers(&mut table, &MEASURED_DEPTH, nodes.iter().map(|node| node.measured_depth));
     numbers(&mut table, &TRUE_VERTICAL_DEPTH, model.frames.iter().map(|frame| frame.position.z));
+    numbers(&mut table, &NORTH, model.frames.iter().map(|frame| frame.position.x));
+    numbers(&mut table, &EAST, model.frames.iter().map(|frame| frame.position.y));
     numbers(&mut table, &LOW_SIDE_ANGLE, model.frames.iter().map(|frame| frame.low_side_angle));
     for (dof, quantity) in [&U, &V, &W, &THETA_X, &THETA_Y, &THETA_Z].into_iter().enumerate() {
         numbers(&mut table, quantity, x.iter().map(|x| x[dof]));
@@ -237,7 +239,7 @@ fn spectra(model: &Model, records: &Records) -> Table {
     let (mut node, mut from, mut to) = (Vec::new(), Vec::new(), Vec::new());
     let (mut frequency, mut rectangular, mut hann) = (Vec::new(), Vec::new(), Vec::new());
     for history in &records.histories {
-        for window in &model.scenario.recording.spectrum_windows {
+        for window in &model.scenario.spectrum_windows() {
             let kept = sample_range(window.from, window.to, records.rate_hz, history.u.len());
             let (u, v) = (&history.u[kept.clone()], &history.v[kept]);
             let of = |weighting| full_spectrum(u, v, records.rate_hz, weighting);

@@ -24,7 +24,8 @@ pub(super) fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Sc
                 scenario: request.scenario.as_deref().cloned(),
                 set: request.set.clone(),
             };
-            match scenario.resolve() {
+            let swept: Vec<&str> = swept(request).collect();
+            match scenario.resolve_for_sweep(&swept) {
                 Ok(mut scenario) => {
                     if let Some(outputs) = &request.outputs {
                         scenario.recording.outputs = outputs.clone();
@@ -67,11 +68,16 @@ pub(super) fn set_fields(
 /// kept back until its axes are right. What the axes would replace is not looked at.
 pub(super) fn check_without_axes(request: &SweepRequest, scenario: &Scenario, problems: &mut Found) {
     let Err(Problems(of_scenario)) = scenario.validate() else { return };
-    let names = request.axes.keys().chain(request.points.iter().flat_map(IndexMap::keys));
-    let replaced: IndexSet<&str> = names.map(AxisName::scenario_path).collect();
+    let replaced: IndexSet<&str> = swept(request).collect();
     for problem in of_scenario.iter().filter(|problem| !replaced.contains(problem.path.as_str())) {
         problems.add(request, |_| None, problem);
     }
+}
+
+/// The paths of the fields that a request changes from point to point; those of a list of points may be told more than once.
+fn swept(request: &SweepRequest) -> impl Iterator<Item = &str> {
+    let listed = request.points.iter().flat_map(IndexMap::keys);
+    request.axes.keys().chain(listed).map(AxisName::scenario_path)
 }
 
 #[cfg(test)]
@@ -79,7 +85,7 @@ mod tests {
     use drillsweep_sim::scenario::preset;
     use serde_json::json;
 
-    use crate::expand::tests::{pointers, problems};
+    use crate::expand::tests::{expansion, pointers, problems};
 
     #[test]
     fn exactly_one_of_preset_and_scenario_is_given() {
@@ -96,6 +102,26 @@ mod tests {
         let mut found = pointers(body);
         found.sort();
         assert_eq!(found, ["/set/a~1b", "/set/duration", "/set/mud.flow_rat"]);
+    }
+
+    #[test]
+    fn a_presets_windows_follow_a_swept_duration() {
+        let sweep = expansion(json!({"preset": "paper-200m", "axes": {"duration": {"values": [6, 30]}}}));
+        let windows: Vec<_> = sweep
+            .points
+            .iter()
+            .map(|point| sweep.scenario(point))
+            .map(|scenario| (scenario.orbit_window().from, scenario.spectrum_windows()[0].from))
+            .collect();
+        assert_eq!(windows, [(4.0, 5.0), (20.0, 25.0)]);
+        let by_points = expansion(
+            json!({"preset": "paper-200m", "design": "list", "points": [{"duration": 6}, {"duration": 30}]}),
+        );
+        assert_eq!(by_points.points[1].key, sweep.points[1].key);
+        let swept_window = expansion(json!({"preset": "paper-200m", "axes": {
+            "duration": {"values": [50]}, "recording.orbit_window.to": {"values": [45, 50]}}}));
+        let window = swept_window.scenario(&swept_window.points[0]).orbit_window();
+        assert_eq!((window.from, window.to), (40.0, 45.0));
     }
 
     #[test]

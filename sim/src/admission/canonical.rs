@@ -37,7 +37,7 @@ impl Scenario {
     /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-    /// as integrator and step, with what a length of wall has by default, with the mesh `auto` as a factor of one, with every
+    /// as integrator and step, with what a length of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every
     /// effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the encoding, so
     /// keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
@@ -58,7 +58,7 @@ impl Scenario {
             effects: _,
             ensemble,
             cost_study,
-        } = self.without_negative_zeros();
+        } = self.without_negative_zeros().with_windows_written_out();
         let canonical = Canonical {
             well,
             string,
@@ -80,6 +80,12 @@ impl Scenario {
         };
         postcard::to_stdvec(&canonical)
             .expect("postcard encodes structs, sequences and numbers of known length")
+    }
+
+    fn with_windows_written_out(mut self) -> Self {
+        self.recording.spectrum_windows = Some(self.spectrum_windows());
+        self.recording.orbit_window = Some(self.orbit_window());
+        self
     }
 
     fn without_negative_zeros(&self) -> Self {
@@ -113,6 +119,9 @@ mod tests {
         assert_eq!(other.canonical_bytes(), bytes);
         other.accuracy = Accuracy::Explicit(paper().accuracy.time_stepping());
         assert_eq!(other.canonical_bytes(), bytes);
+        let mut following = paper();
+        following.recording.orbit_window = None;
+        assert_eq!(following.canonical_bytes(), bytes, "the preset's orbit window is the last third");
         other.damping.stiffness_proportional = -0.0;
         other.well.survey[0].azimuth_deg = -0.0;
         other.string.unbalance[3].phase_deg = -0.0;

@@ -45,6 +45,12 @@ impl Scenario {
         if !is_finite {
             finite(&mut report, &self.tree(), String::new());
         }
+        report.require(
+            !self.name.chars().any(char::is_control),
+            "name",
+            self.name.escape_default(),
+            "must hold no control characters",
+        );
         // With a mesh that follows from the scenario everything may change it.
         let mesh = if with_shape || self.mesh.is_auto() {
             hole::check(&mut report, self);

@@ -1,8 +1,10 @@
 //! Rules of cost studies.
 
 use super::report::Report;
-use super::time::{FEWEST_SAMPLES, LARGEST_ENSEMBLE, check_accuracy, is_whole};
-use crate::scenario::{Accuracy, CostStudy, Scenario, TimeStepping, USUAL_MESH_FACTORS, USUAL_STEPS};
+use super::time::{LARGEST_ENSEMBLE, check_accuracy, is_whole};
+use crate::scenario::{
+    Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping, USUAL_MESH_FACTORS, USUAL_STEPS,
+};
 
 /// Runs of one cost study at most.
 const MOST_RUNS: usize = 256;

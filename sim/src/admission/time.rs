@@ -3,16 +3,13 @@
 use super::report::Report;
 use super::study;
 use crate::scenario::{
-    Accuracy, AccuracyTarget, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario, TOLERANCES,
-    TimeStepping, TimeWindow,
+    Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
+    TOLERANCES, TimeStepping, TimeWindow,
 };
 use crate::string::StringMesh;
 
 /// Two times that differ by less than this part of them are the same.
 const SAME_TIME: f64 = 1e-9;
-
-/// Fewer samples than this have no spectrum or orbit to speak of.
-pub(super) const FEWEST_SAMPLES: f64 = 8.0;
 
 /// Samples of one run that are kept at most.
 const MOST_SAMPLES: f64 = 1e7;
@@ -45,7 +42,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         study::check(report, scenario, study);
     }
     check_samples(report, scenario);
-    for (i, window) in recording.spectrum_windows.iter().enumerate() {
+    for (i, window) in recording.spectrum_windows.iter().flatten().enumerate() {
         check_window(report, scenario, window, &format!("recording.spectrum_windows[{i}]"));
     }
     if let Some(window) = &recording.orbit_window {
@@ -69,7 +66,7 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
         Outputs::Summary | Outputs::Full => {}
         Outputs::Spectra => {
             for (path, is_empty) in [
-                ("recording.spectrum_windows", recording.spectrum_windows.is_empty()),
+                ("recording.spectrum_windows", scenario.spectrum_windows().is_empty()),
                 ("recording.nodes", recording.nodes.is_empty()),
             ] {
                 report.require(!is_empty, PATH, "spectra", format!("needs at least one of {path}"));
@@ -302,6 +299,10 @@ mod tests {
         TimeStepping::fixed(integrator, step)
     }
 
+    fn spectrum_window(scenario: &mut Scenario, index: usize) -> &mut TimeWindow {
+        &mut scenario.recording.spectrum_windows.as_mut().unwrap()[index]
+    }
+
     fn accuracy_problem(path: &str, stepping: TimeStepping) -> String {
         problem(path, |s| s.accuracy = Accuracy::Explicit(stepping)).message
     }
@@ -426,14 +427,14 @@ mod tests {
         let window = |from, to| TimeWindow { from, to };
         problem("recording.orbit_window.to", |s| s.recording.orbit_window = Some(window(40.0, 61.0)));
         problem("recording.orbit_window.from", |s| s.recording.orbit_window = Some(window(-1.0, 20.0)));
-        problem("recording.spectrum_windows[1].to", |s| s.recording.spectrum_windows[1].to = 60.5);
+        problem("recording.spectrum_windows[1].to", |s| spectrum_window(s, 1).to = 60.5);
         assert_eq!(warnings(|s| s.recording.orbit_window = Some(window(0.0, 60.0))), []);
     }
 
     #[test]
     fn windows_are_not_empty() {
         for to in [15.0, 10.0] {
-            let found = problem("recording.spectrum_windows[0]", |s| s.recording.spectrum_windows[0].to = to);
+            let found = problem("recording.spectrum_windows[0]", |s| spectrum_window(s, 0).to = to);
             assert!(found.message.contains("end after it begins"), "{found}");
         }
     }
@@ -454,9 +455,9 @@ mod tests {
         // The node nearest to this depth is node 49.
         let nodes = Some(vec![NodeChoice::Depth(57.8)]);
         assert_eq!(warnings(keep(OrbitOutputs { nodes, ..whole() })), []);
-        for clear in
-            [(|s| s.recording.spectrum_windows.clear()) as fn(&mut Scenario), |s| s.recording.nodes.clear()]
-        {
+        for clear in [(|s| s.recording.spectrum_windows = Some(Vec::new())) as fn(&mut Scenario), |s| {
+            s.recording.nodes.clear()
+        }] {
             problem("recording.outputs", move |s| {
                 s.recording.outputs = Outputs::Spectra;
                 clear(s);
@@ -466,8 +467,8 @@ mod tests {
 
     #[test]
     fn windows_hold_at_least_8_samples() {
-        let found = problem("recording.spectrum_windows[0]", |s| s.recording.spectrum_windows[0].to = 15.007);
+        let found = problem("recording.spectrum_windows[0]", |s| spectrum_window(s, 0).to = 15.007);
         assert!(found.message.contains("8 samples"), "{found}");
-        assert_eq!(warnings(|s| s.recording.spectrum_windows[0].to = 15.008), []);
+        assert_eq!(warnings(|s| spectrum_window(s, 0).to = 15.008), []);
     }
 }

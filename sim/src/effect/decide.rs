@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(left_out(|s| s.damping.mass_proportional = 0.0), ["structural_damping"]);
         let nothing_in_time = |s: &mut Scenario| {
             s.recording.nodes.clear();
-            s.recording.spectrum_windows.clear();
+            s.recording.spectrum_windows = Some(Vec::new());
             s.recording.orbit_window = None;
         };
         assert_eq!(left_out(nothing_in_time), ["transient"]);

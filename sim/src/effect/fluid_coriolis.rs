@@ -9,7 +9,8 @@ pub(super) const ROOM: Room =
 /// Work done by the flows: of the Coriolis terms, whose symmetric part is where the section changes and at the end, and of the follower
 /// forces in the stiffness, which are those of the [flow](super::flow_stiffness) at its end and of the
 /// [torque](super::torque_stiffening).
-pub(super) const WORK: Account = Account::given("work_flow", |booked| booked.matrices + booked.follower);
+pub(super) const WORK: Account =
+    Account::given("work_flow_and_torque", |booked| booked.matrices + booked.follower);
 
 /// To first order the Coriolis term c changes w by c k / (2 m w).
 fn frequency_change(wave: &LateralWave) -> f64 {

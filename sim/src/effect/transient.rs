@@ -8,7 +8,7 @@ pub(super) const ROOM: Room = Room::new(called_for);
 fn called_for(scene: &Scene<'_>) -> Call {
     let recording = &scene.scenario.recording;
     let in_time = !recording.nodes.is_empty()
-        || !recording.spectrum_windows.is_empty()
+        || recording.spectrum_windows.as_ref().is_some_and(|windows| !windows.is_empty())
         || recording.orbit_window.is_some()
         || scene.scenario.cost_study.is_some();
     if in_time {

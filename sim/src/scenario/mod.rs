@@ -81,6 +81,17 @@ impl Scenario {
         let last_third = TimeWindow { from: self.duration * 2.0 / 3.0, to: self.duration };
         self.recording.orbit_window.unwrap_or(last_third)
     }
+
+    /// The windows whose full spectra are summarised: what `recording` says, or the last sixth of the run, from a sample on; none
+    /// where that holds fewer than [`FEWEST_SAMPLES`].
+    pub fn spectrum_windows(&self) -> Vec<TimeWindow> {
+        if let Some(given) = &self.recording.spectrum_windows {
+            return given.clone();
+        }
+        let last_sixth = TimeWindow::last(1.0 / 6.0, self.duration, self.recording.rate_hz);
+        let samples = (last_sixth.to - last_sixth.from) * self.recording.rate_hz;
+        if samples >= FEWEST_SAMPLES { vec![last_sixth] } else { Vec::new() }
+    }
 }
 
 /// The well: a survey interpolated by minimum curvature (docs/model/well.md) and one open hole.
@@ -472,13 +483,14 @@ pub struct Recording {
     /// Nodes whose histories are kept, each once; usual 1 to 10. Orbits, spectra and statistics exist for these only, and each
     /// costs storage; with none, and no window, `auto` leaves the run in time out.
     pub nodes: Vec<NodeChoice>,
-    /// Half-open windows whose full spectra are summarised, of 8 samples at least; none unless given, usual 5 to 20 s each.
-    /// Frequencies are resolved to 1 over the length of a window; too long a one smears lines that drift.
+    /// Half-open windows whose full spectra are summarised, of 8 samples at least, usual 5 to 20 s each; absent means the last sixth
+    /// of the run, an empty list none. Frequencies are resolved to 1 over the length of a window; too long a one smears lines that
+    /// drift. A preset's windows are those of its duration: where a request changes that and gives none, they count as absent.
     #[serde(default)]
-    pub spectrum_windows: Vec<TimeWindow>,
-    /// Half-open window of the orbit statistics, of 8 samples at least; absent means the last third of the run. It should begin
-    /// when the start has died away and hold many periods of the slowest vibration, some 2 Hz in the base case: statistics over a
-    /// short one scatter.
+    pub spectrum_windows: Option<Vec<TimeWindow>>,
+    /// Half-open window of the orbit statistics, of 8 samples at least; absent means the last third of the run, and so does a
+    /// preset's where a request changes the duration and gives none. It should begin when the start has died away and hold many
+    /// periods of the slowest vibration, some 2 Hz in the base case: statistics over a short one scatter.
     #[serde(default)]
     pub orbit_window: Option<TimeWindow>,
     /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which; `false` unless given.
@@ -513,4 +525,14 @@ pub struct TimeWindow {
     pub from: f64,
     /// End \[s\], not included; within the run, and 8 samples or more after the start.
     pub to: f64,
+}
+
+/// Fewer samples than this have no spectrum or orbit to speak of.
+pub(crate) const FEWEST_SAMPLES: f64 = 8.0;
+
+impl TimeWindow {
+    /// The last `part` of a run of `duration` \[s\], from the sample nearest to its beginning.
+    pub(crate) fn last(part: f64, duration: f64, rate_hz: f64) -> Self {
+        Self { from: (duration * (1.0 - part) * rate_hz).round() / rate_hz, to: duration }
+    }
 }

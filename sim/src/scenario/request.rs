@@ -63,6 +63,14 @@ impl ScenarioRequest {
     /// No base or two, an unknown preset, and every change that cannot be made. Paths of the changes are paths
     /// in the scenario.
     pub fn resolve(&self) -> Result<Scenario, Problems> {
+        self.resolve_for_sweep(&[])
+    }
+
+    /// The same where the fields at the paths `swept` will be changed from point to point.
+    ///
+    /// # Errors
+    /// As [`resolve`](Self::resolve).
+    pub fn resolve_for_sweep(&self, swept: &[&str]) -> Result<Scenario, Problems> {
         let mut scenario = match (&self.preset, &self.scenario) {
             (Some(name), None) => preset(name).ok_or_else(|| unknown_preset(name))?,
             (None, Some(scenario)) => scenario.clone(),
@@ -73,6 +81,7 @@ impl ScenarioRequest {
                 return Err(Problem::new("preset", "", "give preset or scenario").into());
             }
         };
+        let duration = scenario.duration;
         let mut problems = Vec::new();
         // In the map's order a path comes before the longer ones inside it.
         for (path, value) in &self.set {
@@ -81,7 +90,39 @@ impl ScenarioRequest {
                 Err(problem) => problems.push(problem),
             }
         }
-        if problems.is_empty() { Ok(scenario) } else { Err(Problems(problems)) }
+        if !problems.is_empty() {
+            return Err(Problems(problems));
+        }
+        if scenario.duration != duration || swept.contains(&"duration") {
+            self.let_windows_follow(&mut scenario, swept);
+        }
+        Ok(scenario)
+    }
+
+    /// Makes the windows of a preset follow the duration (absent windows do), but for those that the request gives itself:
+    /// they were chosen for the preset's own duration.
+    fn let_windows_follow(&self, scenario: &mut Scenario, swept: &[&str]) {
+        if self.preset.is_none() {
+            return;
+        }
+        let gives = |window: &str| {
+            let path = format!("recording.{window}");
+            let is_of = |changed: &str| {
+                changed
+                    .strip_prefix(&path)
+                    .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+            };
+            swept.iter().any(|path| is_of(path))
+                || self.set.iter().any(|(changed, value)| {
+                    is_of(changed) || changed == "recording" && value.get(window).is_some()
+                })
+        };
+        if !gives("spectrum_windows") {
+            scenario.recording.spectrum_windows = None;
+        }
+        if !gives("orbit_window") {
+            scenario.recording.orbit_window = None;
+        }
     }
 }
 
@@ -98,7 +139,7 @@ fn unknown_preset(name: &str) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::NodeChoice;
+    use crate::scenario::{NodeChoice, TimeWindow};
 
     fn resolve_json(text: &str) -> Result<Scenario, Problems> {
         ScenarioRequest::from_json(text).unwrap().resolve()
@@ -143,6 +184,36 @@ mod tests {
         assert_eq!(from_json, from_toml);
         let wrapped = format!(r#"{{"scenario": {}, "set": {{"duration": 1.0}}}}"#, paper().to_json());
         assert_eq!(resolve_json(&wrapped).unwrap().duration, 1.0);
+    }
+
+    #[test]
+    fn a_presets_windows_follow_the_duration_unless_given() {
+        let windows = |set: &str| {
+            let scenario = resolve_json(&format!(r#"{{"preset": "paper-200m", "set": {set}}}"#)).unwrap();
+            assert_eq!(scenario.validate().map(drop), Ok(()), "{set}");
+            (scenario.orbit_window(), scenario.spectrum_windows())
+        };
+        let window = |from, to| TimeWindow { from, to };
+        let own = (window(40.0, 60.0), vec![window(15.0, 25.0), window(50.0, 60.0)]);
+        assert_eq!(windows("{}"), own);
+        assert_eq!(windows(r#"{"duration": 60}"#), own);
+        assert_eq!(windows(r#"{"duration": 6}"#), (window(4.0, 6.0), vec![window(5.0, 6.0)]));
+        assert_eq!(windows(r#"{"duration": 120}"#), (window(80.0, 120.0), vec![window(100.0, 120.0)]));
+        // A last sixth of five samples has no spectrum.
+        assert_eq!(windows(r#"{"duration": 0.03}"#).1, []);
+
+        let given = (window(1.0, 6.0), vec![window(2.0, 6.0)]);
+        let orbit = r#"{"duration": 6, "recording.orbit_window": {"from": 1, "to": 6}}"#;
+        assert_eq!(windows(orbit), (given.0, vec![window(5.0, 6.0)]));
+        let spectrum = r#"{"duration": 6, "recording": {"spectrum_windows": [{"from": 2, "to": 6}]}}"#;
+        assert_eq!(windows(spectrum), (window(4.0, 6.0), given.1));
+        let edge = r#"{"duration": 61, "recording.orbit_window.to": 61}"#;
+        assert_eq!(windows(edge).0, window(40.0, 61.0));
+        assert_eq!(windows(r#"{"duration": 6, "recording.spectrum_windows": []}"#).1, []);
+
+        let mut own = paper();
+        own.duration = 6.0;
+        assert!(own.validate().is_err(), "windows that a scenario gives itself are not changed");
     }
 
     #[test]

@@ -290,7 +290,7 @@ pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
             accuracy: Accuracy::Explicit(stepping),
             recording: Recording {
                 nodes: vec![NodeChoice::Node(49)],
-                spectrum_windows: Vec::new(),
+                spectrum_windows: Some(Vec::new()),
                 orbit_window: None,
                 ..base.recording.clone()
             },
@@ -387,7 +387,7 @@ mod tests {
             let mut scenario = paper();
             scenario.duration = 0.02;
             scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
-            scenario.recording.spectrum_windows.clear();
+            scenario.recording.spectrum_windows = Some(Vec::new());
             scenario.recording.orbit_window = None;
             change(&mut scenario);
             let plan = Plan::new(&scenario, None).unwrap();
@@ -420,7 +420,7 @@ mod tests {
         assert_eq!(names, ["explicit", "draft", "standard", "reference"]);
 
         scenario.recording.nodes.clear();
-        scenario.recording.spectrum_windows.clear();
+        scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
         let profile = Plan::new(&scenario, Some(&speed)).unwrap();
         assert_eq!((profile.degrees_of_freedom, profile.simulated_time), (0, 0.0));

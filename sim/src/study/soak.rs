@@ -190,7 +190,7 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
         recording: Recording {
             rate_hz,
             nodes: Vec::new(),
-            spectrum_windows: Vec::new(),
+            spectrum_windows: Some(Vec::new()),
             orbit_window: None,
             stability: false,
             outputs: Outputs::Full,

@@ -62,7 +62,7 @@ pub struct TransientSummary {
     pub energy_residual: f64,
     /// Its size relative to the bound beyond which a run is stopped; absent where nothing moved.
     pub energy_residual_of_bound: Option<f64>,
-    /// The same relative to the net work of the contacts; absent where there was none.
+    /// The same relative to the net work of the contacts; absent where that is less than what rounding may leave, as at rest.
     pub energy_residual_ratio: Option<f64>,
 }
 
@@ -163,7 +163,7 @@ impl TransientSummary {
                     high_frequency_rms: high_frequency_rms(u, v, records.rate_hz),
                 });
             }
-            for &window in &scenario.recording.spectrum_windows {
+            for window in scenario.spectrum_windows() {
                 let samples = cut(window);
                 let (u, v) = (&history.u[samples.clone()], &history.v[samples]);
                 let band =
@@ -202,7 +202,8 @@ impl TransientSummary {
             energy_residual: last.residual,
             energy_residual_of_bound: (records.energy_bound > 0.0)
                 .then(|| last.residual.abs() / records.energy_bound),
-            energy_residual_ratio: (contact_work != 0.0).then(|| last.residual.abs() / contact_work.abs()),
+            energy_residual_ratio: (contact_work.abs() > records.energy_rounding)
+                .then(|| last.residual.abs() / contact_work.abs()),
         }
     }
 }

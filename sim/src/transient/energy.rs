@@ -284,6 +284,11 @@ impl<const D: usize> Ledger<D> {
         LARGEST_RESIDUAL * row.turned_over() + self.rounding
     }
 
+    /// What rounding may leave of a balance \[J\].
+    pub(super) fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
     /// Sum of the terms of the stored energy, each taken as positive \[J\].
     fn size_of_terms(&mut self, x: &[[f64; D]]) -> f64 {
         self.stiffness.multiply_into(x, &mut self.product);

@@ -65,6 +65,8 @@ pub struct Records {
     pub energy: Vec<EnergyRow>,
     /// What the last row's residual may be at most \[J\]; a run that exceeds it ends as diverged.
     pub energy_bound: f64,
+    /// What rounding alone may leave of that \[J\]: works below it say nothing.
+    pub energy_rounding: f64,
     /// Estimated error of the lateral displacements.
     pub error: ErrorEstimate,
     /// What the run took.

@@ -279,6 +279,7 @@ impl<'m, const D: usize> Run<'m, D> {
             contacts: self.progress.contacts,
             energy: self.progress.energy,
             energy_bound,
+            energy_rounding: self.ledger.rounding(),
             error: self.progress.errors.estimate(stepping.integrator, self.model.node_count()),
             effort: TransientEffort {
                 stepping,

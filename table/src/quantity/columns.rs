@@ -52,6 +52,10 @@ quantities! {
     MEASURED_DEPTH_BOTTOM: "measured_depth_bottom", "", DEPTH, "measured depth bottom";
     /// Vertical distance below the top of the string.
     TRUE_VERTICAL_DEPTH: "true_vertical_depth", "", DEPTH, "true vertical depth";
+    /// How far north of the top of the string.
+    NORTH: "north", "", DEPTH, "north";
+    /// How far east of the top of the string.
+    EAST: "east", "", DEPTH, "east";
     /// Where the low side of the hole lies, from u towards v.
     LOW_SIDE_ANGLE: "low_side_angle", "", ANGLE, "low side angle";
     /// Outer diameter of the string.
@@ -175,7 +179,7 @@ quantities! {
     /// Work of the rotation imposed at the top against friction up to this time, as far as it acts through the contacts.
     WORK_ROTATION: "work_rotation", "", ENERGY, "work rotation";
     /// Work of the flows (Coriolis and follower forces) and of the follower torque up to this time.
-    WORK_FLOW: "work_flow", "", ENERGY, "work flow";
+    WORK_FLOW_AND_TORQUE: "work_flow_and_torque", "", ENERGY, "work of flow and follower torque";
     /// Energy dissipated by structural damping up to this time.
     DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated structure";
     /// Energy dissipated by the mud up to this time.
@@ -190,7 +194,7 @@ quantities! {
     RESIDUAL: "residual", "", ENERGY, "residual";
     /// What does not balance in the energy ledger at the end of the run.
     ENERGY_RESIDUAL: "energy_residual", "", ENERGY, "energy residual";
-    /// The residual over the net work of the contacts.
+    /// The residual over the net work of the contacts; absent where that is no more than rounding.
     ENERGY_RESIDUAL_RATIO: "energy_residual_ratio", "", RATIO, "energy residual ratio";
 
     // Spectra.

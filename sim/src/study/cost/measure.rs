@@ -59,7 +59,7 @@ impl Measure {
     pub fn new(model: &Model, equilibrium: &Equilibrium, records: &Records, member: u32) -> Self {
         let scenario = &model.scenario;
         let orbit_window = scenario.orbit_window();
-        let spectrum_window = scenario.recording.spectrum_windows.last().copied();
+        let spectrum_window = scenario.spectrum_windows().last().copied();
         let node = |history: &NodeHistory| {
             let depth = model.mesh.nodes[history.node].measured_depth;
             NodeMeasure::new(depth, history, records.rate_hz, orbit_window, spectrum_window)

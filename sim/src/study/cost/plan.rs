@@ -153,17 +153,15 @@ fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<P
 /// where the duration is another one, orbits over its last third and spectra over its last sixth.
 fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
     let asked = &scenario.recording;
-    let last = |part: f64| {
-        let from = (duration * (1.0 - part) * asked.rate_hz).round() / asked.rate_hz;
-        TimeWindow { from, to: duration }
-    };
+    let last = |part: f64| TimeWindow::last(part, duration, asked.rate_hz);
     let is_own = duration == scenario.duration;
-    let spectrum_window = if is_own { asked.spectrum_windows.last().copied() } else { Some(last(1.0 / 6.0)) };
+    let spectrum_window =
+        if is_own { scenario.spectrum_windows().last().copied() } else { Some(last(1.0 / 6.0)) };
     let nodes = recorded_nodes(model).into_iter();
     Recording {
         rate_hz: asked.rate_hz,
         nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
-        spectrum_windows: spectrum_window.into_iter().collect(),
+        spectrum_windows: Some(spectrum_window.into_iter().collect()),
         orbit_window: Some(if is_own { scenario.orbit_window() } else { last(1.0 / 3.0) }),
         stability: false,
         outputs: Outputs::Full,
@@ -219,8 +217,7 @@ mod tests {
         for row in &rows {
             assert_eq!(row.scenario.duration, own.duration);
             assert_eq!(row.scenario.orbit_window(), own.orbit_window());
-            let last = own.recording.spectrum_windows.last();
-            assert_eq!(row.scenario.recording.spectrum_windows.last(), last);
+            assert_eq!(row.scenario.spectrum_windows().last(), own.spectrum_windows().last());
             assert_eq!((row.scenario.recording.rate_hz, row.members.clone()), (1000.0, 0..1));
         }
         let names: Vec<_> = rows.iter().map(|row| row.name.as_str()).collect();
@@ -237,7 +234,7 @@ mod tests {
         let rows = planned(|s| s.cost_study.as_mut().unwrap().duration = Some(6.0));
         let recording = &rows[0].scenario.recording;
         assert_eq!(recording.orbit_window, Some(TimeWindow { from: 4.0, to: 6.0 }));
-        assert_eq!(recording.spectrum_windows, [TimeWindow { from: 5.0, to: 6.0 }]);
+        assert_eq!(recording.spectrum_windows, Some(vec![TimeWindow { from: 5.0, to: 6.0 }]));
     }
 
     #[test]

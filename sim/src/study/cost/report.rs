@@ -156,7 +156,7 @@ pub fn report(
         duration: base.duration,
         scenario_duration: scenario.duration,
         orbit_window: base.orbit_window(),
-        spectrum_window: base.recording.spectrum_windows.last().copied(),
+        spectrum_window: base.spectrum_windows().last().copied(),
         members: study.members,
         histories_part_at,
         references: reference_rows,

@@ -69,7 +69,7 @@ fn report_with(rows: Vec<Row>, change: impl Fn(&mut Scenario)) -> CostReport {
     scenario.duration = DURATION;
     scenario.recording.rate_hz = RATE_HZ;
     scenario.recording.orbit_window = Some(WINDOW);
-    scenario.recording.spectrum_windows = vec![WINDOW];
+    scenario.recording.spectrum_windows = Some(vec![WINDOW]);
     let (planned, runs): (Vec<_>, Vec<_>) = rows
         .into_iter()
         .map(|(role, name, stepping, runs)| {

@@ -585,27 +585,56 @@ fn full_disk_is_told_and_nothing_is_lost_by_it() {
 }
 
 #[test]
-fn damaged_result_is_told_and_not_served() {
+fn damaged_result_is_told_and_computed_again() {
     let data = tempfile::tempdir().unwrap();
     let (_server, address) = serve(data.path(), None);
-    let _worker = worker(data.path());
+    let working = worker(data.path());
     let sweep = submit(&address, &request(0.2, 1, 1));
     wait(&address, &sweep, completed);
-    for path in files(&data.path().join("blobs")) {
-        let mut content = std::fs::read(&path).unwrap();
+    working.kill();
+    let whole: Vec<(PathBuf, Vec<u8>)> = files(&data.path().join("blobs"))
+        .into_iter()
+        .map(|path| (path.clone(), std::fs::read(path).unwrap()))
+        .collect();
+    for (path, content) in &whole {
+        let mut content = content.clone();
         let middle = content.len() / 2;
         content[middle] ^= 1;
-        std::fs::write(&path, content).unwrap();
+        std::fs::write(path, content).unwrap();
     }
+    let fetched = data.path().join("fetched");
+    let mut fetch = Command::new(BINARY);
+    fetch.args(["fetch", &sweep, "--server", &address, "--output"]).arg(&fetched);
+    assert!(!fetch.output().unwrap().status.success());
+    let missing: Value =
+        serde_json::from_slice(&std::fs::read(fetched.join("missing.json")).unwrap()).unwrap();
+    assert!(missing[0]["reason"].as_str().unwrap().contains("table profile"), "{missing}");
+    assert!(fetched.join("table.csv").exists() && fetched.join("point-0001/point.json").exists());
+
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
     for query in ["profile", "history?format=parquet", "orbit?node=49", "spectrum?node=49"] {
         let mut answer = agent.get(format!("{address}/v1/sweeps/{sweep}/points/1/{query}")).call().unwrap();
         assert_eq!(answer.status(), 500, "{query}");
         let problem: Value = answer.body_mut().read_json().unwrap();
-        assert_eq!(problem["type"], "urn:drillsweep:problem:internal", "{problem}");
+        assert_eq!(problem["type"], "urn:drillsweep:problem:damaged", "{problem}");
     }
-    assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["state"], "completed");
+    assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["counts"]["queued"], 1);
     assert_eq!(check(data.path()).1.len(), 5, "the tables of the point");
+
+    let _worker = worker(data.path());
+    wait(&address, &sweep, completed);
+    for (path, content) in &whole {
+        assert!(std::fs::read(path).unwrap() == *content, "{} is not as it was", path.display());
+    }
+    assert_eq!(check(data.path()), (1, vec![]));
+    assert!(fetch.output().unwrap().status.success());
+    assert!(!fetched.join("missing.json").exists());
+
+    // Without a reader, a check finds and repairs it.
+    std::fs::write(&whole[0].0, b"").unwrap();
+    assert_eq!(checked(command(data.path(), &["check", "--json"]).arg("--repair")).1.len(), 1);
+    wait(&address, &sweep, completed);
+    assert_eq!(check(data.path()), (1, vec![]));
 }
 
 /// All files below a directory.

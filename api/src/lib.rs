@@ -27,8 +27,8 @@ pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::PointEvent;
 pub use expand::{Expansion, PointKey, SweepPoint, check_patch, compose, expand, expand_added, key_text};
 pub use point::{
-    ArtifactEntry, ArtifactList, Failure, FailureClass, FailureList, PointDetail, PointError, PointLinks,
-    PointList, PointRow, PointState, SelectedPointList,
+    ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureClass, FailureList, MissingFile,
+    PointDetail, PointError, PointLinks, PointList, PointRow, PointState, SelectedPointList,
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};

@@ -142,6 +142,27 @@ pub struct ArtifactEntry {
     pub link: String,
 }
 
+/// What an archive of a sweep holds, and what it lacks: `manifest.json` in it.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ExportManifest {
+    /// Number of files of points in the archive.
+    pub files: u64,
+    /// Those that were asked for, belong to results, and are not in it.
+    pub missing: Vec<MissingFile>,
+}
+
+/// A file of a point that cannot be had.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct MissingFile {
+    /// Number of the point in the sweep, from 1.
+    #[schema(minimum = 1)]
+    pub point: u32,
+    /// Name of the table.
+    pub table: String,
+    /// Why it cannot be had, and what becomes of it.
+    pub reason: String,
+}
+
 /// Everything about one point but its tables.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PointDetail {

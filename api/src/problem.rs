@@ -58,6 +58,8 @@ pub enum ProblemKind {
     NoSuchTable,
     /// The table was there and has reached its age.
     Expired,
+    /// Storage has lost the table, or a part of it.
+    Damaged,
     /// The sweep's state does not allow the operation.
     Conflict,
     /// The idempotency key was used with another request.
@@ -95,6 +97,7 @@ impl ProblemKind {
         ProblemKind::NoResult,
         ProblemKind::NoSuchTable,
         ProblemKind::Expired,
+        ProblemKind::Damaged,
         ProblemKind::Conflict,
         ProblemKind::IdempotencyKeyReused,
         ProblemKind::Unavailable,
@@ -148,6 +151,7 @@ impl ProblemKind {
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
             ProblemKind::Expired => ("expired", "The table has expired", 410),
+            ProblemKind::Damaged => ("damaged", "Storage has lost the table", 500),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
             ProblemKind::IdempotencyKeyReused => {
                 ("idempotency-key-reused", "The idempotency key belongs to another request", 422)

@@ -2,7 +2,8 @@
 
 use anyhow::ensure;
 use clap::Args;
-use drillsweep_store::{Role, Store};
+use drillsweep_api::PHYSICS_VERSION;
+use drillsweep_store::{RepairReport, Role, Store};
 use serde_json::json;
 
 use crate::print;
@@ -12,20 +13,27 @@ use crate::service::DataArguments;
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     data: DataArguments,
+    /// Queue the points again whose results have lost a table, for the workers to compute anew.
+    #[arg(long)]
+    repair: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Reads the database and every blob, and fails if something is wrong with them.
+/// Reads the database and every blob, and fails if something is wrong with them; also where that is being repaired.
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
     let config = arguments.data.existing_store(Role::Worker)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let report = runtime.block_on(async {
+    let (report, repair) = runtime.block_on(async {
         let store = Store::open(&config).await?;
-        let report = store.check().await;
+        let report = store.check().await?;
+        let repair = match arguments.repair {
+            true => Some(store.repair(&report, PHYSICS_VERSION.into()).await?),
+            false => None,
+        };
         store.close().await;
-        report
+        anyhow::Ok((report, repair))
     })?;
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!({
@@ -33,11 +41,24 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
             "blobs": report.blobs,
             "bytes": report.bytes,
             "problems": report.problems,
+            "repair": repair.map(|repair| json!({
+                "queued": repair.queued,
+                "under_way": repair.under_way,
+                "other_physics_versions": repair.other_numbers,
+            })),
         }))?);
     } else {
         print(&format!("{} results, {} blobs of {} bytes", report.results, report.blobs, report.bytes));
         for problem in &report.problems {
             print(&format!("  {problem}"));
+        }
+        if let Some(RepairReport { queued, under_way, other_numbers }) = repair {
+            print(&format!("{queued} results are computed again, {under_way} were on their way already"));
+            if other_numbers > 0 {
+                print(&format!(
+                    "{other_numbers} results are of another physics version than {PHYSICS_VERSION}, and cannot be computed again"
+                ));
+            }
         }
     }
     ensure!(report.problems.is_empty(), "{} problems were found", report.problems.len());

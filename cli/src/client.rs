@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails, Sweep, SweepList};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -159,11 +159,20 @@ impl Client {
 
     /// Reads a file.
     pub(crate) fn bytes(&self, path: &str) -> anyhow::Result<Vec<u8>> {
+        self.file(path)?.map_err(|problem| anyhow!("{path}: {problem}"))
+    }
+
+    /// Reads a file, or the problem that the server answers with in its place. What keeps all files back is an error: no server, or
+    /// no right to read.
+    pub(crate) fn file(&self, path: &str) -> anyhow::Result<Result<Vec<u8>, String>> {
         let mut response = self.request(path)?;
-        if !response.status().is_success() {
+        if matches!(response.status().as_u16(), 401 | 403 | 429) {
             bail!("{path}: {}", problem(&mut response));
         }
-        Ok(response.body_mut().with_config().limit(u64::MAX).read_to_vec()?)
+        if !response.status().is_success() {
+            return Ok(Err(problem(&mut response)));
+        }
+        Ok(Ok(response.body_mut().with_config().limit(u64::MAX).read_to_vec()?))
     }
 
     fn request(&self, path: &str) -> anyhow::Result<Response<Body>> {

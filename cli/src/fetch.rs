@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use clap::{Args, ValueEnum};
 use drillsweep_api::{PointDetail, Sweep};
 use drillsweep_table::quantity::columns::ORBIT_MEAN_RADIUS;
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::quantity::{Name, Variant};
 use indicatif::ProgressBar;
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::client::{Client, ServerArguments, path_segment};
@@ -55,7 +56,8 @@ impl Format {
     }
 }
 
-/// Writes `table.csv` with a row a point, and a folder a point with its tables and full spectra.
+/// Writes `table.csv` with a row a point, and a folder a point with its tables and full spectra. A file that the server cannot give
+/// does not keep the others back: `missing.json` tells what is not there and why, and the command fails.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
     let id = &path_segment(&client.sweep_id(&arguments.sweep)?);
@@ -68,11 +70,27 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     if !arguments.table_only {
         points(&client, id, &arguments.output, format, &mut files)?;
     }
+    let manifest = arguments.output.join("missing.json");
+    if files.missing.is_empty() {
+        // Of an earlier try, which may have found less.
+        if manifest.exists() {
+            std::fs::remove_file(&manifest)
+                .with_context(|| format!("cannot remove {}", manifest.display()))?;
+        }
+    } else {
+        let missing = serde_json::to_string_pretty(&files.missing)?;
+        files.write(manifest, missing.as_bytes())?;
+    }
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!(files.written))?);
     } else {
         print(&format!("{}", arguments.output.display()));
     }
+    ensure!(
+        files.missing.is_empty(),
+        "{} files are missing; missing.json says which and why",
+        files.missing.len()
+    );
     Ok(())
 }
 
@@ -88,13 +106,13 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
         files.write(folder.join("point.json"), serde_json::to_string_pretty(&point)?.as_bytes())?;
         let has = |name: &str| point.tables.iter().any(|table| table == name);
         for table in TABLES.iter().map(|table| table.name).filter(|table| has(table)) {
-            let bytes = client.bytes(&format!("{path}/{table}?format={format}"))?;
-            files.write(folder.join(format!("{table}.{format}")), &bytes)?;
+            let file = folder.join(format!("{table}.{format}"));
+            files.download(client, &format!("{path}/{table}?format={format}"), file)?;
         }
         if has("cost") {
             for extension in ["json", "csv", "svg", "png"] {
-                let bytes = client.bytes(&format!("{path}/cost?format={extension}"))?;
-                files.write(folder.join(format!("cost.{extension}")), &bytes)?;
+                let file = folder.join(format!("cost.{extension}"));
+                files.download(client, &format!("{path}/cost?format={extension}"), file)?;
             }
         }
         if has(tables::HISTORY.name) {
@@ -102,9 +120,8 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
                 for window in point.scenario.spectrum_windows() {
                     let (from, to) = (json!(window.from), json!(window.to));
                     let query = format!("node={node}&from={from}&to={to}&window=hann&format={format}");
-                    let bytes = client.bytes(&format!("{path}/spectrum?{query}"))?;
                     let name = format!("spectrum-node{node}-{from}-{to}s.{format}");
-                    files.write(folder.join(name), &bytes)?;
+                    files.download(client, &format!("{path}/spectrum?{query}"), folder.join(name))?;
                 }
             }
         }
@@ -120,13 +137,32 @@ fn recorded_nodes(summary: &Map<String, Value>) -> impl Iterator<Item = usize> {
     summary.keys().filter_map(move |name| Name::parse(name).filter(of_orbit)?.node)
 }
 
-/// The files as they are written.
+/// The files as they are written, and those that cannot be had.
 #[derive(Default)]
 struct Files {
     written: Vec<PathBuf>,
+    missing: Vec<Missing>,
+}
+
+/// A file that the server could not give.
+#[derive(Serialize)]
+struct Missing {
+    file: PathBuf,
+    reason: String,
 }
 
 impl Files {
+    /// Writes what the server answers; a problem that it answers with is noted.
+    fn download(&mut self, client: &Client, path: &str, file: PathBuf) -> anyhow::Result<()> {
+        match client.file(path)? {
+            Ok(bytes) => self.write(file, &bytes),
+            Err(reason) => {
+                self.missing.push(Missing { file, reason });
+                Ok(())
+            }
+        }
+    }
+
     fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {
         std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
         self.written.push(path);

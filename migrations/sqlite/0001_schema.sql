@@ -243,7 +243,10 @@ CREATE TABLE result (
     created    INTEGER NOT NULL,
     -- Recomputed, it differs from the one before, or one before it did: the same numbers are promised. What differed is
     -- in its provenance.
-    disagrees  INTEGER NOT NULL DEFAULT 0
+    disagrees  INTEGER NOT NULL DEFAULT 0,
+    -- When the object store was found to have lost one of its tables. Such a result counts as none where it is asked
+    -- whether work has to be done.
+    damaged    INTEGER
 ) STRICT;
 
 CREATE INDEX result_disagrees ON result (work_key) WHERE disagrees <> 0;

@@ -13,6 +13,7 @@ use object_store::path::Path as ObjectPath;
 use object_store::{ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
 
 use crate::error::{Result, StoreError};
+use crate::hash_tree::{self, HashTree, HashTreeBuilder, HashTrees};
 
 /// The folder of scratch objects.
 const SCRATCH: &str = "probe";
@@ -21,12 +22,13 @@ const SCRATCH: &str = "probe";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BlobId(blake3::Hash);
 
-/// Content-addressed objects in a local directory. A blob is written before the row that names it, and writing
-/// the same bytes again changes nothing.
+/// Content-addressed objects in a local directory. A blob is written before the row that names it. Writing the same bytes
+/// again changes nothing, unless they were damaged meanwhile: then it mends them.
 #[derive(Debug, Clone)]
 pub struct BlobStore {
     objects: Arc<dyn ObjectStore>,
     directory: PathBuf,
+    trees: Arc<HashTrees>,
 }
 
 /// An object as it lies in the store.
@@ -50,20 +52,47 @@ impl BlobStore {
         std::fs::create_dir_all(directory)
             .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
         let objects = LocalFileSystem::new_with_prefix(directory)?.with_fsync(true);
-        Ok(Self { objects: Arc::new(objects), directory: directory.to_owned() })
+        Ok(Self { objects: Arc::new(objects), directory: directory.to_owned(), trees: Arc::default() })
     }
 
-    /// Writes a blob, durably, unless it is there.
+    /// Writes a blob, durably, unless it is there. What is there under its name is read, and replaced in one step where it
+    /// is not what the name says, or cannot be read.
     ///
     /// # Errors
     /// When the object store fails.
     pub async fn put(&self, bytes: Vec<u8>) -> Result<BlobId> {
         let id = BlobId::of(&bytes);
-        let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
-        match self.objects.put_opts(&id.path(), PutPayload::from(bytes), options).await {
-            Ok(_) | Err(object_store::Error::AlreadyExists { .. }) => Ok(id),
-            Err(error) => Err(error.into()),
+        let payload = PutPayload::from(bytes);
+        match self.write(id, payload.clone(), PutMode::Create).await {
+            Err(object_store::Error::AlreadyExists { .. }) => {}
+            written => return Ok(written.map(|()| id)?),
         }
+        if let Err(error) = self.verify(id).await {
+            tracing::warn!(%error, blob = %id, "a stored blob is replaced");
+            self.write(id, payload, PutMode::Overwrite).await?;
+        }
+        Ok(id)
+    }
+
+    async fn write(&self, id: BlobId, payload: PutPayload, mode: PutMode) -> object_store::Result<()> {
+        let options = PutOptions { mode, ..PutOptions::default() };
+        self.objects.put_opts(&id.path(), payload, options).await.map(drop)
+    }
+
+    /// Reads a blob without keeping it, and gives its size \[bytes\].
+    ///
+    /// # Errors
+    /// As [`get`](Self::get).
+    pub(crate) async fn verify(&self, id: BlobId) -> Result<u64> {
+        let mut content = self.objects.get(&id.path()).await?.into_stream();
+        let mut hasher = blake3::Hasher::new();
+        while let Some(bytes) = content.try_next().await? {
+            hasher.update(&bytes);
+        }
+        if hasher.finalize() != id.0 {
+            return Err(StoreError::BlobDamaged(id));
+        }
+        Ok(hasher.count())
     }
 
     /// Reads a whole blob. What a disk has damaged is not passed on.
@@ -73,17 +102,55 @@ impl BlobStore {
     pub async fn get(&self, id: BlobId) -> Result<Bytes> {
         let content = self.objects.get(&id.path()).await?.bytes().await?;
         if BlobId::of(&content) != id {
-            return Err(StoreError::Corrupt(format!("blob {id}, whose content is not what its name says")));
+            return Err(StoreError::BlobDamaged(id));
         }
         Ok(content)
     }
 
-    /// Reads a range of a blob's bytes, cut off at its end.
+    /// Reads a range of a blob's bytes, cut off at its end. Only what was verified is handed out, as in [`get`](Self::get): the
+    /// first range of a blob takes a reading of the whole, any other one the groups of the hash tree that it touches.
     ///
     /// # Errors
-    /// When it is not there, the range begins beyond its end or is empty, or the object store fails.
+    /// When the blob is not there or is not what was written, the range begins beyond its end or is empty, or the object store
+    /// fails.
     pub async fn get_range(&self, id: BlobId, bytes: Range<u64>) -> Result<Bytes> {
-        Ok(self.objects.get_range(&id.path(), bytes).await?)
+        let Some(tree) = self.hash_tree(id).await? else {
+            // In one group: the whole is no more to read.
+            let whole = self.get(id).await?;
+            let length = whole.len() as u64;
+            let range =
+                (!bytes.is_empty() && bytes.start < length).then(|| bytes.start..bytes.end.min(length));
+            return Ok(cut(&whole, range.ok_or(StoreError::NoSuchRange(id))?));
+        };
+        let groups = tree.whole_groups(&bytes).ok_or(StoreError::NoSuchRange(id))?;
+        let content = match self.objects.get_range(&id.path(), groups.clone()).await {
+            Ok(content) => content,
+            // A file that is too short has no such range.
+            Err(error) => return Err(self.verify(id).await.err().unwrap_or(error.into())),
+        };
+        if content.len() as u64 != groups.end - groups.start || !tree.holds(groups.start, &content) {
+            return Err(StoreError::BlobDamaged(id));
+        }
+        Ok(cut(&content, bytes.start - groups.start..bytes.end.min(groups.end) - groups.start))
+    }
+
+    /// The hashes of a blob's groups; none where it is no larger than one.
+    async fn hash_tree(&self, id: BlobId) -> Result<Option<Arc<HashTree>>> {
+        if let Some(tree) = self.trees.get(id) {
+            return Ok(Some(tree));
+        }
+        let object = self.objects.get(&id.path()).await?;
+        if object.meta.size <= hash_tree::GROUP {
+            return Ok(None);
+        }
+        let mut content = object.into_stream();
+        let mut builder = HashTreeBuilder::new();
+        while let Some(bytes) = content.try_next().await? {
+            builder.update(&bytes);
+        }
+        let tree = Arc::new(builder.finish(id).ok_or(StoreError::BlobDamaged(id))?);
+        self.trees.keep(id, tree.clone());
+        Ok(Some(tree))
     }
 
     /// Whether a blob is there.
@@ -139,6 +206,12 @@ impl BlobStore {
     }
 }
 
+/// A part of some bytes; what lies beyond their end is left out.
+fn cut(bytes: &Bytes, range: Range<u64>) -> Bytes {
+    let place = |at: u64| usize::try_from(at).unwrap_or(usize::MAX).min(bytes.len());
+    bytes.slice(place(range.start)..place(range.end))
+}
+
 fn visit_unfinished(
     directory: &Path,
     cutoff: i64,
@@ -179,6 +252,12 @@ impl BlobId {
     fn path(&self) -> ObjectPath {
         let hex = self.0.to_hex();
         ObjectPath::from(format!("{}/{}/{hex}", &hex[..2], &hex[2..4]))
+    }
+}
+
+impl From<blake3::Hash> for BlobId {
+    fn from(hash: blake3::Hash) -> Self {
+        BlobId(hash)
     }
 }
 

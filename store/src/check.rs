@@ -2,8 +2,9 @@
 
 use crate::blob::BlobId;
 use crate::connection::Store;
-use crate::error::{Result, StoreError};
+use crate::error::Result;
 use crate::sql;
+use crate::state::{WorkKey, work_key};
 
 /// What a check looked at, and what is wrong.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -16,11 +17,16 @@ pub struct CheckReport {
     pub bytes: u64,
     /// What is wrong, one text each; empty where all is well.
     pub problems: Vec<String>,
+    /// Blobs among these problems that are lost, by their names.
+    pub damaged: Vec<String>,
+    /// Work items that are done and have no result.
+    pub without_result: Vec<WorkKey>,
 }
 
 impl Store {
     /// Reads everything and compares: pages and references of the database, finished work against results, sizes and
-    /// hashes of the blobs that results name. Changes nothing; the service may run meanwhile.
+    /// hashes of the blobs that results name. Changes nothing; the service may run meanwhile. What it finds lost
+    /// [`repair`](Self::repair) queues anew.
     ///
     /// # Errors
     /// When the database cannot be read. What can be read but is wrong is reported, not an error.
@@ -35,10 +41,11 @@ impl Store {
         report.problems.extend(
             dangling.into_iter().map(|(child, parent)| format!("a row of {child} names no {parent}")),
         );
-        let without_result: i64 =
-            sqlx::query_scalar(sql::check::WITHOUT_RESULT).fetch_one(&self.pool).await?;
-        if without_result > 0 {
-            report.problems.push(format!("{without_result} finished work items have no result"));
+        let without_result: Vec<Vec<u8>> =
+            sqlx::query_scalar(sql::check::WITHOUT_RESULT).fetch_all(&self.pool).await?;
+        report.without_result = without_result.iter().map(|key| work_key(key)).collect::<Result<_>>()?;
+        if !without_result.is_empty() {
+            report.problems.push(format!("{} finished work items have no result", without_result.len()));
         }
         let results: i64 = sqlx::query_scalar(sql::check::RESULTS).fetch_one(&self.pool).await?;
         report.results = results.unsigned_abs();
@@ -46,25 +53,21 @@ impl Store {
         for (id, bytes) in blobs {
             report.blobs += 1;
             report.bytes += bytes.unsigned_abs();
-            if let Some(problem) = self.blob_problem(&id, bytes).await {
-                report.problems.push(problem);
+            match self.verify_blob(&id).await {
+                Ok(size) if size == bytes.unsigned_abs() => {}
+                Ok(size) => report.problems.push(format!("blob {id}: {size} bytes instead of {bytes}")),
+                Err(error) => {
+                    report.problems.push(error.to_string());
+                    if error.is_damage() {
+                        report.damaged.push(id);
+                    }
+                }
             }
         }
         Ok(report)
     }
 
-    async fn blob_problem(&self, id: &str, bytes: i64) -> Option<String> {
-        let content = match id.parse::<BlobId>() {
-            Ok(id) => self.blobs().get(id).await,
-            Err(error) => Err(error),
-        };
-        match content {
-            Err(StoreError::Corrupt(problem)) => Some(problem),
-            Err(error) => Some(error.to_string()),
-            Ok(content) if content.len() as u64 != bytes.unsigned_abs() => {
-                Some(format!("{} bytes instead of {bytes}", content.len()))
-            }
-            Ok(_) => None,
-        }
+    async fn verify_blob(&self, id: &str) -> Result<u64> {
+        self.blobs().verify(id.parse::<BlobId>()?).await
     }
 }

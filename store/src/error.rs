@@ -1,7 +1,9 @@
 //! What can go wrong in the store.
 
 use std::error::Error as _;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
+
+use crate::blob::BlobId;
 
 /// The store's results.
 pub type Result<T> = std::result::Result<T, StoreError>;
@@ -21,13 +23,19 @@ pub enum StoreError {
     /// A result names a blob that is not there, or not any more: it must be written again.
     #[error("the blob {0} of a result is not there")]
     BlobMissing(String),
+    /// The content of a blob is not what was written: a disk or a person changed it.
+    #[error("the content of the blob {0} is not what its name says")]
+    BlobDamaged(BlobId),
+    /// A range of bytes is empty, or begins beyond the end of the blob.
+    #[error("the blob {0} has no such bytes")]
+    NoSuchRange(BlobId),
     /// A directory could not be made, or the database's lock file not taken.
     #[error("{path}: {source}")]
     Directory {
         /// The directory or file.
         path: String,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// A stored value is not what this program writes.
     #[error("the database holds an unexpected value: {0}")]
@@ -50,14 +58,32 @@ impl StoreError {
                 .and_then(|code| code.parse::<i64>().ok())
                 .is_some_and(|code| code & 0xff == 13);
         }
+        self.io_error()
+            .is_some_and(|error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded))
+    }
+
+    /// True where a blob is lost: it is not there, is not what was written, or lies on a part of the disk that cannot be read.
+    /// Trying again brings nothing; what the blob held has to be computed again.
+    pub fn is_damage(&self) -> bool {
+        /// The errno of a failed read on Linux and other Unix systems.
+        const EIO: i32 = 5;
+        match self {
+            StoreError::BlobDamaged(_) | StoreError::Blob(object_store::Error::NotFound { .. }) => true,
+            StoreError::Blob(_) => self.io_error().and_then(io::Error::raw_os_error) == Some(EIO),
+            _ => false,
+        }
+    }
+
+    /// What the system said, where that is behind it.
+    fn io_error(&self) -> Option<&io::Error> {
         let mut cause = self.source();
         while let Some(error) = cause {
-            if let Some(error) = error.downcast_ref::<std::io::Error>() {
-                return matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
+            if let Some(error) = error.downcast_ref() {
+                return Some(error);
             }
             cause = error.source();
         }
-        false
+        None
     }
 
     /// True where the same call may succeed a moment later: the database was busy.

@@ -129,7 +129,8 @@ impl Store {
             .collect()
     }
 
-    /// Points of a sweep after the ordinal `after` that have artifacts, with these, in order; `limit` points at most.
+    /// Points of a sweep after the ordinal `after` that have artifacts, with these, in order; `limit` points at most. Artifacts that
+    /// have expired are among them.
     ///
     /// # Errors
     /// When the database fails.
@@ -138,20 +139,20 @@ impl Store {
         sweep_id: &str,
         after: i64,
         limit: i64,
-    ) -> Result<Vec<(i64, Vec<Artifact>)>> {
+    ) -> Result<Vec<(i64, WorkKey, Vec<Artifact>)>> {
         let rows = sqlx::query(sql::point::WITH_ARTIFACTS)
             .bind(sweep_id)
             .bind(after)
             .bind(limit)
             .fetch_all(&self.pool)
             .await?;
-        let mut points: Vec<(i64, Vec<Artifact>)> = Vec::new();
+        let mut points: Vec<(i64, WorkKey, Vec<Artifact>)> = Vec::new();
         for row in &rows {
             let ordinal = row.try_get("ordinal")?;
             let artifact = Artifact::read(row)?;
             match points.last_mut() {
-                Some((last, artifacts)) if *last == ordinal => artifacts.push(artifact),
-                _ => points.push((ordinal, vec![artifact])),
+                Some((last, _, artifacts)) if *last == ordinal => artifacts.push(artifact),
+                _ => points.push((ordinal, work_key(row.try_get("work_key")?)?, vec![artifact])),
             }
         }
         Ok(points)

@@ -102,6 +102,13 @@ statements! {
         SHORTEN_LEASES = "shorten_leases",
         WAKE = "wake",
     }
+    repair {
+        MARK = "mark",
+        NAMES_BLOB = "names_blob",
+        QUEUE = "queue",
+        WORK = "work",
+        WORKS_OF_BLOB = "works_of_blob",
+    }
     retention {
         ARTIFACT_NAMES = "artifact_names",
         BLOBS_IN_USE = "blobs_in_use",

@@ -1,14 +1,15 @@
 //! The tables that workers stored, as they are read back.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use axum::body::Bytes;
 use drillsweep_api::view::node::{self, Choice, Recorded};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
-use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
+use drillsweep_api::{PHYSICS_VERSION, PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::Hole;
-use drillsweep_store::{Artifact, BlobId, Store, WorkKey};
+use drillsweep_store::{Artifact, BlobId, Repair, Store, WorkKey};
 use drillsweep_table::parquet::{self, TableError, column_names};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, tables};
@@ -24,22 +25,70 @@ pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Resu
 }
 
 async fn load_of(store: &Store, key: &WorkKey, name: &str) -> Result<Bytes> {
-    let blob: BlobId = find(store, key, name).await?.blob.parse()?;
-    Ok(store.blobs().get(blob).await?)
+    let artifact = find(store, key, name).await?;
+    read(store, key, &artifact, None).await
 }
 
-/// Where a table of a result is.
+/// The bytes of a table, or a range of them. Where storage has lost it, its point is computed again, and the problem says so.
+pub(crate) async fn read(
+    store: &Store,
+    key: &WorkKey,
+    artifact: &Artifact,
+    range: Option<Range<u64>>,
+) -> Result<Bytes> {
+    check_age(artifact)?;
+    let blob: BlobId = artifact.blob.parse()?;
+    let bytes = match range {
+        None => store.blobs().get(blob).await,
+        Some(range) => store.blobs().get_range(blob, range).await,
+    };
+    match bytes {
+        Err(error) if error.is_damage() => {
+            tracing::error!(%error, table = artifact.name, "a stored table is damaged");
+            let repair = store.queue_damaged(key, blob, PHYSICS_VERSION.into()).await?;
+            Err(damaged(&artifact.name, repair))
+        }
+        bytes => Ok(bytes?),
+    }
+}
+
+/// Refuses a table that has reached its age.
+pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
+    let Some(expired) = artifact.expired else { return Ok(()) };
+    let detail = format!(
+        "the table {} expired at {}; the summary is kept, and a sweep submitted with ?cache=refresh recomputes the point",
+        artifact.name,
+        records::timestamp(expired)?
+    );
+    Err(Error::new(ProblemKind::Expired, detail))
+}
+
+/// The problem that a table is lost, with what becomes of it.
+fn damaged(name: &str, repair: Repair) -> Error {
+    let consequence = match repair {
+        Repair::Queued | Repair::UnderWay => {
+            "the point is being computed again; ask again when it is done".to_owned()
+        }
+        Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
+                                submit it again to have another try"
+            .to_owned(),
+        Repair::OtherNumbers(version) => format!(
+            "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \
+             {PHYSICS_VERSION}"
+        ),
+        Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
+    };
+    let detail = format!(
+        "the table {name} is lost or was changed in storage, and nothing of it is served; {consequence}"
+    );
+    Error::new(ProblemKind::Damaged, detail)
+}
+
+/// Where a table of a result is, or was until it expired.
 pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Artifact> {
     let mut artifacts = store.artifacts(key).await?;
     if let Some(index) = artifacts.iter().position(|artifact| artifact.name == name) {
-        let artifact = artifacts.swap_remove(index);
-        let Some(expired) = artifact.expired else { return Ok(artifact) };
-        let expired = records::timestamp(expired)?;
-        let detail = format!(
-            "the table {name} expired at {expired}; the summary is kept, and a sweep submitted with ?cache=refresh recomputes \
-             the point"
-        );
-        return Err(Error::new(ProblemKind::Expired, detail));
+        return Ok(artifacts.swap_remove(index));
     }
     let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
     let detail = match names.as_slice() {

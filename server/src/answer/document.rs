@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use axum::http::header;
-use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList};
+use drillsweep_api::{
+    ExportManifest, PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList,
+};
 use drillsweep_table::Table;
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
@@ -24,7 +26,7 @@ use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
-    components(schemas(ProblemDetails, Table, PointEvent, PointList, SelectedPointList)),
+    components(schemas(ProblemDetails, Table, ExportManifest, PointEvent, PointList, SelectedPointList)),
     modifiers(&TokenSecurity),
     security(("token" = []), ()),
     tags(

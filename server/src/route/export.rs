@@ -7,7 +7,8 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::view::points;
-use drillsweep_store::{Artifact, BlobStore, Store};
+use drillsweep_api::{ExportManifest, MissingFile};
+use drillsweep_store::{Artifact, Store};
 use drillsweep_table::csv;
 use futures::StreamExt;
 use serde::Deserialize;
@@ -17,6 +18,7 @@ use utoipa::IntoParams;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
+use crate::answer::artifact;
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
@@ -46,9 +48,9 @@ pub(crate) struct ExportQuery {
 /// A whole sweep as one archive
 ///
 /// A zip file with `sweep.json` (what was asked for, and how it stands), `table.csv` (a row a point), `verification.csv` (a row a
-/// verified point, where there are some) and the files of every point that has a result, as `points/1/history.parquet`. It is written
-/// while it is sent: its size is not known beforehand, and an archive that breaks off has no directory at its end, so that no program
-/// takes it for whole.
+/// verified point, where there are some), the files of every point that has a result, as `points/1/history.parquet`, and last
+/// `manifest.json`: which files should be there and are not, and why (`ExportManifest`). It is written while it is sent: its size is not
+/// known beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/export",
@@ -139,43 +141,55 @@ impl Archive {
             zip.start_file("verification.csv", text)?;
             zip.write_all(csv::write(&verified.table()).map_err(io::Error::other)?.as_bytes())?;
         }
+        let mut manifest = ExportManifest::default();
         if self.wanted.as_ref().is_none_or(|wanted| !wanted.is_empty()) {
-            self.write_points(&mut zip)?;
+            self.write_points(&mut zip, &mut manifest)?;
         }
+        zip.start_file("manifest.json", text)?;
+        serde_json::to_writer_pretty(&mut zip, &manifest)?;
         zip.finish()?;
         sink.send()
     }
 
-    fn write_points(&self, zip: &mut Zip<'_>) -> io::Result<()> {
+    fn write_points(&self, zip: &mut Zip<'_>, manifest: &mut ExportManifest) -> io::Result<()> {
         let mut after = 0;
         loop {
             let page = self.store.point_artifacts(&self.id, after, PAGE);
             let page = self.handle.block_on(page).map_err(io::Error::other)?;
-            let Some((last, _)) = page.last() else { return Ok(()) };
+            let Some((last, ..)) = page.last() else { return Ok(()) };
             after = *last;
-            for (ordinal, artifacts) in &page {
+            for (ordinal, key, artifacts) in &page {
                 for artifact in artifacts {
-                    if self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&artifact.name)) {
-                        self.write_artifact(zip, *ordinal, artifact)?;
+                    if !self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&artifact.name)) {
+                        continue;
+                    }
+                    // One file that cannot be read must not cost all others.
+                    match self.handle.block_on(artifact::read(&self.store, key, artifact, None)) {
+                        Ok(bytes) => {
+                            write_artifact(zip, *ordinal, artifact, &bytes)?;
+                            manifest.files += 1;
+                        }
+                        Err(error) => manifest.missing.push(MissingFile {
+                            point: u32::try_from(*ordinal).unwrap_or(u32::MAX),
+                            table: artifact.name.clone(),
+                            reason: error.into_problem().detail,
+                        }),
                     }
                 }
             }
         }
     }
+}
 
-    fn write_artifact(&self, zip: &mut Zip<'_>, ordinal: i64, artifact: &Artifact) -> io::Result<()> {
-        let blobs: &BlobStore = self.store.blobs();
-        let blob = artifact.blob.parse().map_err(io::Error::other)?;
-        let bytes = self.handle.block_on(blobs.get(blob)).map_err(io::Error::other)?;
-        let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
-        // Parquet is compressed already.
-        let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-        zip.start_file(
-            format!("points/{ordinal}/{}.{extension}", artifact.name),
-            stored.large_file(bytes.len() > 1 << 31),
-        )?;
-        zip.write_all(&bytes)
-    }
+fn write_artifact(zip: &mut Zip<'_>, ordinal: i64, artifact: &Artifact, bytes: &[u8]) -> io::Result<()> {
+    let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
+    // Parquet is compressed already.
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    zip.start_file(
+        format!("points/{ordinal}/{}.{extension}", artifact.name),
+        stored.large_file(bytes.len() > 1 << 31),
+    )?;
+    zip.write_all(bytes)
 }
 
 fn failed(error: Error) -> io::Error {

@@ -95,9 +95,10 @@ pub(crate) async fn show(
     headers: HeaderMap,
 ) -> Result<Response> {
     let key = artifact::result_key(&app.store, &id, n).await?;
-    let artifact = artifact::find(&app.store, &key, &name).await?;
-    let length = artifact.bytes.unsigned_abs();
-    let tag = format!("\"{}\"", artifact.blob);
+    let stored = artifact::find(&app.store, &key, &name).await?;
+    artifact::check_age(&stored)?;
+    let length = stored.bytes.unsigned_abs();
+    let tag = format!("\"{}\"", stored.blob);
     let etag: ETag = tag.parse().map_err(|_| Error::internal("a blob's name that is no entity tag"))?;
     let tag = HeaderValue::try_from(tag).map_err(|error| Error::internal(&error))?;
     if headers.typed_get::<IfNoneMatch>().is_some_and(|known| !known.precondition_passes(&etag)) {
@@ -105,8 +106,7 @@ pub(crate) async fn show(
     }
     let is_current = headers.typed_get::<IfRange>().is_none_or(|known| !known.is_modified(Some(&etag), None));
     let range = headers.get(header::RANGE).filter(|_| is_current).and_then(|value| value.to_str().ok());
-    let blob = artifact.blob.parse()?;
-    let media_type = HeaderValue::try_from(&artifact.media_type).map_err(|error| Error::internal(&error))?;
+    let media_type = HeaderValue::try_from(&stored.media_type).map_err(|error| Error::internal(&error))?;
     let usual: [(HeaderName, HeaderValue); 4] = [
         (header::CONTENT_TYPE, media_type),
         (header::ETAG, tag),
@@ -116,16 +116,21 @@ pub(crate) async fn show(
     ];
     // What is not a range of bytes is to be ignored (RFC 9110 section 14.2).
     let Some(ranges) = range.and_then(|range| http_range_header::parse_range_header(range).ok()) else {
-        return Ok((usual, Body::from(app.store.blobs().get(blob).await?)).into_response());
+        return Ok(
+            (usual, Body::from(artifact::read(&app.store, &key, &stored, None).await?)).into_response()
+        );
     };
     let ranges = match ranges.validate(length) {
         Ok(ranges) => ranges,
         Err(_) => return Ok(not_satisfiable(length)),
     };
     let [range] = ranges.as_slice() else {
-        return Ok((usual, Body::from(app.store.blobs().get(blob).await?)).into_response());
+        return Ok(
+            (usual, Body::from(artifact::read(&app.store, &key, &stored, None).await?)).into_response()
+        );
     };
-    let bytes = app.store.blobs().get_range(blob, *range.start()..range.end() + 1).await?;
+    let wanted = *range.start()..range.end() + 1;
+    let bytes = artifact::read(&app.store, &key, &stored, Some(wanted)).await?;
     let place = format!("bytes {}-{}/{length}", range.start(), range.end());
     Ok((StatusCode::PARTIAL_CONTENT, usual, [(header::CONTENT_RANGE, place)], bytes).into_response())
 }

@@ -1,6 +1,7 @@
 //! A service over a store in a temporary directory, and a worker that stores tables made up here.
 
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use axum::Router;
@@ -21,7 +22,7 @@ pub(crate) struct Bench {
     pub(crate) store: Store,
     pub(crate) stop: watch::Sender<bool>,
     routes: Router,
-    _directory: TempDir,
+    directory: TempDir,
 }
 
 pub(crate) struct Answer {
@@ -62,7 +63,7 @@ impl Bench {
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Server)).await.unwrap();
         let (stop, stopping) = watch::channel(false);
         let config = Config { poll_interval: Duration::from_millis(10), ..config };
-        Bench { routes: router(store.clone(), config, stopping), store, stop, _directory: directory }
+        Bench { routes: router(store.clone(), config, stopping), store, stop, directory }
     }
 
     pub(crate) async fn send(&self, request: Request<Body>) -> Answer {
@@ -94,6 +95,19 @@ impl Bench {
         let answer = self.post("/v1/sweeps", body).await;
         assert_eq!(answer.status, StatusCode::CREATED, "{}", answer.text());
         answer.json()["id"].as_str().unwrap().to_owned()
+    }
+
+    /// The file of a blob.
+    pub(crate) fn blob_file(&self, hash: &str) -> PathBuf {
+        self.directory.path().join("blobs").join(&hash[..2]).join(&hash[2..4]).join(hash)
+    }
+
+    /// The file of a table of a point.
+    pub(crate) async fn blob_file_of(&self, sweep: &str, point: u32, table: &str) -> PathBuf {
+        let list = self.get(&format!("{sweep}/points/{point}/artifacts")).await.json();
+        let entries = list["artifacts"].as_array().unwrap();
+        let entry = entries.iter().find(|entry| entry["name"] == table).unwrap();
+        self.blob_file(entry["hash"].as_str().unwrap())
     }
 
     pub(crate) async fn claim(&self) -> Claim {

@@ -96,6 +96,7 @@ async fn an_export_holds_the_whole_sweep() {
         "points/1/history.parquet",
         "points/1/profile.parquet",
         "points/1/statics.parquet",
+        "manifest.json",
     ];
     assert_eq!(names, expected);
     let mut read = |name: &str| {
@@ -113,6 +114,6 @@ async fn an_export_holds_the_whole_sweep() {
     let small = bench.get(&format!("{path}/export?artifacts=profile")).await;
     let archive = zip::ZipArchive::new(Cursor::new(small.body.to_vec())).unwrap();
     let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
-    assert_eq!(names, ["sweep.json", "table.csv", "points/1/profile.parquet"]);
+    assert_eq!(names, ["sweep.json", "table.csv", "points/1/profile.parquet", "manifest.json"]);
     bench.get("/v1/sweeps/none/export").await.problem(404, "not-found");
 }

@@ -4,6 +4,7 @@
 
 mod bench;
 mod control;
+mod damage;
 mod errors;
 mod events;
 mod files;

@@ -48,8 +48,63 @@ pub(crate) async fn a_range_is_cut_from_the_content<E: Engine>() {
     for error in [
         store.blobs().get(missing).await.unwrap_err(),
         store.blobs().get_range(missing, 0..1).await.unwrap_err(),
-        store.blobs().get_range(id, 256..300).await.unwrap_err(),
     ] {
-        assert!(matches!(error, StoreError::Blob(_)), "{error}");
+        assert!(error.is_damage(), "{error}");
     }
+    for beyond in [256..300, 20..20] {
+        let error = store.blobs().get_range(id, beyond).await.unwrap_err();
+        assert!(matches!(error, StoreError::NoSuchRange(_)) && !error.is_damage(), "{error}");
+    }
+}
+
+pub(crate) async fn what_is_damaged_is_replaced_when_it_is_written_again<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    let content = b"orbit".repeat(1_000);
+    let id = store.blobs().put(content.clone()).await.unwrap();
+    let name = object_name(&id.to_string());
+    let mut flipped = content.clone();
+    flipped[4_321] ^= 4;
+    let longer = [content.as_slice(), b"x"].concat();
+    for damaged in [b"".as_slice(), &content[..2_500], &flipped, &longer] {
+        engine.write_object(&name, damaged);
+        assert!(store.blobs().get(id).await.unwrap_err().is_damage());
+        assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
+        assert_eq!(store.blobs().get(id).await.unwrap(), content);
+    }
+    engine.delete_object(&name);
+    assert!(store.blobs().get(id).await.unwrap_err().is_damage());
+    assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
+    assert_eq!(store.blobs().get(id).await.unwrap(), content);
+    assert_eq!(engine.objects().len(), 1);
+}
+
+pub(crate) async fn no_range_of_a_damaged_blob_is_handed_out<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    let content: Vec<u8> = (0..1_000_000_u32).map(|index| (index % 251) as u8).collect();
+    let id = store.blobs().put(content.clone()).await.unwrap();
+    let name = object_name(&id.to_string());
+    let mut flipped = content.clone();
+    flipped[700_000] ^= 1;
+
+    // Found at the first range, wherever that lies.
+    engine.write_object(&name, &flipped);
+    let error = store.blobs().get_range(id, 0..10).await.unwrap_err();
+    assert!(matches!(error, StoreError::BlobDamaged(damaged) if damaged == id), "{error}");
+
+    engine.write_object(&name, &content);
+    for range in [0..10, 999_990..2_000_000, 100_000..900_000] {
+        let expected = &content[range.start as usize..(range.end as usize).min(content.len())];
+        assert_eq!(store.blobs().get_range(id, range).await.unwrap(), expected);
+    }
+    // Found at a later one too, and only what is damaged is refused.
+    engine.write_object(&name, &flipped);
+    assert_eq!(store.blobs().get_range(id, 0..10).await.unwrap(), content[..10]);
+    for range in [700_000..700_001, 600_000..600_010, 0..1_000_000] {
+        let error = store.blobs().get_range(id, range).await.unwrap_err();
+        assert!(matches!(error, StoreError::BlobDamaged(_)), "{error}");
+    }
+    engine.write_object(&name, &content[..999_999]);
+    assert!(store.blobs().get_range(id, 999_990..1_000_000).await.unwrap_err().is_damage());
 }

@@ -31,5 +31,5 @@ pub(crate) async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named<E
     assert!(of(&blobs[1]).contains("not what its name says"), "{problems:?}");
     assert!(of(&blobs[2]).contains("not what its name says"), "{problems:?}");
     // Nor is it handed out.
-    assert!(matches!(store.blobs().get(blobs[1].parse().unwrap()).await, Err(StoreError::Corrupt(_))));
+    assert!(matches!(store.blobs().get(blobs[1].parse().unwrap()).await, Err(StoreError::BlobDamaged(_))));
 }

@@ -13,6 +13,8 @@ macro_rules! conformance {
                 the_name_is_the_blake3_hash_of_the_content,
                 the_same_content_is_stored_once_and_never_rewritten,
                 a_range_is_cut_from_the_content,
+                what_is_damaged_is_replaced_when_it_is_written_again,
+                no_range_of_a_damaged_blob_is_handed_out,
             }
             cancel {
                 queued_points_end_at_once_and_running_ones_at_their_next_renewal,
@@ -87,6 +89,14 @@ macro_rules! conformance {
                 a_probe_leaves_nothing_behind,
                 a_probe_notices_that_blobs_cannot_be_written,
             }
+            repair {
+                a_lost_table_is_computed_again_and_is_whole_then,
+                what_fails_to_be_computed_again_is_not_tried_at_every_look,
+                a_repair_goes_on_whatever_becomes_of_other_sweeps,
+                a_repair_waits_while_its_sweep_is_paused,
+                what_nobody_computes_any_more_is_not_queued,
+                a_check_repairs_all_that_it_finds,
+            }
             retention {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 what_a_killed_upload_left_goes_too_and_strange_files_stay,
@@ -144,6 +154,7 @@ mod failure;
 mod fairness;
 mod lease;
 mod probe;
+mod repair;
 mod retention;
 mod sqlite;
 mod state;

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
+import warnings
+import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
@@ -261,9 +264,20 @@ class Sweep:
         Args:
             file: The archive.
             tables: Names of the tables of each point, such as `["profile", "history"]`; None means all.
+
+        Tables that the service has lost, or that have expired, are not in it. A warning says so, and `manifest.json` in the archive
+        which they are and why.
         """
         names = None if tables is None else ",".join(tables)
-        return self._client.download(f"{self.path}/export", file, {"artifacts": names})
+        archive = self._client.download(f"{self.path}/export", file, {"artifacts": names})
+        with zipfile.ZipFile(archive) as opened:
+            missing = json.loads(opened.read("manifest.json"))["missing"]
+        if missing:
+            first = missing[0]
+            place = f"{first['table']} of point {first['point']}"
+            text = f"{len(missing)} tables are not in {archive}; the first is {place}: {first['reason']}"
+            warnings.warn(text, stacklevel=2)
+        return archive
 
     def cancel(self) -> Sweep:
         """Cancels it: queued points at once, running ones within a heartbeat of their worker."""

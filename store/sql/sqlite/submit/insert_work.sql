@@ -3,7 +3,7 @@
 -- places, ?4 base, ?5 version of the numbers, ?6 owner, ?7 whether they are held, ?8 priority, ?9 time, ?10 whether those
 -- that are final are recomputed, ?11 first place that is taken in the owner's order.
 --
--- What becomes of work that is there: what was cancelled, or is to be recomputed, is taken up again as if it were new.
+-- What becomes of work that is there: what was cancelled, has a damaged result, or is to be recomputed, is taken up again as if it were new.
 -- What is open goes as early as the most urgent sweep that wants it, is neither cancelled nor held any more, and becomes a
 -- turn of the owner in whose order it stands nearer to the front: else a few points would wait for all of somebody else's
 -- sweep that has them too. All else stays as it is, by the last condition: where a row is changed and is not open, it is
@@ -39,4 +39,5 @@ WHERE CASE WHEN is_open
                     AND vtime - (SELECT min(o.vtime) FROM work o WHERE o.owner = work.owner AND o.is_open)
                         > excluded.vtime - ?11)
            ELSE state = 'cancelled' OR ?10
+                OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key AND damaged IS NOT NULL)
       END

@@ -1,5 +1,5 @@
 -- Cancels the open work of a sweep that no live sweep wants: has a point of it, or verifies one by it, and of work that has
--- a result, asks to recompute it. What is under way ends when its worker hears of it. A result from before stays, and
+-- a result which is not damaged, asks to recompute it. What is under way ends when its worker hears of it. A result from before stays, and
 -- the work is done then.
 -- ?1 sweep.
 UPDATE work SET
@@ -12,4 +12,4 @@ WHERE key IN (SELECT work_key FROM point WHERE sweep_id = ?1)
   AND is_open
   AND NOT EXISTS (SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
                   WHERE p.work_key = work.key AND s.cancelled = 0
-                    AND (s.refreshes <> 0 OR NOT EXISTS (SELECT 1 FROM result r WHERE r.work_key = work.key)))
+                    AND (s.refreshes <> 0 OR NOT EXISTS (SELECT 1 FROM result r WHERE r.work_key = work.key AND r.damaged IS NULL)))

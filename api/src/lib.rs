@@ -34,9 +34,10 @@ pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
 pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
-    Health, LIMITS, Limits, Queue, ScenarioDetail, ScenarioEntry, ScenarioList, Worker, WorkerList,
+    Collected, Collection, Health, LIMITS, Limits, Queue, Retention, ScenarioDetail, ScenarioEntry,
+    ScenarioList, Worker, WorkerList,
 };
-pub use sweep::{PointCounts, Sweep, SweepLinks, SweepList, SweepState, SweepVerification};
+pub use sweep::{PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList, SweepState, SweepVerification};
 pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -224,6 +224,8 @@ pub enum FailureClass {
     Timeout,
     /// It was cancelled while it ran.
     Cancelled,
+    /// It is of an earlier physics version, which no worker computes any more.
+    Outdated,
 }
 
 impl FailureClass {
@@ -235,6 +237,7 @@ impl FailureClass {
             FailureClass::Crash => "crash",
             FailureClass::Timeout => "timeout",
             FailureClass::Cancelled => "cancelled",
+            FailureClass::Outdated => "outdated",
         }
     }
 }

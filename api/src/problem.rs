@@ -62,6 +62,8 @@ pub enum ProblemKind {
     Damaged,
     /// The sweep's state does not allow the operation.
     Conflict,
+    /// The sweep is not any more what `If-Match` says.
+    PreconditionFailed,
     /// The idempotency key was used with another request.
     IdempotencyKeyReused,
     /// The service cannot answer just now; try again.
@@ -99,6 +101,7 @@ impl ProblemKind {
         ProblemKind::Expired,
         ProblemKind::Damaged,
         ProblemKind::Conflict,
+        ProblemKind::PreconditionFailed,
         ProblemKind::IdempotencyKeyReused,
         ProblemKind::Unavailable,
         ProblemKind::StorageFull,
@@ -153,6 +156,9 @@ impl ProblemKind {
             ProblemKind::Expired => ("expired", "The table has expired", 410),
             ProblemKind::Damaged => ("damaged", "Storage has lost the table", 500),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
+            ProblemKind::PreconditionFailed => {
+                ("precondition-failed", "The sweep was changed since it was read", 412)
+            }
             ProblemKind::IdempotencyKeyReused => {
                 ("idempotency-key-reused", "The idempotency key belongs to another request", 422)
             }

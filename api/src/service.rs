@@ -121,6 +121,60 @@ pub struct Queue {
     pub running: u64,
 }
 
+/// How long data are kept, and when it was last seen to that.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Retention {
+    /// How often the service deletes what need not be kept; absent where it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval_seconds: Option<f64>,
+    /// Age at which recordings (histories) expire.
+    pub recordings_days: f64,
+    /// Age at which other tables of points expire.
+    pub tables_days: f64,
+    /// Age at which events are forgotten.
+    pub events_days: f64,
+    /// The last collection, by the service or by `drillsweep gc`; absent where there was none yet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<Collection>,
+}
+
+/// A collection of what need not be kept any more.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Collection {
+    /// When the last one began.
+    pub started: Timestamp,
+    /// When one ended last; before `started` while one is under way, or where the last one failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ended: Option<Timestamp>,
+    /// What that deleted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deleted: Option<Collected>,
+}
+
+/// What a collection deleted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(default)]
+pub struct Collected {
+    /// Sweeps whose time had come.
+    pub sweeps: u64,
+    /// Results that belonged to no sweep any more.
+    pub results: u64,
+    /// Tables that reached their age.
+    pub artifacts: u64,
+    /// Scenarios that no point was left of.
+    pub scenarios: u64,
+    /// Events.
+    pub events: u64,
+    /// Stored files.
+    pub blobs: u64,
+    /// Their size.
+    pub blob_bytes: u64,
+    /// Parts of uploads that were never finished.
+    pub unfinished_uploads: u64,
+    /// Their size.
+    pub unfinished_bytes: u64,
+}
+
 /// The answer of the health checks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Health {

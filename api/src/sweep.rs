@@ -44,6 +44,10 @@ pub struct Sweep {
     /// When it is to be deleted, once all its points are final and unless it is pinned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expires: Option<Timestamp>,
+    /// Raised by every change that somebody asks for: what `PATCH` sets, pause, cancellation, retry, further points. The `ETag` of
+    /// the sweep begins with it.
+    #[serde(default)]
+    pub revision: u64,
     /// What can be simulated but is probably not meant; in the answer to a submission only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
@@ -56,6 +60,19 @@ pub struct Sweep {
     pub appended: Vec<AppendRequest>,
     /// Where to read more.
     pub links: SweepLinks,
+}
+
+/// What goes with a sweep that is deleted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct SweepDeletion {
+    /// Whether this only tells what would be deleted.
+    pub dry_run: bool,
+    /// Points of the sweep.
+    pub points: u64,
+    /// Results that no other sweep has. They go with the next collection, and so do their tables.
+    pub results: u64,
+    /// Size of their tables.
+    pub bytes: u64,
 }
 
 /// The state of a sweep as a whole.

@@ -1,18 +1,15 @@
 //! Collecting garbage: what has reached its age, and blobs that no row names.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_server::Retaining;
 use drillsweep_store::{Garbage, RetentionPolicy, Role, Store};
-use serde_json::json;
+use drillsweep_table::quantity::tables::HISTORY;
 
 use crate::print;
 use crate::service::DataArguments;
-
-/// The artifacts that hold recordings: large, and made again from their scenario when needed.
-const RECORDINGS: [&str; 1] = ["history"];
 
 const DAY: Duration = Duration::from_secs(86_400);
 
@@ -26,6 +23,13 @@ pub(crate) struct GcArguments {
     /// Print JSON.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    retention: RetentionArguments,
+}
+
+/// How long data are kept.
+#[derive(Args, Clone)]
+pub(crate) struct RetentionArguments {
     /// Days for which recordings (histories; orbits and spectra are cut from them) are kept.
     #[arg(long, default_value_t = 30)]
     recordings_days: u32,
@@ -40,18 +44,21 @@ pub(crate) struct GcArguments {
     grace_hours: u32,
 }
 
+impl RetentionArguments {
+    /// What is kept for how long.
+    pub(crate) fn policy(&self) -> RetentionPolicy {
+        let mut policy = Retaining::default().policy;
+        policy.artifact_ages.insert(HISTORY.name.to_owned(), DAY * self.recordings_days);
+        policy.other_artifacts = DAY * self.tables_days;
+        policy.events = DAY * self.events_days;
+        policy.blob_grace = Duration::from_secs(3_600) * self.grace_hours;
+        policy
+    }
+}
+
 /// Deletes expired data, and reports how much that was.
 pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
-    let recordings = DAY * arguments.recordings_days;
-    let policy = RetentionPolicy {
-        artifact_ages: RECORDINGS
-            .iter()
-            .map(|name| ((*name).to_owned(), recordings))
-            .collect::<BTreeMap<_, _>>(),
-        other_artifacts: DAY * arguments.tables_days,
-        events: DAY * arguments.events_days,
-        blob_grace: Duration::from_secs(3_600) * arguments.grace_hours,
-    };
+    let policy = arguments.retention.policy();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let garbage = runtime.block_on(async {
         let store = Store::open(&arguments.data.existing_store(Role::Server)?).await?;
@@ -60,6 +67,12 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
         store.close().await;
         anyhow::Ok(garbage)
     })?;
+    if arguments.json {
+        let mut report = garbage.to_json();
+        report["dry_run"] = arguments.dry_run.into();
+        print(&serde_json::to_string_pretty(&report)?);
+        return Ok(());
+    }
     let Garbage {
         sweeps,
         results,
@@ -71,22 +84,6 @@ pub(crate) fn gc(arguments: &GcArguments) -> anyhow::Result<()> {
         unfinished_uploads,
         unfinished_bytes,
     } = garbage;
-    if arguments.json {
-        let report = json!({
-            "dry_run": arguments.dry_run,
-            "sweeps": sweeps,
-            "results": results,
-            "artifacts": artifacts,
-            "scenarios": scenarios,
-            "events": events,
-            "blobs": blobs,
-            "blob_bytes": blob_bytes,
-            "unfinished_uploads": unfinished_uploads,
-            "unfinished_bytes": unfinished_bytes,
-        });
-        print(&serde_json::to_string_pretty(&report)?);
-        return Ok(());
-    }
     let verb = if arguments.dry_run { "would be deleted" } else { "deleted" };
     print(&format!(
         "{verb}: {sweeps} sweeps, {results} results, {artifacts} artifacts, {scenarios} scenarios, {events} events\n\

@@ -9,7 +9,7 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
-use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits};
+use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::fs::Mode;
@@ -19,6 +19,7 @@ use tokio::process::{Child, Command};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
 
+use crate::gc::RetentionArguments;
 use crate::token;
 
 /// Added to the niceness of a worker: the server answers while all cores simulate.
@@ -53,6 +54,11 @@ struct ListenArguments {
     /// Requests that an owner may make at once (the size of the token bucket).
     #[arg(long, default_value_t = OwnerLimits::default().request_burst)]
     request_burst: NonZeroU32,
+    /// How often what need not be kept any more is deleted, such as `24h`; `0` leaves that to `drillsweep gc`.
+    #[arg(long, env = "DRILLSWEEP_RETENTION_INTERVAL", default_value = "24h", value_parser = parse_interval)]
+    retention_interval: Duration,
+    #[command(flatten)]
+    retention: RetentionArguments,
     /// Points of an owner that may be queued or running.
     #[arg(long, default_value_t = OwnerLimits::default().open_points)]
     open_points: u64,
@@ -172,6 +178,11 @@ fn parse_span(text: &str) -> anyhow::Result<Duration> {
     span.with_context(|| format!("write a time span such as 3h, 90m or 600s, got {text:?}"))
 }
 
+/// A time span, or 0 for never.
+fn parse_interval(text: &str) -> anyhow::Result<Duration> {
+    if text == "0" { Ok(Duration::ZERO) } else { parse_span(text) }
+}
+
 fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
     Ok(tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?)
 }
@@ -217,6 +228,10 @@ async fn serve_until(
             requests_per_second: arguments.requests_per_second,
             request_burst: arguments.request_burst,
             open_points: arguments.open_points,
+        },
+        retention: Retaining {
+            policy: arguments.retention.policy(),
+            interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
         },
         ..Config::default()
     };

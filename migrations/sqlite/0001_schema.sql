@@ -23,6 +23,8 @@ CREATE TABLE sweep (
     refreshes               INTEGER NOT NULL DEFAULT 0,
     -- Raised with every change of one of its points; the number of its last event.
     version                 INTEGER NOT NULL DEFAULT 1,
+    -- Raised with every change that somebody asked for.
+    revision                INTEGER NOT NULL DEFAULT 1,
     -- Points by the state of their work, kept by the trigger `work_changes_state`: counting them at every look would cost
     -- more than computing them at some size of sweep.
     points                  INTEGER NOT NULL,
@@ -111,6 +113,11 @@ CREATE TABLE work (
     ) VIRTUAL,
     -- Still to be computed, or under way. All else is final, and changes only if somebody asks for it.
     is_open          INTEGER NOT NULL GENERATED ALWAYS AS (stage IN ('queued', 'running')) VIRTUAL,
+    -- How cancelled sweeps that have it count it: what goes on for others is cancelled for them, what is being stopped has still to
+    -- end.
+    stage_of_cancelled TEXT  NOT NULL GENERATED ALWAYS AS (
+        CASE WHEN is_open AND NOT cancel_requested THEN 'cancelled' ELSE stage END
+    ) VIRTUAL,
     -- Wanted by paused sweeps only: not handed out until one of them goes on.
     held             INTEGER NOT NULL DEFAULT 0,
     -- Within its owner the most urgent goes first, then the least place in the order asked for.
@@ -152,6 +159,8 @@ CREATE INDEX work_leased ON work (lease_until) WHERE state = 'leased';
 CREATE INDEX work_waiting ON work (ready_at) WHERE state = 'waiting';
 CREATE INDEX work_open ON work (vtime) WHERE is_open;
 CREATE INDEX work_open_by_owner ON work (owner, vtime) WHERE is_open;
+-- Whether a version of the numbers is waited for.
+CREATE INDEX work_open_by_version ON work (physics_version) WHERE is_open;
 -- What was given up, the latest first.
 CREATE INDEX work_given_up ON work (changed) WHERE stage = 'failed';
 -- Whether a base is in use: the garbage collector asks it of every base, and so does the reference when one is deleted.
@@ -160,9 +169,9 @@ CREATE INDEX work_by_base ON work (base);
 -- Work goes its ways and no others, whichever statement moves it.
 CREATE TRIGGER work_keeps_to_its_transitions AFTER UPDATE OF state ON work
 WHEN NEW.state <> OLD.state AND NOT CASE OLD.state
-         WHEN 'queued'  THEN NEW.state IN ('leased', 'done', 'cancelled')
+         WHEN 'queued'  THEN NEW.state IN ('leased', 'done', 'failed', 'cancelled')
          WHEN 'leased'  THEN NEW.state IN ('waiting', 'queued', 'done', 'failed', 'dead', 'cancelled')
-         WHEN 'waiting' THEN NEW.state IN ('queued', 'done', 'cancelled')
+         WHEN 'waiting' THEN NEW.state IN ('queued', 'done', 'failed', 'cancelled')
          ELSE NEW.state = 'queued'
      END
 BEGIN
@@ -197,8 +206,13 @@ CREATE TABLE event (
 
 -- A change of a work item's state reaches every sweep that has it in the same transaction, whichever statement
 -- made it: counts, version, end, event. A sweep may have the same work item at several points, and verify points by it; it
--- is finished when neither its points nor its reference runs have an open one.
-CREATE TRIGGER work_changes_state AFTER UPDATE OF state ON work WHEN NEW.state <> OLD.state
+-- is finished when neither its points nor its reference runs have an open one. A cancelled sweep counts by `stage_of_cancelled`, and
+-- of what others compute it hears only the outcome.
+--
+-- The version of a finished sweep is one more than the number of its last event: who has seen that event, and not the end, is
+-- told from who has seen both.
+CREATE TRIGGER work_changes_state AFTER UPDATE OF state, cancel_requested ON work
+WHEN NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled
 BEGIN
     UPDATE sweep SET
         version                 = version + 1,
@@ -220,16 +234,35 @@ BEGIN
         END
     FROM (SELECT sweep_id, sum(verifies = 0) AS points, sum(verifies) AS verifications
           FROM point WHERE work_key = NEW.key GROUP BY sweep_id) AS share,
-         (SELECT (NEW.stage = 'queued') - (OLD.stage = 'queued')       AS queued,
-                 (NEW.stage = 'running') - (OLD.stage = 'running')     AS running,
-                 (NEW.stage = 'done') - (OLD.stage = 'done')           AS done,
-                 (NEW.stage = 'failed') - (OLD.stage = 'failed')       AS failed,
-                 (NEW.stage = 'cancelled') - (OLD.stage = 'cancelled') AS cancelled) AS step
-    WHERE sweep.id = share.sweep_id;
+         (SELECT of_cancelled,
+                 (after = 'queued') - (before = 'queued')       AS queued,
+                 (after = 'running') - (before = 'running')     AS running,
+                 (after = 'done') - (before = 'done')           AS done,
+                 (after = 'failed') - (before = 'failed')       AS failed,
+                 (after = 'cancelled') - (before = 'cancelled') AS cancelled
+          FROM (SELECT 0 AS of_cancelled, OLD.stage AS before, NEW.stage AS after
+                WHERE NEW.state <> OLD.state
+                UNION ALL
+                SELECT 1, OLD.stage_of_cancelled, NEW.stage_of_cancelled
+                WHERE NEW.stage_of_cancelled <> OLD.stage_of_cancelled
+                   OR (NEW.state <> OLD.state AND NOT NEW.is_open))) AS step
+    WHERE sweep.id = share.sweep_id AND sweep.cancelled = step.of_cancelled;
 
     INSERT INTO event (sweep_id, seq, kind, work_key, at)
-    SELECT id, version, NEW.state, NEW.key, NEW.changed FROM sweep
-    WHERE id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key);
+    SELECT id, version,
+           CASE WHEN cancelled <> 0 AND NEW.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE NEW.state END,
+           NEW.key, NEW.changed
+    FROM sweep
+    WHERE id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
+      AND CASE cancelled
+              WHEN 0 THEN NEW.state <> OLD.state
+              ELSE NEW.stage_of_cancelled <> OLD.stage_of_cancelled OR (NEW.state <> OLD.state AND NOT NEW.is_open)
+          END;
+
+    UPDATE sweep SET version = version + 1
+    WHERE finished IS NOT NULL
+      AND id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
+      AND EXISTS (SELECT 1 FROM event WHERE event.sweep_id = sweep.id AND event.seq = sweep.version);
 END;
 
 -- What came of it.
@@ -287,6 +320,15 @@ CREATE TABLE machine_speed (
     speed           TEXT    NOT NULL,
     measured        INTEGER NOT NULL,
     PRIMARY KEY (host, physics_version)
+) STRICT;
+
+-- The last collection of what need not be kept any more: one row, once there has been one.
+CREATE TABLE collection (
+    id      INTEGER NOT NULL PRIMARY KEY CHECK (id = 1),
+    started INTEGER NOT NULL,
+    -- When one ended last, and what it deleted, a JSON object.
+    ended   INTEGER,
+    deleted TEXT
 ) STRICT;
 
 -- Who may talk to the service. Only hashes: who reads the database learns no token.

@@ -12,5 +12,6 @@ mod serve;
 
 pub use app::Config;
 pub use app::limit::OwnerLimits;
+pub use app::retain::Retaining;
 pub use router::{openapi_json, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

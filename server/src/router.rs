@@ -40,7 +40,7 @@ pub(crate) fn routes(app: &App) -> Router {
 fn documented() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(sweeps::create, sweeps::list))
-        .routes(routes!(sweeps::show, sweeps::change))
+        .routes(routes!(sweeps::show, sweeps::change, sweeps::delete))
         .routes(routes!(sweeps::cancel))
         .routes(routes!(sweeps::retry))
         .routes(routes!(sweeps::pause))
@@ -68,6 +68,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(status::workers))
         .routes(routes!(status::queue))
         .routes(routes!(status::limits))
+        .routes(routes!(status::retention))
         .routes(routes!(show))
         // For people: no part of what programs talk to.
         .route("/docs", get(docs::start))

@@ -3,13 +3,15 @@
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
+use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_store::{Store, StoreError, TokensPresent};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
-use tokio::time::MissedTickBehavior;
+use tokio::time::{Instant, MissedTickBehavior};
 
-use crate::app::{App, Config};
+use crate::app::{App, Config, retain};
 use crate::route::metrics;
+use crate::route::status::WORKER_SILENCE;
 use crate::router;
 
 /// Where the service listens by default: this machine only.
@@ -69,6 +71,7 @@ pub async fn serve(
     let mut stopped = stopping.clone();
     let app = App::new(store, config, stopping);
     let reaper = tokio::spawn(reap_expired_leases(app.clone()));
+    let collector = tokio::spawn(retain::collect(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         tokio::spawn(async move { axum::serve(listener, routes).await })
@@ -87,6 +90,7 @@ pub async fn serve(
         () = drained => Err(ServeError::DrainTimeout(drain_timeout)),
     };
     reaper.abort();
+    collector.abort();
     if let Some(observed) = observed {
         observed.abort();
     }
@@ -96,6 +100,8 @@ pub async fn serve(
 /// Gives the points of dead workers back to the queue, time after time, until the service stops. Workers do
 /// the same when they claim; this keeps what clients see right when there are none.
 async fn reap_expired_leases(mut app: App) {
+    // Workers of an earlier version that have been started with the service must have had the time to say so.
+    let outdated_from = Instant::now() + WORKER_SILENCE;
     let mut ticks = tokio::time::interval(app.config.reap_interval);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
@@ -111,6 +117,18 @@ async fn reap_expired_leases(mut app: App) {
                 tracing::warn!(number, "leases have expired; their points are queued again");
             }
             Err(error) => tracing::error!(%error, "the search for expired leases failed"),
+        }
+        if Instant::now() < outdated_from {
+            continue;
+        }
+        match app.store.end_outdated(PHYSICS_VERSION.into(), WORKER_SILENCE.as_millis() as i64).await {
+            Ok(0) => {}
+            Ok(number) => tracing::warn!(
+                number,
+                physics_version = PHYSICS_VERSION,
+                "points of earlier physics versions have failed: no worker computes them any more"
+            ),
+            Err(error) => tracing::error!(%error, "the search for points of earlier physics versions failed"),
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::state::{WorkKey, WorkState, work_key};
 /// A change of a work item that a sweep has among its points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
-    /// The sweep's version after the change: it rises, with gaps where the sweep itself changed.
+    /// The sweep's version after the change: it rises, with gaps where the sweep itself changed or ended.
     pub seq: i64,
     /// The new state.
     pub state: WorkState,

@@ -10,6 +10,7 @@ use crate::error::{Result, StoreError};
 use crate::point::ScenarioText;
 use crate::sql;
 use crate::state::{WorkKey, work_key};
+use crate::submit::ROWS_AT_ONCE;
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
 const CRASH_LIMIT: i64 = 3;
@@ -355,6 +356,33 @@ impl Store {
         }
         sqlx::query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.pool).await?;
         Ok(expired.len() as u64)
+    }
+
+    /// Ends work whose version of the numbers is earlier than the one that is computed now, and that no worker heard of within the last
+    /// `silence_ms` computes: it would wait for ever. Tells how much that was.
+    ///
+    /// # Errors
+    /// When the database fails; what was ended until then stays so.
+    pub async fn end_outdated(&self, physics_version: i64, silence_ms: i64) -> Result<u64> {
+        let mut ended = 0;
+        loop {
+            // Most of the time there is nothing: look before taking the write lock.
+            let is_anything: bool = sqlx::query_scalar(sql::queue::IS_ANYTHING_OUTDATED)
+                .bind(physics_version)
+                .bind(silence_ms)
+                .fetch_one(&self.pool)
+                .await?;
+            if !is_anything {
+                return Ok(ended);
+            }
+            ended += sqlx::query(sql::queue::END_OUTDATED)
+                .bind(physics_version)
+                .bind(silence_ms)
+                .bind(ROWS_AT_ONCE as i64)
+                .execute(&self.pool)
+                .await?
+                .rows_affected();
+        }
     }
 
     /// Work items that are not final, by state.

@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::time::Duration;
 
+use serde_json::{Value, json};
 use sqlx::{Sqlite, Transaction};
 
 use crate::blob::StoredObject;
@@ -60,19 +61,72 @@ pub struct Garbage {
     pub unfinished_bytes: u64,
 }
 
+/// When garbage was collected last.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Collection {
+    /// When the last one began \[ms since the epoch\].
+    pub started: i64,
+    /// When one ended last \[ms since the epoch\].
+    pub ended: Option<i64>,
+    /// What that deleted, as [`Garbage::to_json`] writes it.
+    pub deleted_json: Option<String>,
+}
+
+impl Garbage {
+    /// The numbers as a JSON object, by the names of the fields.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "sweeps": self.sweeps,
+            "results": self.results,
+            "artifacts": self.artifacts,
+            "scenarios": self.scenarios,
+            "events": self.events,
+            "blobs": self.blobs,
+            "blob_bytes": self.blob_bytes,
+            "unfinished_uploads": self.unfinished_uploads,
+            "unfinished_bytes": self.unfinished_bytes,
+        })
+    }
+}
+
 impl Store {
-    /// Deletes what need not be kept, and tells what it was; a dry run only tells.
+    /// Deletes what need not be kept, and tells what it was; a dry run only tells. It is noted when that was done last. Each kind of
+    /// row is deleted by itself, so that nobody has to wait for all of them.
     ///
     /// # Errors
     /// When the database or the object store fails; what was deleted until then stays deleted.
     pub async fn collect_garbage(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
+        if is_dry_run {
+            return self.collect(policy, true).await;
+        }
+        sqlx::query(sql::collection::BEGIN).fetch_all(&self.pool).await?;
+        let garbage = self.collect(policy, false).await?;
+        sqlx::query(sql::collection::END).bind(garbage.to_json().to_string()).execute(&self.pool).await?;
+        Ok(garbage)
+    }
+
+    /// The last collection; none where there was none yet.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn last_collection(&self) -> Result<Option<Collection>> {
+        let last: Option<(i64, Option<i64>, Option<String>)> =
+            sqlx::query_as(sql::collection::LAST).fetch_optional(&self.pool).await?;
+        Ok(last.map(|(started, ended, deleted_json)| Collection { started, ended, deleted_json }))
+    }
+
+    async fn collect(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
         let mut garbage = Garbage::default();
         let mut tx = self.write().await?;
         let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
         garbage.sweeps = delete_expired_sweeps(&mut tx, now).await?;
+        tx = self.go_on(tx, is_dry_run).await?;
         garbage.results = delete_unwanted_work(&mut tx).await?;
+        tx = self.go_on(tx, is_dry_run).await?;
         garbage.scenarios = delete_unused_scenarios(&mut tx).await?;
+        tx = self.go_on(tx, is_dry_run).await?;
         garbage.artifacts = expire_artifacts(&mut tx, policy, now).await?;
+        tx = self.go_on(tx, is_dry_run).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
         let named: HashSet<String> =
             sqlx::query_scalar(sql::retention::BLOBS_IN_USE).fetch_all(&mut *tx).await?.into_iter().collect();
@@ -101,6 +155,19 @@ impl Store {
             sqlx::query(sql::retention::TRUNCATE_LOG).fetch_all(&self.pool).await?;
         }
         Ok(garbage)
+    }
+
+    /// Lets others write between two steps. A dry run undoes them all together in the end.
+    async fn go_on(
+        &self,
+        tx: Transaction<'static, Sqlite>,
+        is_dry_run: bool,
+    ) -> Result<Transaction<'static, Sqlite>> {
+        if is_dry_run {
+            return Ok(tx);
+        }
+        tx.commit().await?;
+        self.write().await
     }
 
     /// Deletes those of the objects that no row names now, under the lock that rows are written under.

@@ -56,6 +56,11 @@ statements! {
     clock {
         NOW = "now",
     }
+    collection {
+        BEGIN = "begin",
+        END = "end",
+        LAST = "last",
+    }
     event {
         LIST = "list",
     }
@@ -87,11 +92,13 @@ statements! {
         EARLIER_BLOBS = "earlier_blobs",
         EARLIER_RESULT = "earlier_result",
         END_LEASES = "end_leases",
+        END_OUTDATED = "end_outdated",
         FAIL = "fail",
         FINISH = "finish",
         INSERT_ARTIFACT = "insert_artifact",
         INSERT_RESULT = "insert_result",
         IS_ANYTHING_DUE = "is_anything_due",
+        IS_ANYTHING_OUTDATED = "is_anything_outdated",
         KEEP_CHECKPOINT = "keep_checkpoint",
         KEEP_DISAGREEMENT = "keep_disagreement",
         NOTE_DISAGREEMENT = "note_disagreement",
@@ -149,11 +156,17 @@ statements! {
         CANCEL_WORK = "cancel_work",
         CHANGE = "change",
         CHANGE_PRIORITY_OF_WORK = "change_priority_of_work",
+        COUNT_EVENTS = "count_events",
+        DELETABLE = "deletable",
+        DELETE = "delete",
         HOLD_BACK = "hold_back",
         KEEP_RUNNING_WORK = "keep_running_work",
+        LEAVE_WORK = "leave_work",
         LIST = "list",
         ONE = "one",
+        OWN_RESULTS = "own_results",
         PAUSE = "pause",
+        RECOUNT = "recount",
         RETRY_WORK = "retry_work",
         REVIVE = "revive",
         VERSION = "version",
@@ -194,6 +207,7 @@ mod tests {
     const SMALL: &[&str] = &[
         "CONSTANT",
         "clock",
+        "collection",
         "json_each",
         "machine_speed",
         "owner_turn",
@@ -201,6 +215,7 @@ mod tests {
         "worker",
         "work_leased",
         "work_open",
+        "work_open_by_version",
         "work_waiting",
         "result_disagrees",
     ];

@@ -57,7 +57,12 @@ pub const TRANSITIONS: &[Transition] = {
     &[
         Transition { from: Queued, to: Leased, cause: "a worker claims it" },
         Transition { from: Queued, to: Cancelled, cause: "no sweep wants it any more" },
-        Transition { from: Queued, to: Done, cause: "no sweep wants it any more, its earlier result stays" },
+        Transition {
+            from: Queued,
+            to: Done,
+            cause: "its earlier result stays, since no sweep wants it or no worker computes it any more",
+        },
+        Transition { from: Queued, to: Failed, cause: "no worker computes its physics version any more" },
         Transition { from: Leased, to: Done, cause: "its result is stored, or its earlier one stays" },
         Transition {
             from: Leased,
@@ -70,8 +75,17 @@ pub const TRANSITIONS: &[Transition] = {
         Transition { from: Leased, to: Queued, cause: "the worker gives it back or dies" },
         Transition { from: Waiting, to: Queued, cause: "the retry is due" },
         Transition { from: Waiting, to: Cancelled, cause: "no sweep wants it any more" },
-        Transition { from: Waiting, to: Done, cause: "no sweep wants it any more, its earlier result stays" },
-        Transition { from: Done, to: Queued, cause: "a sweep asks to recompute it" },
+        Transition {
+            from: Waiting,
+            to: Done,
+            cause: "its earlier result stays, since no sweep wants it or no worker computes it any more",
+        },
+        Transition { from: Waiting, to: Failed, cause: "no worker computes its physics version any more" },
+        Transition {
+            from: Done,
+            to: Queued,
+            cause: "a sweep asks to recompute it, or a table of its result is lost",
+        },
         Transition { from: Failed, to: Queued, cause: "retried, or a sweep asks to recompute it" },
         Transition { from: Dead, to: Queued, cause: "retried, or a sweep asks to recompute it" },
         Transition { from: Cancelled, to: Queued, cause: "retried, or a sweep wants it" },

@@ -15,7 +15,7 @@ use crate::state::{WorkKey, work_key};
 pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
 
 /// Rows of one statement: enough that the calls do not count.
-const ROWS_AT_ONCE: usize = 1_000;
+pub(crate) const ROWS_AT_ONCE: usize = 1_000;
 
 /// A sweep to store.
 #[derive(Debug, Clone)]

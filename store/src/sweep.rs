@@ -24,6 +24,8 @@ pub struct SweepRecord {
     pub priority: i64,
     /// Raised with every change of one of its points.
     pub version: i64,
+    /// Raised with every change that somebody asked for.
+    pub revision: i64,
     /// True once it was cancelled.
     pub is_cancelled: bool,
     /// True while its points are not handed out.
@@ -103,7 +105,8 @@ impl Store {
     }
 
     /// Cancels a sweep: its points that no other live sweep wants are cancelled, and the runs that verify them; those under way as
-    /// soon as their worker hears of it. False if there is no such sweep.
+    /// soon as their worker hears of it. What goes on for another sweep counts as cancelled for this one, until there is a result.
+    /// False if there is no such sweep.
     ///
     /// # Errors
     /// When the database fails.
@@ -111,9 +114,13 @@ impl Store {
         let mut tx = self.write().await?;
         let changed = sqlx::query(sql::sweep::CANCEL).bind(id).execute(&mut *tx).await?.rows_affected();
         if changed == 0 {
-            return Ok(false);
+            let version: Option<i64> =
+                sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&mut *tx).await?;
+            return Ok(version.is_some());
         }
         sqlx::query(sql::sweep::CANCEL_WORK).bind(id).execute(&mut *tx).await?;
+        let left = sqlx::query(sql::sweep::LEAVE_WORK).bind(id).execute(&mut *tx).await?.rows_affected();
+        sqlx::query(sql::sweep::COUNT_EVENTS).bind(id).bind(left as i64).execute(&mut *tx).await?;
         hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(true)
@@ -140,11 +147,16 @@ impl Store {
     }
 
     /// Changes what can be changed of a sweep. Work that is open takes the priority of the most urgent live sweep that has
-    /// it. False if there is no such sweep.
+    /// it. Where a revision is expected, a sweep of another one stays as it is.
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn change_sweep(&self, id: &str, changes: &SweepChanges) -> Result<bool> {
+    pub async fn change_sweep(
+        &self,
+        id: &str,
+        changes: &SweepChanges,
+        expected: Option<i64>,
+    ) -> Result<ChangeOutcome> {
         let mut tx = self.write().await?;
         let changed = sqlx::query(sql::sweep::CHANGE)
             .bind(id)
@@ -155,14 +167,60 @@ impl Store {
             .bind(changes.is_pinned)
             .bind(changes.expires.is_some())
             .bind(changes.expires.flatten())
+            .bind(expected)
             .execute(&mut *tx)
             .await?
             .rows_affected();
-        if changed == 1 && changes.priority.is_some() {
+        if changed == 0 {
+            let version: Option<i64> =
+                sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&mut *tx).await?;
+            return Ok(version.map_or(ChangeOutcome::NoSuchSweep, |_| ChangeOutcome::OtherRevision));
+        }
+        if changes.priority.is_some() {
             sqlx::query(sql::sweep::CHANGE_PRIORITY_OF_WORK).bind(id).execute(&mut *tx).await?;
         }
         tx.commit().await?;
-        Ok(changed == 1)
+        Ok(ChangeOutcome::Changed)
+    }
+
+    /// Deletes a sweep that is finished and not pinned, with its points and events, and tells what that is; a dry run only tells.
+    /// Its results stay as long as other sweeps have them, and the others go with the next
+    /// [collection](Self::collect_garbage). Where a revision is expected, a sweep of another one stays.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn delete_sweep(
+        &self,
+        id: &str,
+        expected: Option<i64>,
+        is_dry_run: bool,
+    ) -> Result<DeleteOutcome> {
+        let (results, bytes): (i64, i64) =
+            sqlx::query_as(sql::sweep::OWN_RESULTS).bind(id).fetch_one(&self.pool).await?;
+        let mut tx = self.write().await?;
+        let sweep: Option<(i64, bool, Option<i64>, i64)> =
+            sqlx::query_as(sql::sweep::DELETABLE).bind(id).fetch_optional(&mut *tx).await?;
+        let Some((revision, is_pinned, finished, points)) = sweep else {
+            return Ok(DeleteOutcome::NoSuchSweep);
+        };
+        if expected.is_some_and(|expected| expected != revision) {
+            return Ok(DeleteOutcome::OtherRevision);
+        }
+        if is_pinned {
+            return Ok(DeleteOutcome::Pinned);
+        }
+        if finished.is_none() {
+            return Ok(DeleteOutcome::Unfinished);
+        }
+        if !is_dry_run {
+            sqlx::query(sql::sweep::DELETE).bind(id).execute(&mut *tx).await?;
+            tx.commit().await?;
+        }
+        Ok(DeleteOutcome::Deleted {
+            points: points.unsigned_abs(),
+            results: results.unsigned_abs(),
+            bytes: bytes.unsigned_abs(),
+        })
     }
 
     /// Queues the failed and cancelled points of a sweep, and the runs that verify them, again, behind what their owner has in the
@@ -176,6 +234,7 @@ impl Store {
             sqlx::query_scalar(sql::sweep::REVIVE).bind(id).fetch_optional(&mut *tx).await?;
         let Some(owner) = owner else { return Ok(None) };
         sqlx::query(sql::sweep::KEEP_RUNNING_WORK).bind(id).execute(&mut *tx).await?;
+        sqlx::query(sql::sweep::RECOUNT).bind(id).execute(&mut *tx).await?;
         let order = end_of_order(&mut tx, &owner).await?;
         let queued = sqlx::query(sql::sweep::RETRY_WORK)
             .bind(id)
@@ -189,6 +248,39 @@ impl Store {
         tx.commit().await?;
         Ok(Some(queued))
     }
+}
+
+/// What became of a change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangeOutcome {
+    /// It is made.
+    Changed,
+    /// Somebody changed the sweep since the revision that was expected; it stays as it is.
+    OtherRevision,
+    /// There is no such sweep.
+    NoSuchSweep,
+}
+
+/// What became of a deletion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeleteOutcome {
+    /// It is deleted, or would be.
+    Deleted {
+        /// Its points.
+        points: u64,
+        /// Results that no other sweep has.
+        results: u64,
+        /// Size of their tables.
+        bytes: u64,
+    },
+    /// It is pinned, and stays.
+    Pinned,
+    /// Some of its points are not final; it stays.
+    Unfinished,
+    /// Somebody changed the sweep since the revision that was expected; it stays.
+    OtherRevision,
+    /// There is no such sweep.
+    NoSuchSweep,
 }
 
 /// What is changed of a sweep; what is absent stays.
@@ -239,6 +331,7 @@ impl SweepRecord {
             request_json: row.try_get("request")?,
             priority: row.try_get("priority")?,
             version: row.try_get("version")?,
+            revision: row.try_get("revision")?,
             is_cancelled: row.try_get("cancelled")?,
             is_paused: row.try_get("paused")?,
             is_pinned: row.try_get("pinned")?,

@@ -16,7 +16,9 @@ import polars
 import pytest
 
 from drillsweep import (
+    ChangedMeanwhile,
     Client,
+    Conflict,
     IdempotencyKeyReused,
     InvalidRequest,
     NoAnswer,
@@ -129,7 +131,21 @@ def test_a_sweep_is_paused_changed_found_extended_and_resumed(client: Client) ->
     with pytest.raises(InvalidRequest, match="must be the sweep's parameters"):
         sweep.append({"mud_density": [1300]})
     assert sweep.resume().state == "running"
-    sweep.cancel()
+    other = client.sweep(sweep.id)
+    other.change(priority=5)
+    with pytest.raises(ChangedMeanwhile, match="revision"):
+        sweep.change(priority=6, only_as_read=True)
+    assert other.change(name="ours", only_as_read=True).priority == 5
+    with pytest.raises(InvalidRequest, match="in the future"):
+        sweep.change(expires=timedelta(days=-1))
+    with pytest.raises(Conflict, match="pinned"):
+        sweep.delete()
+    other.change(is_pinned=False)
+    sweep.cancel().wait()
+    assert sweep.delete(dry_run=True)["points"] == 4
+    sweep.delete()
+    with pytest.raises(NotFound):
+        client.sweep(sweep.id)
 
 
 def test_what_is_known_is_taken_or_computed_anew(client: Client, sweep: Sweep) -> None:

@@ -7,4 +7,5 @@ pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod records;
+pub(crate) mod tag;
 pub(crate) mod vocabulary;

@@ -97,6 +97,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         finished: record.finished.map(timestamp).transpose()?,
         pinned: record.is_pinned,
         expires: record.expires.map(timestamp).transpose()?,
+        revision: record.revision.unsigned_abs(),
         warnings: Vec::new(),
         request: None,
         tags: read(&record.tags_json)?,
@@ -259,6 +260,6 @@ pub(crate) fn write(value: &impl serde::Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(|error| Error::internal(&error))
 }
 
-fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
+pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
     serde_json::from_str(text).map_err(|error| Error::internal(&error))
 }

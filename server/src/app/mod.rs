@@ -3,6 +3,7 @@
 pub(crate) mod limit;
 pub(crate) mod metrics;
 pub(crate) mod readiness;
+pub(crate) mod retain;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,6 +14,7 @@ use tokio::sync::{Semaphore, watch};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
 use crate::app::readiness::Readiness;
+use crate::app::retain::Retaining;
 
 /// Event streams that may be open at once; each looks at the store some times a second.
 pub(crate) const EVENT_STREAMS: usize = 1_000;
@@ -28,6 +30,8 @@ pub struct Config {
     pub drain_timeout: Duration,
     /// What one owner may ask for.
     pub owner_limits: OwnerLimits,
+    /// How long data are kept.
+    pub retention: Retaining,
 }
 
 impl Default for Config {
@@ -37,6 +41,7 @@ impl Default for Config {
             poll_interval: Duration::from_millis(200),
             drain_timeout: Duration::from_secs(10),
             owner_limits: OwnerLimits::default(),
+            retention: Retaining::default(),
         }
     }
 }

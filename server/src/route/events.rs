@@ -44,8 +44,8 @@ pub(crate) struct EventsQuery {
 /// Events `point` (data: `PointEvent`) report points, and reference runs that verify some, that changed their state; events
 /// `sweep` (data: `Sweep`, without its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and
 /// every two seconds while there is progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at
-/// the first that is kept. It ends when everything is final; who then connects again is answered 204, which ends the matter for a
-/// browser's EventSource.
+/// the first that is kept. It ends with the event `sweep` that everything is final, whose id is above that of the last `point`; who has
+/// seen that and connects again is answered 204, which ends the matter for a browser's EventSource.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/events",
@@ -80,7 +80,9 @@ pub(crate) async fn follow(
     };
     let Some(version) = app.store.sweep_version(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let sequence = after.map_or(version, |after| i64::try_from(after).unwrap_or(i64::MAX));
-    if after.is_some()
+    // A finished sweep's version is above its last event: who has seen only that one is told of the end.
+    if sequence >= version
+        && after.is_some()
         && load(&app, &id).await?.finished.is_some()
         && app.store.events(&id, sequence, 1).await?.is_empty()
     {
@@ -177,6 +179,10 @@ impl Follower {
         // The version was read before the events: all up to it have been sent.
         self.sequence = self.sequence.max(version);
         let sweep = Sweep { request: None, ..load(&self.app, &self.id).await? };
+        if sweep.finished.is_some() && self.app.store.sweep_version(&self.id).await? != Some(version) {
+            // It ended meanwhile: the next look tells of that, after the events before it.
+            return Ok(());
+        }
         self.has_ended = sweep.finished.is_some();
         if self.seen.as_ref().is_none_or(|(seen, _)| *seen != sweep) {
             self.push("sweep", &sweep)?;

@@ -4,13 +4,15 @@ use std::time::Duration;
 
 use axum::Json;
 use axum::extract::State;
-use drillsweep_api::{LIMITS, Limits, Queue, Worker, WorkerList};
+use drillsweep_api::{Collection, LIMITS, Limits, Queue, Retention, Worker, WorkerList};
 use drillsweep_store::WorkerRecord;
+use drillsweep_table::quantity::tables::HISTORY;
 
 use crate::answer::document::Problems;
 use crate::answer::error::Result;
-use crate::answer::records::timestamp;
+use crate::answer::records::{read, timestamp};
 use crate::app::App;
+use crate::app::retain::Retaining;
 
 /// Workers that have been silent for longer are not listed: five times the lease's renewal.
 pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);
@@ -54,6 +56,35 @@ pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
         paused: depths.held.unsigned_abs(),
         waiting_for_retry: depths.waiting.unsigned_abs(),
         running: depths.leased.unsigned_abs(),
+    }))
+}
+
+/// How long data are kept, and when what need not be kept was deleted last
+#[utoipa::path(
+    get,
+    path = "/v1/retention",
+    tag = "service",
+    operation_id = "get_retention",
+    responses((status = 200, description = "The ages and the last collection", body = Retention), Problems)
+)]
+pub(crate) async fn retention(State(app): State<App>) -> Result<Json<Retention>> {
+    const DAY_SECONDS: f64 = 86_400.0;
+    let last = match app.store.last_collection().await? {
+        None => None,
+        Some(last) => Some(Collection {
+            started: timestamp(last.started)?,
+            ended: last.ended.map(timestamp).transpose()?,
+            deleted: last.deleted_json.as_deref().map(read).transpose()?,
+        }),
+    };
+    let Retaining { policy, interval } = &app.config.retention;
+    let recordings = policy.artifact_ages.get(HISTORY.name).unwrap_or(&policy.other_artifacts);
+    Ok(Json(Retention {
+        interval_seconds: interval.map(|interval| interval.as_secs_f64()),
+        recordings_days: recordings.as_secs_f64() / DAY_SECONDS,
+        tables_days: policy.other_artifacts.as_secs_f64() / DAY_SECONDS,
+        events_days: policy.events.as_secs_f64() / DAY_SECONDS,
+        last,
     }))
 }
 

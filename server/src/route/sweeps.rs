@@ -9,12 +9,14 @@ use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use drillsweep_api::view::points;
 use drillsweep_api::{
-    AppendRequest, DryRun, Expansion, LIMITS, PHYSICS_VERSION, ProblemKind, RunRequest, Sweep, SweepList,
-    SweepPatch, SweepRequest, SweepState, check_patch, expand, expand_added, sample,
+    AppendRequest, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails, ProblemKind,
+    RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState, check_patch, expand,
+    expand_added, sample,
 };
 use drillsweep_chart as chart;
 use drillsweep_store::{
-    Addition, AppendOutcome, CachePolicy, NewSweep, NewVerification, SubmitOutcome, SweepChanges, SweepFilter,
+    Addition, AppendOutcome, CachePolicy, ChangeOutcome, DeleteOutcome, NewSweep, NewVerification,
+    SubmitOutcome, SweepChanges, SweepFilter,
 };
 use jiff::Timestamp;
 use serde::Deserialize;
@@ -27,6 +29,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{self, Format};
 use crate::answer::records;
+use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
@@ -168,7 +171,7 @@ async fn submit(
     };
     let sweep = Sweep { warnings: expansion.warnings, ..load(&app, &id).await? };
     let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
-    Ok((StatusCode::CREATED, [(header::LOCATION, location)], Json(sweep)).into_response())
+    Ok((StatusCode::CREATED, [(header::LOCATION, location)], Tagged(sweep)).into_response())
 }
 
 /// The problem that a sweep which computes nothing has points without an outcome.
@@ -354,17 +357,21 @@ pub(crate) enum Until {
     tag = "sweeps",
     operation_id = "get_sweep",
     params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
-    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "Of this answer; `If-Match` takes it as the sweep's revision"))),
+        Problems
+    )
 )]
 pub(crate) async fn show(
     State(app): State<App>,
     Path(id): Path<String>,
     Query(query): Query<ShowQuery>,
-) -> Result<Json<Sweep>> {
+) -> Result<Tagged> {
     let sweep = load_findings(&app, &id).await?;
     match query.wait {
-        Some(wait) => Ok(Json(wait_for(&app, sweep, wait, query.until).await?)),
-        None => Ok(Json(sweep)),
+        Some(wait) => Ok(Tagged(wait_for(&app, sweep, wait, query.until).await?)),
+        None => Ok(Tagged(sweep)),
     }
 }
 
@@ -464,22 +471,39 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
 
 /// Change name, tags, priority, pin or expiry of a sweep
 ///
-/// What is absent stays. A new priority holds for the points that wait, too.
+/// What is absent stays. A new priority holds for the points that wait, too. With `If-Match` nothing is changed of a sweep that
+/// somebody else has changed meanwhile (412); that its points have gone on does not count.
 #[utoipa::path(
     patch,
     path = "/v1/sweeps/{id}",
     tag = "sweeps",
     operation_id = "change_sweep",
-    params(("id" = String, Path, description = "Identifier of the sweep")),
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
     request_body = SweepPatch,
-    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "As of a sweep that is read"))),
+        Problems
+    )
 )]
 pub(crate) async fn change(
     State(app): State<App>,
     Path(id): Path<String>,
+    headers: HeaderMap,
     extract::Json { value: patch, .. }: extract::Json<SweepPatch>,
-) -> Result<Json<Sweep>> {
+) -> Result<Tagged> {
     check_patch(&patch)?;
+    let current = load(&app, &id).await?.revision;
+    let expected = expected_revision(&headers, current)?;
+    if let Some(Some(expires)) = patch.expires {
+        let now = records::timestamp(app.store.now_ms().await?)?;
+        if expires <= now {
+            return Err(already_past(expires, now));
+        }
+    }
     let changes = SweepChanges {
         name: patch.name,
         priority: patch.priority.map(i64::from),
@@ -487,8 +511,70 @@ pub(crate) async fn change(
         is_pinned: patch.pinned,
         expires: patch.expires.map(|expires| expires.map(Timestamp::as_millisecond)),
     };
-    app.store.change_sweep(&id, &changes).await?;
-    Ok(Json(load(&app, &id).await?))
+    match app.store.change_sweep(&id, &changes, expected).await? {
+        ChangeOutcome::Changed => Ok(Tagged(load(&app, &id).await?)),
+        ChangeOutcome::OtherRevision => Err(changed_meanwhile(load(&app, &id).await?.revision)),
+        ChangeOutcome::NoSuchSweep => Err(records::no_such_sweep(&id)),
+    }
+}
+
+/// The problem that a sweep's time is over before it is set.
+fn already_past(expires: Timestamp, now: Timestamp) -> Error {
+    let problem = FieldProblem {
+        pointer: Some("/expires".to_owned()),
+        parameter: None,
+        got: Some(expires.to_string().into()),
+        detail: format!("must be in the future, after {now}; to delete the sweep now, use DELETE"),
+    };
+    ProblemDetails::invalid_request(vec![problem]).into()
+}
+
+/// Whether a deletion is meant.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DeleteQuery {
+    /// True answers with what would be deleted, and deletes nothing.
+    #[serde(default, deserialize_with = "value::truth")]
+    dry_run: bool,
+}
+
+/// Delete a sweep
+///
+/// Its points, events and requests are gone at once; results that no other sweep has go with the next collection, and so do their
+/// tables. A sweep that is pinned, or has points that are not final, is not deleted (409).
+#[utoipa::path(
+    delete,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "delete_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        DeleteQuery,
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
+    responses((status = 200, description = "What is deleted, or would be", body = SweepDeletion), Problems)
+)]
+pub(crate) async fn delete(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(DeleteQuery { dry_run }): Query<DeleteQuery>,
+    headers: HeaderMap,
+) -> Result<Json<SweepDeletion>> {
+    let current = load(&app, &id).await?.revision;
+    let expected = expected_revision(&headers, current)?;
+    let refused = |detail: String| Err(Error::new(ProblemKind::Conflict, detail));
+    match app.store.delete_sweep(&id, expected, dry_run).await? {
+        DeleteOutcome::Deleted { points, results, bytes } => {
+            Ok(Json(SweepDeletion { dry_run, points, results, bytes }))
+        }
+        DeleteOutcome::Pinned => refused(format!("sweep {id} is pinned; take the pin away first")),
+        DeleteOutcome::Unfinished => {
+            refused(format!("sweep {id} has points that are not final; cancel it first, or wait for them"))
+        }
+        DeleteOutcome::OtherRevision => Err(changed_meanwhile(load(&app, &id).await?.revision)),
+        DeleteOutcome::NoSuchSweep => Err(records::no_such_sweep(&id)),
+    }
 }
 
 /// Add points to a sweep

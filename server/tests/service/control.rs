@@ -1,9 +1,9 @@
 //! What a sweep's owner does with it after submitting it.
 
-use axum::http::Method;
-use serde_json::json;
+use axum::http::{Method, StatusCode, header};
+use serde_json::{Value, json};
 
-use crate::bench::{Bench, json_request};
+use crate::bench::{Answer, Bench, json_request};
 
 #[tokio::test]
 async fn a_paused_sweep_says_so_and_goes_on_when_resumed() {
@@ -182,4 +182,92 @@ async fn what_was_given_up_is_listed_over_all_sweeps() {
     for query in ["cursor=1", "cursor=x.1.y", "class=unlucky", "limit=501"] {
         bench.get(&format!("/v1/failures?{query}")).await.problem(400, "invalid-parameter");
     }
+}
+
+async fn change_if(bench: &Bench, path: &str, tag: &str, body: Value) -> Answer {
+    let mut request = json_request(Method::PATCH, path, body.to_string());
+    request.headers_mut().insert(header::IF_MATCH, tag.parse().unwrap());
+    bench.send(request).await
+}
+
+#[tokio::test]
+async fn who_changes_what_another_has_changed_is_told() {
+    let bench = Bench::new().await;
+    let id =
+        bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}})).await;
+    let path = format!("/v1/sweeps/{id}");
+    let read = bench.get(&path).await;
+    let tag = read.headers[header::ETAG].to_str().unwrap().to_owned();
+    let again = bench.send(
+        axum::http::Request::get(&path)
+            .header("if-none-match", &tag)
+            .body(axum::body::Body::empty())
+            .unwrap(),
+    );
+    assert_eq!(again.await.status, StatusCode::NOT_MODIFIED);
+
+    // A point that goes on changes the answer and its tag, but is nobody's decision.
+    bench.succeed().await;
+    let current = bench.get(&path).await.headers[header::ETAG].to_str().unwrap().to_owned();
+    assert_ne!(current, tag);
+    let changed = change_if(&bench, &path, &tag, json!({"name": "anne's"})).await;
+    assert_eq!(changed.status, StatusCode::OK, "{}", changed.text());
+    let late = change_if(&bench, &path, &tag, json!({"name": "bob's"})).await;
+    late.problem(412, "precondition-failed");
+    assert_eq!(bench.get(&path).await.json()["name"], "anne's");
+    // The answer to a change has the tag for the next one.
+    let tag = changed.headers[header::ETAG].to_str().unwrap().to_owned();
+    assert_eq!(
+        change_if(&bench, &path, &format!("\"other\", {tag}"), json!({"priority": 3})).await.status,
+        200
+    );
+    assert_eq!(change_if(&bench, &path, "*", json!({"priority": 4})).await.status, 200);
+    for void in ["\"other\"", "", &format!("W/{tag}")] {
+        change_if(&bench, &path, void, json!({"priority": 5})).await.problem(412, "precondition-failed");
+    }
+    change_if(&bench, "/v1/sweeps/none", "*", json!({"priority": 5})).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn a_time_that_is_over_is_refused() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m"})).await;
+    let path = format!("/v1/sweeps/{id}");
+    let problem =
+        bench.patch(&path, json!({"expires": "2020-01-01T00:00:00Z"})).await.problem(422, "invalid-request");
+    assert_eq!(problem["errors"][0]["pointer"], "/expires");
+    assert!(problem["errors"][0]["detail"].as_str().unwrap().contains("in the future"), "{problem}");
+    assert_eq!(bench.patch(&path, json!({"expires": "2999-01-01T00:00:00Z"})).await.status, StatusCode::OK);
+}
+
+#[tokio::test]
+async fn a_sweep_is_deleted_when_that_is_meant() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m"})).await;
+    let path = format!("/v1/sweeps/{id}");
+    let delete = async |query: &str| {
+        let request = axum::http::Request::delete(format!("{path}{query}"));
+        bench.send(request.body(axum::body::Body::empty()).unwrap()).await
+    };
+    delete("").await.problem(409, "conflict");
+    bench.succeed().await;
+    assert_eq!(bench.patch(&path, json!({"pinned": true})).await.status, StatusCode::OK);
+    let problem = delete("").await.problem(409, "conflict");
+    assert!(problem["detail"].as_str().unwrap().contains("pinned"), "{problem}");
+    assert_eq!(bench.patch(&path, json!({"pinned": false})).await.status, StatusCode::OK);
+    let told = delete("?dry_run=true").await.json();
+    assert_eq!((&told["dry_run"], &told["points"], &told["results"]), (&json!(true), &json!(1), &json!(1)));
+    assert!(told["bytes"].as_u64().unwrap() > 0);
+    assert_eq!(bench.get(&path).await.status, StatusCode::OK);
+    assert_eq!(delete("").await.json()["dry_run"], false);
+    bench.get(&path).await.problem(404, "not-found");
+    delete("").await.problem(404, "not-found");
+
+    let retention = bench.get("/v1/retention").await.json();
+    assert_eq!((&retention["recordings_days"], &retention["last"]), (&json!(30.0), &Value::Null));
+    let policy = drillsweep_server::Retaining::default().policy;
+    bench.store.collect_garbage(&policy, false).await.unwrap();
+    let last = bench.get("/v1/retention").await.json()["last"].clone();
+    assert_eq!(last["deleted"]["results"], 1, "{last}");
+    assert!(last["ended"].as_str() >= last["started"].as_str());
 }

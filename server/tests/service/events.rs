@@ -77,6 +77,11 @@ async fn a_stream_tells_every_change_and_ends_with_the_sweep() {
     let rest = stream(&bench, &id, Some(middle)).await;
     let rest_of_points: Vec<_> = rest.iter().filter(|(name, ..)| name == "point").cloned().collect();
     assert_eq!(rest_of_points, of_points[4..].iter().map(|event| (*event).clone()).collect::<Vec<_>>());
+    // Who was cut off between the last point and the end hears of the end.
+    let last_point = of_points[5].1;
+    assert!(last_point < *last);
+    let end = stream(&bench, &id, Some(last_point)).await;
+    assert_eq!(end, [(name.clone(), *last, sweep.clone())]);
     let request = Request::get(format!("/v1/sweeps/{id}/events?after={last}")).body(Body::empty()).unwrap();
     assert_eq!(bench.send(request).await.status, StatusCode::NO_CONTENT);
     // Without a last event the stream begins with the sweep as it stands.

@@ -16,4 +16,5 @@ mod schema;
 mod shutdown;
 mod submit;
 mod trust;
+mod upkeep;
 mod verification;

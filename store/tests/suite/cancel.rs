@@ -39,7 +39,23 @@ pub(crate) async fn work_that_another_live_sweep_wants_goes_on<E: Engine>() {
     assert_eq!(running.lease.key, key(1));
     assert!(store.cancel_sweep("a").await.unwrap());
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
-    assert_eq!(states(&store, "a").await, [WorkState::Leased, WorkState::Cancelled, WorkState::Queued]);
+    // For the cancelled sweep it is over, whatever others have still to wait for.
+    assert_eq!(states(&store, "a").await, [WorkState::Cancelled; 3]);
+    let record = sweep_record(&store, "a").await;
+    assert_eq!(record.counts, StateCounts { total: 3, cancelled: 3, ..StateCounts::default() });
+    assert!(record.finished.is_some());
+    let told: Vec<_> = store
+        .events("a", 0, 9)
+        .await
+        .unwrap()
+        .into_iter()
+        .map(|event| (event.state, event.ordinals))
+        .collect();
+    let cancelled = |ordinal| (WorkState::Cancelled, vec![ordinal]);
+    // In the order of their keys, which is against that of the numbers.
+    assert_eq!(told, [(WorkState::Leased, vec![1]), cancelled(2), cancelled(3), cancelled(1)]);
+    assert_eq!(states(&store, "b").await, [WorkState::Leased, WorkState::Queued]);
+    assert_eq!(sweep_record(&store, "b").await.finished, None);
     // The last one that wanted it is gone.
     assert!(store.cancel_sweep("b").await.unwrap());
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
@@ -73,14 +89,51 @@ pub(crate) async fn cancelled_work_is_queued_again_when_it_is_asked_for_again<E:
     assert_eq!(states(&store, "b").await, [WorkState::Queued]);
     assert_eq!(claim(&store, "w").await.lease.key, key(2));
     assert_eq!(claim_or_none(&store, "w").await, None);
-    // The cancelled sweep has the point too, and tells the truth about it.
+    // What others have computed is no matter of the cancelled sweep until there is a result.
     let record = sweep_record(&store, "a").await;
-    assert_eq!((record.counts.running, record.counts.cancelled, record.finished), (1, 1, None));
+    assert_eq!((record.counts.running, record.counts.cancelled), (0, 2));
+    assert!(record.finished.is_some());
 
     assert_eq!(store.retry_sweep("a").await.unwrap(), Some(1));
     let record = sweep_record(&store, "a").await;
     assert!(!record.is_cancelled);
     assert_eq!(record.counts, StateCounts { total: 2, running: 1, queued: 1, ..StateCounts::default() });
+}
+
+pub(crate) async fn what_another_sweep_has_computed_is_the_cancelled_ones_too<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("a", [1, 2])).await;
+    submit(&store, &sweep("b", [1])).await;
+    assert!(store.cancel_sweep("a").await.unwrap());
+    let finished = sweep_record(&store, "a").await.finished;
+    assert!(finished.is_some());
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    assert_eq!(states(&store, "a").await, [WorkState::Done, WorkState::Cancelled]);
+    let record = sweep_record(&store, "a").await;
+    let expected = StateCounts { total: 2, done: 1, cancelled: 1, ..StateCounts::default() };
+    assert_eq!((record.counts, record.finished), (expected, finished));
+    let last = store.events("a", 0, 9).await.unwrap().pop().unwrap();
+    assert_eq!((last.state, last.ordinals), (WorkState::Done, vec![1]));
+    assert_eq!(store.sweep_version("a").await.unwrap(), Some(last.seq + 1));
+}
+
+pub(crate) async fn a_sweep_whose_points_all_go_on_for_another_one_is_finished<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("a", [1, 2])).await;
+    submit(&store, &sweep("b", [1, 2])).await;
+    // Nobody computes them: for ever, if it were not for the end of the cancelled one.
+    assert!(store.pause_sweep("b", true).await.unwrap());
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert!(sweep_record(&store, "a").await.finished.is_some());
+    assert!(store.cancel_sweep("a").await.unwrap());
+    assert_eq!(sweep_record(&store, "a").await.counts.cancelled, 2);
+    // Who takes the cancellation back sees again where they stand.
+    assert_eq!(store.retry_sweep("a").await.unwrap(), Some(0));
+    let record = sweep_record(&store, "a").await;
+    assert_eq!((record.counts.queued, record.counts.cancelled, record.finished), (2, 0, None));
+    assert!(claim_or_none(&store, "w").await.is_some());
 }
 
 pub(crate) async fn a_retry_takes_back_the_cancellation_of_running_work<E: Engine>() {

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use drillsweep_store::{
-    Addition, AppendOutcome, CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, QueueDepths,
-    StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
+    Addition, AppendOutcome, CachePolicy, ChangeOutcome, NewArtifact, NewPoint, NewResult, NewSweep,
+    QueueDepths, StateCounts, Store, SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
 
 use crate::bench::{
@@ -63,28 +63,54 @@ pub(crate) async fn what_people_decide_about_a_sweep_can_be_changed<E: Engine>()
     submit(&store, &NewSweep { priority: 3, ..sweep("c", [3]) }).await;
     let changes =
         SweepChanges { priority: Some(5), tags_json: Some(r#"["x"]"#.to_owned()), ..SweepChanges::default() };
-    assert!(store.change_sweep("b", &changes).await.unwrap());
+    assert_eq!(store.change_sweep("b", &changes, None).await.unwrap(), ChangeOutcome::Changed);
     let record = sweep_record(&store, "b").await;
     assert_eq!((record.priority, record.tags_json.as_str()), (5, r#"["x"]"#));
     assert_eq!(record.name.as_deref(), Some("sweep b"));
     // Back down: what a more urgent sweep wants too stays as urgent as that.
     let changes = SweepChanges { priority: Some(-5), name: Some(None), ..SweepChanges::default() };
-    assert!(store.change_sweep("b", &changes).await.unwrap());
+    assert_eq!(store.change_sweep("b", &changes, None).await.unwrap(), ChangeOutcome::Changed);
     assert_eq!(sweep_record(&store, "b").await.name, None);
     let expires = |at| SweepChanges { expires: Some(at), is_pinned: Some(true), ..SweepChanges::default() };
-    assert!(store.change_sweep("a", &expires(Some(7))).await.unwrap());
+    assert_eq!(store.change_sweep("a", &expires(Some(7)), None).await.unwrap(), ChangeOutcome::Changed);
     let record = sweep_record(&store, "a").await;
     assert_eq!((record.expires, record.is_pinned, record.name.as_deref()), (Some(7), true, Some("sweep a")));
-    assert!(store.change_sweep("a", &SweepChanges::default()).await.unwrap());
+    assert_eq!(
+        store.change_sweep("a", &SweepChanges::default(), None).await.unwrap(),
+        ChangeOutcome::Changed
+    );
     assert_eq!(sweep_record(&store, "a").await.expires, Some(7));
-    assert!(store.change_sweep("a", &expires(None)).await.unwrap());
+    assert_eq!(store.change_sweep("a", &expires(None), None).await.unwrap(), ChangeOutcome::Changed);
     assert_eq!(sweep_record(&store, "a").await.expires, None);
     let mut order = Vec::new();
     while let Some(claim) = claim_or_none(&store, "w").await {
         order.push(claim.lease.key);
     }
     assert_eq!(order, [key(3), key(1), key(2)]);
-    assert!(!store.change_sweep("t", &changes).await.unwrap());
+    assert_eq!(store.change_sweep("t", &changes, None).await.unwrap(), ChangeOutcome::NoSuchSweep);
+}
+
+pub(crate) async fn a_change_is_refused_where_another_one_was_made_meanwhile<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let read = sweep_record(&store, "s").await.revision;
+    // That the points go on is no change that anybody has asked for.
+    assert!(finish(&store, &claim(&store, "w").await).await);
+    let named = |name: &str| SweepChanges { name: Some(Some(name.to_owned())), ..SweepChanges::default() };
+    assert_eq!(store.change_sweep("s", &named("anne's"), Some(read)).await.unwrap(), ChangeOutcome::Changed);
+    let late = store.change_sweep("s", &named("bob's"), Some(read)).await.unwrap();
+    assert_eq!(late, ChangeOutcome::OtherRevision);
+    assert_eq!(sweep_record(&store, "s").await.name.as_deref(), Some("anne's"));
+    for step in 0..3 {
+        let before = sweep_record(&store, "s").await.revision;
+        match step {
+            0 => assert!(store.pause_sweep("s", true).await.unwrap()),
+            1 => assert!(store.cancel_sweep("s").await.unwrap()),
+            _ => assert_eq!(store.retry_sweep("s").await.unwrap(), Some(1)),
+        }
+        assert!(sweep_record(&store, "s").await.revision > before);
+    }
 }
 
 pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {

@@ -266,6 +266,33 @@ pub(crate) async fn a_worker_gets_only_work_of_its_own_numbers<E: Engine>() {
     assert_eq!(claimed.lease.key, key(1));
 }
 
+pub(crate) async fn work_of_numbers_that_nobody_computes_any_more_ends_and_says_so<E: Engine>() {
+    const SILENCE_MS: i64 = 100_000;
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2, 3])).await;
+    submit(&store, &NewSweep { physics_version: PHYSICS + 1, ..sweep("new", [4]) }).await;
+    let running = claim(&store, "old").await;
+    let retried = claim(&store, "old").await;
+    assert!(store.retry_later(&retried.lease, "{}").await.unwrap());
+    store.register_worker(&worker("old")).await.unwrap();
+    // While a worker computes them they wait.
+    assert_eq!(store.end_outdated(PHYSICS, SILENCE_MS).await.unwrap(), 0);
+    assert_eq!(store.end_outdated(PHYSICS + 1, SILENCE_MS).await.unwrap(), 0);
+
+    let later = engine.after(SILENCE_MS + 1).await;
+    assert_eq!(later.end_outdated(PHYSICS + 1, SILENCE_MS).await.unwrap(), 2);
+    assert_eq!(states(&later, "s").await, [WorkState::Leased, WorkState::Failed, WorkState::Failed]);
+    assert_eq!(states(&later, "new").await, [WorkState::Queued]);
+    let error = point_record(&later, "s", 3).await.error_json.unwrap();
+    assert!(error.contains("outdated") && error.contains(&format!("physics version {PHYSICS} ")), "{error}");
+    // What was under way ends when its worker is gone.
+    assert_eq!(running.lease.key, key(1));
+    assert_eq!(later.reap_expired().await.unwrap(), 1);
+    assert_eq!(later.end_outdated(PHYSICS + 1, SILENCE_MS).await.unwrap(), 1);
+    assert!(sweep_record(&later, "s").await.finished.is_some());
+}
+
 pub(crate) async fn the_urgent_goes_first_then_the_order_asked<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;

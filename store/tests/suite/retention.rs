@@ -3,9 +3,12 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use drillsweep_store::{Garbage, NewResult, NewSweep, RetentionPolicy, Store, StoreError, SweepChanges};
+use drillsweep_store::{
+    ChangeOutcome, DeleteOutcome, Garbage, NewResult, NewSweep, RetentionPolicy, Store, StoreError,
+    SweepChanges,
+};
 
-use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep};
+use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep, sweep_record};
 
 const HOUR: u64 = 3_600;
 const DAY: u64 = 24 * HOUR;
@@ -70,7 +73,7 @@ pub(crate) async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unle
     submit(&engine.after(20 * DAY_MS).await, &sweep("young", [2])).await;
     submit(&store, &sweep("pinned", [3])).await;
     let pin = |is_pinned| SweepChanges { is_pinned: Some(is_pinned), ..SweepChanges::default() };
-    assert!(store.change_sweep("pinned", &pin(true)).await.unwrap());
+    assert_eq!(store.change_sweep("pinned", &pin(true), None).await.unwrap(), ChangeOutcome::Changed);
     let before = engine.bytes_of_objects();
 
     let later = engine.after(31 * DAY_MS).await;
@@ -84,7 +87,7 @@ pub(crate) async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unle
     }
     assert!(point_record(&later, "old", 1).await.summary_json.is_some(), "the summary stays");
 
-    assert!(later.change_sweep("pinned", &pin(false)).await.unwrap());
+    assert_eq!(later.change_sweep("pinned", &pin(false), None).await.unwrap(), ChangeOutcome::Changed);
     let found = collect(&engine.after(51 * DAY_MS).await).await;
     assert_eq!((found.artifacts, found.blobs), (2, 2));
     assert_eq!(engine.bytes_of_objects(), before - 3 * 32);
@@ -103,7 +106,7 @@ pub(crate) async fn a_sweep_goes_at_its_time_and_leaves_what_others_have<E: Engi
     let now = store.now_ms().await.unwrap();
     for id in ["goes", "goes too", "unfinished"] {
         let changes = SweepChanges { expires: Some(Some(now + DAY_MS)), ..SweepChanges::default() };
-        assert!(store.change_sweep(id, &changes).await.unwrap());
+        assert_eq!(store.change_sweep(id, &changes, None).await.unwrap(), ChangeOutcome::Changed);
     }
     // The scenario of "stays" is not in use: its point was there, by that of "goes".
     let found = collect(&engine.after(DAY_MS / 2).await).await;
@@ -119,6 +122,40 @@ pub(crate) async fn a_sweep_goes_at_its_time_and_leaves_what_others_have<E: Engi
     submit(&store, &sweep("again", [1])).await;
     submit(&store, &sweep("more", [9])).await;
     assert!(store.sweep("again").await.unwrap().unwrap().finished.is_none());
+}
+
+pub(crate) async fn a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinished<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("a", [1, 2])).await;
+    submit(&store, &sweep("b", [2])).await;
+    let delete = async |is_dry_run| store.delete_sweep("a", None, is_dry_run).await.unwrap();
+    assert_eq!(delete(false).await, DeleteOutcome::Unfinished);
+    for _ in 0..2 {
+        assert!(finish(&store, &claim(&store, "w").await).await);
+    }
+    let pin = |is_pinned| SweepChanges { is_pinned: Some(is_pinned), ..SweepChanges::default() };
+    assert_eq!(store.change_sweep("a", &pin(true), None).await.unwrap(), ChangeOutcome::Changed);
+    assert_eq!(delete(false).await, DeleteOutcome::Pinned);
+    let revision = sweep_record(&store, "a").await.revision;
+    assert_eq!(store.change_sweep("a", &pin(false), None).await.unwrap(), ChangeOutcome::Changed);
+    let late = store.delete_sweep("a", Some(revision), false).await.unwrap();
+    assert_eq!(late, DeleteOutcome::OtherRevision);
+
+    let expected = DeleteOutcome::Deleted { points: 2, results: 1, bytes: 32 };
+    assert_eq!(delete(true).await, expected);
+    assert!(store.sweep("a").await.unwrap().is_some());
+    assert_eq!(delete(false).await, expected);
+    assert!(store.sweep("a").await.unwrap().is_none());
+    assert_eq!(delete(false).await, DeleteOutcome::NoSuchSweep);
+    // What others have stays.
+    assert!(point_record(&store, "b", 1).await.summary_json.is_some());
+    assert_eq!(store.last_collection().await.unwrap(), None);
+    let garbage = engine.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap();
+    assert_eq!((garbage.results, garbage.blobs), (1, 1));
+    let last = store.last_collection().await.unwrap().unwrap();
+    assert_eq!(last.deleted_json, Some(garbage.to_json().to_string()));
+    assert!(last.ended.is_some_and(|ended| ended >= last.started));
 }
 
 pub(crate) async fn no_row_names_a_blob_that_is_gone<E: Engine>() {

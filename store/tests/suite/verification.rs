@@ -1,8 +1,8 @@
 //! Runs that verify points: work like any other, told apart from the points.
 
 use drillsweep_store::{
-    Addition, AppendOutcome, CachePolicy, FailureFilter, NewSweep, StateCounts, SubmitOutcome, SweepChanges,
-    WorkState,
+    Addition, AppendOutcome, CachePolicy, ChangeOutcome, FailureFilter, NewSweep, StateCounts, SubmitOutcome,
+    SweepChanges, WorkState,
 };
 
 use crate::bench::{
@@ -89,7 +89,7 @@ pub(crate) async fn runs_are_cancelled_held_hurried_and_retried_with_their_sweep
     submit(&store, &sweep("other", [2])).await;
     let urgent = SweepChanges { priority: Some(5), ..SweepChanges::default() };
     submit(&store, &sweep("third", [3])).await;
-    assert!(store.change_sweep("s", &urgent).await.unwrap());
+    assert_eq!(store.change_sweep("s", &urgent, None).await.unwrap(), ChangeOutcome::Changed);
     let run = claim(&store, "w").await;
     assert_eq!(run.lease.key, key(11));
     assert!(store.finish_failed(&run.lease, "{}").await.unwrap());
@@ -145,7 +145,7 @@ pub(crate) async fn a_run_is_kept_as_long_as_its_sweep<E: Engine>() {
     assert_eq!(collect(&engine.after(2 * DAY_MS).await).await.results, 0);
     let now = store.now_ms().await.unwrap();
     let expires = SweepChanges { expires: Some(Some(now + DAY_MS)), ..SweepChanges::default() };
-    assert!(store.change_sweep("s", &expires).await.unwrap());
+    assert_eq!(store.change_sweep("s", &expires, None).await.unwrap(), ChangeOutcome::Changed);
     let found = collect(&engine.after(2 * DAY_MS).await).await;
     assert_eq!((found.sweeps, found.results, found.scenarios, found.blobs), (1, 2, 2, 2));
 }

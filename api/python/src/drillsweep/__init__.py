@@ -15,6 +15,7 @@ from drillsweep.client import Client
 from drillsweep.design import Axis, Range
 from drillsweep.point import Point, PointError
 from drillsweep.problem import (
+    ChangedMeanwhile,
     Conflict,
     DrillsweepError,
     FieldProblem,
@@ -35,6 +36,7 @@ from drillsweep.table import Table
 
 __all__ = [
     "Axis",
+    "ChangedMeanwhile",
     "Client",
     "Conflict",
     "Counts",

@@ -200,9 +200,15 @@ class Client:
         """Posts JSON and reads JSON."""
         return dict(self._send("POST", path, query=query, body=body, headers=headers).json())
 
-    def patch_json(self, path: str, body: Mapping[str, Any]) -> dict[str, Any]:
+    def patch_json(
+        self, path: str, body: Mapping[str, Any], headers: Mapping[str, str] | None = None
+    ) -> dict[str, Any]:
         """Sends a change as JSON and reads JSON."""
-        return dict(self._send("PATCH", path, body=body).json())
+        return dict(self._send("PATCH", path, body=body, headers=headers).json())
+
+    def delete_json(self, path: str, query: Mapping[str, Any]) -> dict[str, Any]:
+        """Deletes what is at a path and reads JSON."""
+        return dict(self._send("DELETE", path, query=query).json())
 
     def pages(self, path: str, entries: str, query: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """The entries of a list that is served in pages."""

@@ -95,6 +95,10 @@ class Conflict(Problem):
     """The sweep's state does not allow the operation."""
 
 
+class ChangedMeanwhile(Conflict):
+    """Somebody else has changed the sweep since it was read."""
+
+
 class IdempotencyKeyReused(Conflict):
     """The idempotency key belongs to another request."""
 
@@ -124,6 +128,7 @@ _BY_KIND: dict[str, type[Problem]] = {
     "not-found": NotFound,
     "no-such-table": NotFound,
     "no-result": NoResult,
+    "precondition-failed": ChangedMeanwhile,
     "idempotency-key-reused": IdempotencyKeyReused,
 }
 

@@ -303,6 +303,7 @@ class Sweep:
         priority: int | Unchanged = UNCHANGED,
         is_pinned: bool | Unchanged = UNCHANGED,
         expires: datetime | timedelta | Unchanged | None = UNCHANGED,
+        only_as_read: bool = False,
     ) -> Sweep:
         """Changes what is given, and leaves the rest.
 
@@ -313,6 +314,8 @@ class Sweep:
             is_pinned: Whether it, and all that belongs to it, is kept whatever its age.
             expires: When it is to be deleted, once all its points are final and unless it is pinned: a time, a span
                 from now, or None for never. A time without a zone is this machine's.
+            only_as_read: Whether to raise `ChangedMeanwhile`, and change nothing, where somebody else has changed the sweep
+                since this object read it. That its points have gone on does not count.
         """
         if isinstance(expires, timedelta):
             expires = datetime.now(timezone.utc) + expires
@@ -328,8 +331,17 @@ class Sweep:
             "expires": moment,
         }
         body = {field: value for field, value in changes.items() if not isinstance(value, Unchanged)}
-        self._data = self._client.patch_json(self.path, body)
+        headers = {"if-match": f'"{self._data["revision"]}"'} if only_as_read else None
+        self._data = self._client.patch_json(self.path, body, headers)
         return self
+
+    def delete(self, *, dry_run: bool = False) -> dict[str, Any]:
+        """Deletes it, and tells how many points and results went with it; a dry run only tells.
+
+        Raises:
+            Conflict: It is pinned, or has points that are not final.
+        """
+        return self._client.delete_json(self.path, {"dry_run": "true" if dry_run else None})
 
     def append(
         self,

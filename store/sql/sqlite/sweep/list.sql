@@ -2,13 +2,14 @@
 -- ?1 owner, ?2 sweep before which they are, ?3 how many at most, ?4 state, ?5 part of the name, ?6 tag, ?7 what the identifier begins with.
 -- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
 -- are few.
-SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,
        CASE points_running + verifications_running WHEN 0 THEN 0.0 ELSE (
            SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
-           WHERE w.state = 'leased' AND p.sweep_id = sweep.id) END AS running_progress
+           WHERE w.state = 'leased' AND p.sweep_id = sweep.id
+             AND (sweep.cancelled = 0 OR w.stage_of_cancelled = 'running')) END AS running_progress
 FROM sweep
 WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
   AND (?4 IS NULL OR ?4 = CASE WHEN cancelled <> 0 THEN 'cancelled'

@@ -2,12 +2,13 @@
 -- ?1 sweep.
 -- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
 -- are few.
-SELECT id, name, owner, request, priority, version, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,
        CASE points_running + verifications_running WHEN 0 THEN 0.0 ELSE (
            SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
-           WHERE w.state = 'leased' AND p.sweep_id = sweep.id) END AS running_progress
+           WHERE w.state = 'leased' AND p.sweep_id = sweep.id
+             AND (sweep.cancelled = 0 OR w.stage_of_cancelled = 'running')) END AS running_progress
 FROM sweep
 WHERE id = ?1

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{ModeSearch, Modes, modes};
+use drillsweep_sim::modes::{Completeness, ModeSearch, Modes, modes};
 use drillsweep_sim::statics::Equilibrium;
 
 use crate::print;
@@ -72,10 +72,19 @@ fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
             mode.extent[1]
         )?;
     }
-    writeln!(
-        text,
-        "complete to {:.3} Hz for growth and decay below {:.3} 1/s; overdamped motions are left out",
-        found.complete_to_hz, found.complete_to_rate
-    )?;
+    let (to_hz, rate) = (found.complete_to_hz, found.complete_to_rate);
+    if found.completeness == Completeness::Counted {
+        writeln!(
+            text,
+            "complete to {to_hz:.3} Hz for growth and decay below {rate:.3} 1/s, by a count of the eigenvalues; overdamped motions are left \
+             out"
+        )?;
+    } else {
+        writeln!(
+            text,
+            "searched to {to_hz:.3} Hz for growth and decay below {rate:.3} 1/s: {}; overdamped motions are left out",
+            found.completeness
+        )?;
+    }
     Ok(text)
 }

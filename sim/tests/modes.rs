@@ -8,8 +8,8 @@ use common::{STEEL, eigenvalues};
 use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
 use drillsweep_sim::linalg::BlockTridiagonal;
 use drillsweep_sim::model::{Model, add_element_matrix};
-use drillsweep_sim::modes::{Mode, ModeKind, ModeSearch, Pencil, modes, modes_of};
-use drillsweep_sim::scenario::{Effect, Scenario, Switch, preset};
+use drillsweep_sim::modes::{Completeness, Mode, ModeKind, ModeSearch, Modes, Pencil, modes, modes_of};
+use drillsweep_sim::scenario::{Effect, Material, Scenario, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
 use nalgebra::DMatrix;
 
@@ -91,6 +91,7 @@ fn every_eigenvalue_of_a_band_is_found() {
     let found =
         modes(&model, &equilibrium, &ModeSearch { from_hz, to_hz, ..ModeSearch::default() }).expect("found");
     assert!(found.complete_to_rate > 5.0 && found.complete_to_hz == to_hz);
+    assert_eq!(found.completeness, Completeness::Counted);
     let found: Vec<_> = found
         .modes
         .into_iter()
@@ -144,10 +145,16 @@ impl Beam {
     }
 
     fn modes(&self, to_hz: f64) -> Vec<Mode> {
+        let found = self.search(to_hz);
+        assert_eq!(found.completeness, Completeness::Counted);
+        found.modes
+    }
+
+    fn search(&self, to_hz: f64) -> Modes {
         let pencil = self.pencil.clone();
         let pencil = Pencil::new(pencil.mass, pencil.damping, pencil.stiffness, pencil.held);
         let depths: Vec<f64> = (0..pencil.held.len()).map(|i| i as f64 * self.element.length()).collect();
-        modes_of(&pencil, &depths, &ModeSearch { to_hz, ..ModeSearch::default() }).expect("found").modes
+        modes_of(&pencil, &depths, &ModeSearch { to_hz, ..ModeSearch::default() }).expect("found")
     }
 
     fn grows(&self, to_hz: f64) -> Option<Mode> {
@@ -290,4 +297,148 @@ fn without_falling_friction_torsion_does_not_grow() {
     assert!(grows(&scenario));
     scenario.effects.set(Effect::FrictionTorque, Switch::Off);
     assert!(!grows(&scenario), "nor without friction's torque");
+}
+
+/// The frequencies \[Hz\] of a pipe that hangs clamped, by Ritz' method with x^2 times Legendre polynomials: bending stiffness and weight,
+/// without shear and rotary inertia.
+fn hanging_frequencies(section: &BeamSection, length: f64, gravity: f64) -> Vec<f64> {
+    const TERMS: usize = 14;
+    let mass = section.density * section.area;
+    let (mut inertia, mut stiffness) =
+        (DMatrix::<f64>::zeros(TERMS, TERMS), DMatrix::<f64>::zeros(TERMS, TERMS));
+    let points = 4000;
+    for point in 0..points {
+        let x = (f64::from(point) + 0.5) / f64::from(points);
+        let t = 2.0 * x - 1.0;
+        // P, P', P'' in t by Bonnet's recurrence and its derivatives.
+        let mut legendre = vec![[1.0, 0.0, 0.0], [t, 1.0, 0.0]];
+        for n in 1..TERMS - 1 {
+            let (order, [p, q]) = (n as f64, [legendre[n], legendre[n - 1]]);
+            let next = |k: usize, extra: f64| {
+                ((2.0 * order + 1.0) * (t * p[k] + extra) - order * q[k]) / (order + 1.0)
+            };
+            legendre.push([next(0, 0.0), next(1, p[0]), next(2, 2.0 * p[1])]);
+        }
+        let shapes: Vec<[f64; 3]> = legendre
+            .iter()
+            .map(|[p, q, r]| {
+                let (q, r) = (2.0 * q, 4.0 * r);
+                [x * x * p, 2.0 * x * p + x * x * q, 2.0 * p + 4.0 * x * q + x * x * r]
+            })
+            .collect();
+        let weight = length / f64::from(points);
+        let tension = mass * gravity * length * (1.0 - x);
+        for i in 0..TERMS {
+            for j in 0..TERMS {
+                let (a, b) = (&shapes[i], &shapes[j]);
+                inertia[(i, j)] += weight * mass * a[0] * b[0];
+                stiffness[(i, j)] += weight
+                    * (tension * a[1] * b[1] / length.powi(2)
+                        + section.bending_stiffness() * a[2] * b[2] / length.powi(4));
+            }
+        }
+    }
+    let inverse = inertia.cholesky().expect("positive").l().try_inverse().expect("regular");
+    let reduced: DMatrix<f64> = &inverse * stiffness * inverse.transpose();
+    let mut squares: Vec<f64> =
+        (0.5 * (&reduced + reduced.transpose())).symmetric_eigenvalues().iter().copied().collect();
+    squares.sort_by(f64::total_cmp);
+    squares.iter().map(|square| square.sqrt() / TAU).collect()
+}
+
+#[test]
+fn hanging_pipe_has_its_modes_on_coarse_and_fine_meshes() {
+    // Of K x, a hundred thousand times smaller than its terms on 4 cm, little but rounding is left.
+    let (section, length, gravity) = (BeamSection::pipe(0.127, 0.108, &STEEL), 100.0, 9.81);
+    let expected = hanging_frequencies(&section, length, gravity);
+    assert!(expected[2] < 0.39 && expected[3] > 0.39, "{expected:?}");
+    for count in [100, 500, 2500] {
+        let mut beam = Beam::new(section, length, count).hold(0, &[0, 1, 3, 4]);
+        let unit = beam.element.tension_stiffening();
+        let weight = section.density * section.area * gravity * beam.element.length();
+        for e in 0..count {
+            let tension = weight * (count as f64 - e as f64 - 0.5);
+            add_element_matrix(&mut beam.pencil.stiffness, e, &(unit * tension));
+        }
+        let found = beam.modes(0.39);
+        assert_eq!(found.len(), 6, "{count} elements: {found:?}");
+        for (mode, order) in found.iter().zip([0, 0, 1, 1, 2, 2]) {
+            // Errors of the mesh are in proportion to (h / L)^2 of the tension's steps, and rounding's to (L / h)^4 epsilon.
+            assert!((mode.frequency_hz / expected[order] - 1.0).abs() < 1e-3, "{count} elements: {mode:?}");
+        }
+    }
+}
+
+#[test]
+fn stiff_walls_hold_as_supports_do() {
+    // A beam on a wall in its middle is one of half the length, pinned or, where it is even, clamped there: (n pi)^2 and 3.9266^2 (Blevins).
+    let length = 20.0;
+    for (material, stiffness) in [(STEEL, 1e13), (Material { density: 80.0, ..STEEL }, 1e10)] {
+        let section = BeamSection::pipe(0.02, 0.0, &material);
+        let mut beam = Beam::new(section, length, 400).pinned();
+        for dof in [0, 1] {
+            beam.pencil.stiffness.diagonal[200][(dof, dof)] += stiffness;
+        }
+        let unit = (section.bending_stiffness() / (section.density * section.area)).sqrt() / TAU;
+        let half = 0.5 * length;
+        let pinned = |n: f64| unit * (n * PI / half).powi(2);
+        let clamped = |wave: f64| unit * (wave / half).powi(2);
+        let expected = [pinned(1.0), clamped(3.926_602), pinned(2.0), clamped(7.068_583)];
+        let found = beam.modes(0.5 * (expected[3] + pinned(3.0)));
+        assert_eq!(found.len(), 8, "{stiffness:e} N/m: {found:?}");
+        for (pair, expected) in found.chunks(2).zip(expected) {
+            for mode in pair {
+                assert!((mode.frequency_hz / expected - 1.0).abs() < 1e-3, "{mode:?} against {expected} Hz");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_grows_is_found_on_a_mesh_of_thousands() {
+    // Falling friction feeds torsion of 200 m of string; steps of 4 cm or 50 cm are all the same to a wave of a kilometre.
+    let growing = |length: f64| {
+        let mut scenario = preset("hard/elements-5000").expect("shipped preset");
+        let mesh = scenario.mesh.lengths_mut().expect("has target lengths");
+        (mesh.drillpipe, mesh.collar) = (length, length);
+        let (model, search) = (
+            Model::new(&scenario).expect("valid"),
+            ModeSearch { from_hz: 2.05, to_hz: 2.2, ..ModeSearch::default() },
+        );
+        let found = modes(&model, &Equilibrium::find(&model).expect("rests"), &search).expect("found");
+        assert_eq!(found.completeness, Completeness::Counted, "{length} m");
+        let growing: Vec<Mode> = found.modes.into_iter().filter(|mode| mode.growth_rate > 0.0).collect();
+        assert_eq!(growing.len(), 1, "{length} m: {growing:?}");
+        growing[0]
+    };
+    let (fine, coarse) = (growing(0.04), growing(0.5));
+    assert_eq!(fine.kind, ModeKind::Torsional);
+    assert!((fine.frequency_hz / coarse.frequency_hz - 1.0).abs() < 1e-3, "{fine:?} against {coarse:?}");
+    assert!((fine.growth_rate / coarse.growth_rate - 1.0).abs() < 0.05, "{fine:?} against {coarse:?}");
+}
+
+/// Nodes by themselves on springs, all with one frequency.
+fn equal_oscillators(nodes: usize) -> Pencil {
+    let zero = BlockTridiagonal::zeros(nodes);
+    let (mut mass, mut stiffness) = (zero.clone(), zero.clone());
+    for node in 0..nodes {
+        for dof in 0..6 {
+            mass.diagonal[node][(dof, dof)] = 1.0;
+            stiffness.diagonal[node][(dof, dof)] = 4.0;
+        }
+    }
+    Pencil::new(mass, zero, stiffness, vec![[false; 6]; nodes])
+}
+
+#[test]
+fn equal_eigenvalues_are_searched_again_and_those_still_missing_are_told() {
+    // A Krylov space from two vectors holds two shapes of an eigenvalue, however many it has.
+    let search = ModeSearch { to_hz: 1.0, ..ModeSearch::default() };
+    let few = modes_of(&equal_oscillators(1), &[0.0], &search).expect("found");
+    assert_eq!((few.modes.len(), few.completeness), (6, Completeness::Counted));
+    let depths: Vec<f64> = (0..10).map(f64::from).collect();
+    let many = modes_of(&equal_oscillators(10), &depths, &search).expect("found");
+    assert!(many.modes.len() < 60, "too few searches");
+    // With their conjugates.
+    assert_eq!(many.completeness, Completeness::Missing(2 * (60 - many.modes.len())));
 }

@@ -43,15 +43,21 @@ pub(super) struct Neighbourhood {
     pub(super) radius: f64,
 }
 
-/// Finds the eigenvalues around `shift` in a Krylov space of `dimension`. `None` where the shift is an eigenvalue itself
-/// or the iteration breaks down.
-pub(super) fn around(shift: Complex<f64>, pencil: &Pencil, dimension: usize) -> Option<Neighbourhood> {
+/// Finds the eigenvalues around `shift` in a Krylov space of `dimension` from the start vectors of number `start`: where more eigenvalues
+/// are equal than there are start vectors, others find the rest. `None` where the shift is an eigenvalue itself or the iteration breaks
+/// down.
+pub(super) fn around(
+    shift: Complex<f64>,
+    pencil: &Pencil,
+    dimension: usize,
+    start: u64,
+) -> Option<Neighbourhood> {
     let factor = ShiftedPencil::new(shift, pencil.matrices(), &pencil.held)?;
     let free = pencil.held.as_flattened().iter().filter(|held| !**held).count();
     let dimension = dimension.min(2 * free);
     // Displacements and velocities of the wanted modes become equally large.
     let scale = shift.norm().max(1.0);
-    let mut basis = start(pencil);
+    let mut basis = start_vectors(pencil, start);
     let mut projected = DMatrix::<Complex<f64>>::zeros(dimension + BLOCK, dimension);
     for step in 0..dimension {
         let mut next = apply(shift, scale, pencil, &factor, &basis[step]);
@@ -129,10 +135,10 @@ fn apply(
 }
 
 /// Orthonormal start vectors: numbers without pattern, the same everywhere.
-fn start(pencil: &Pencil) -> Vec<Vec<Complex<f64>>> {
+fn start_vectors(pencil: &Pencil, number: u64) -> Vec<Vec<Complex<f64>>> {
     let mut basis: Vec<Vec<Complex<f64>>> = Vec::new();
     let held = pencil.held.as_flattened();
-    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+    let mut seed = 0x2545_f491_4f6c_dd1d_u64 ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     while basis.len() < BLOCK {
         let mut vector: Vec<Complex<f64>> = held
             .iter()

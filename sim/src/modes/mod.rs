@@ -3,19 +3,24 @@
 //! The equations of motion are linearised about the equilibrium with its contacts closed and sliding at the speed of rotation
 //! ([`Pencil`]): normal stiffness and damping of the wall, friction's direction and the slope of its curve, mud damping,
 //! Coriolis and flow stiffness, gyroscopic terms. What grows here grows in a run until contact or sliding limits it. Eigenvalues
-//! are found around shifts that walk along the imaginary axis, so that none of a band of frequencies is left out.
+//! are found around shifts that walk along the imaginary axis, and counted by the winding number of the determinant around the band: what was
+//! found is complete where it is as much as was counted.
 
+mod accuracy;
 mod arnoldi;
+mod count;
 mod pencil;
 mod shifted;
 mod stability;
 mod torsion;
+mod walk;
 
 pub use pencil::Pencil;
 pub use stability::{Instability, InstabilityKind, Stability, stability};
 pub use torsion::{TorsionalMode, UndampedTorsion, torsional_modes};
 
 use std::f64::consts::TAU;
+use std::fmt;
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -23,23 +28,8 @@ use serde::{Deserialize, Serialize};
 use crate::linalg::DOFS;
 use crate::model::Model;
 use crate::statics::Equilibrium;
-use arnoldi::{Eigenpair, around};
-
-/// Size of the Krylov space of one shift to begin with.
-const DIMENSION: usize = 80;
-
-/// The largest it may become where eigenvalues are dense.
-const LARGEST_DIMENSION: usize = 320;
-
-/// Half the step between two shifts over the radius in which all eigenvalues are known: what lies between two shifts is found up
-/// to a growth of 0.7 radii.
-const OVERLAP: f64 = 0.7;
-
-/// Shifts along the positive real axis, in radii of the first: static instabilities grow without turning.
-const REAL_SHIFTS: [f64; 2] = [1.0, 4.0];
-
-/// Residual of the equation of motion up to which a mode is believed.
-const BELIEVED: f64 = 1e-5;
+use arnoldi::Eigenpair;
+use walk::eigenpairs;
 
 /// Size of `Mode::whirl` from which a mode counts as whirling in one sense.
 const ONE_SENSE: f64 = 0.1;
@@ -66,10 +56,40 @@ impl Default for ModeSearch {
 pub struct Modes {
     /// The modes, by frequency.
     pub modes: Vec<Mode>,
-    /// Up to this frequency \[Hz\] none is left out whose growth or decay is below `complete_to_rate`.
+    /// Up to this frequency \[Hz\] modes were searched for, and none is left out whose growth or decay is below `complete_to_rate` where
+    /// `completeness` is [`Completeness::Counted`].
     pub complete_to_hz: f64,
     /// See `complete_to_hz` \[1/s\].
     pub complete_to_rate: f64,
+    /// Whether that was shown by a count.
+    pub completeness: Completeness,
+}
+
+/// Whether all eigenvalues that were looked for were found, by their number: the winding number of the pencil's determinant along the
+/// edge of the band, for decay below the rate of the answer and growth below twice the band's highest circular frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Completeness {
+    /// As many were found as there are.
+    Counted,
+    /// So many were not found, conjugate ones and overdamped motions included where the band begins at 0 Hz.
+    Missing(usize),
+    /// So many more were found than there are: some are not modes.
+    Excess(usize),
+    /// They could not be counted.
+    NotCounted,
+}
+
+impl fmt::Display for Completeness {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Counted => write!(formatter, "all eigenvalues there are, by their count"),
+            Self::Missing(count) => write!(formatter, "{count} eigenvalues that were counted were not found"),
+            Self::Excess(count) => write!(formatter, "{count} of them are beyond those that were counted"),
+            Self::NotCounted => write!(formatter, "whether these are all could not be counted"),
+        }
+    }
 }
 
 /// One mode: `x(t) = Re(shape exp((growth_rate + 2 pi i frequency) t))`.
@@ -162,112 +182,11 @@ pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> R
 pub fn modes_of(pencil: &Pencil, depths: &[f64], search: &ModeSearch) -> Result<Modes, ModesError> {
     let found = eigenpairs(pencil, search)?;
     Ok(Modes {
-        modes: found.pairs.iter().map(|pair| Mode::new(pencil, pair, depths)).collect(),
+        modes: found.in_band(search).map(|pair| Mode::new(pencil, pair, depths)).collect(),
         complete_to_hz: (found.complete_to / TAU).min(search.to_hz),
         complete_to_rate: found.rate,
+        completeness: found.completeness,
     })
-}
-
-/// What a walk over a band has found.
-struct Found {
-    pairs: Vec<Eigenpair>,
-    /// Circular frequency up to which it is complete \[1/s\].
-    complete_to: f64,
-    /// Growth up to which it is.
-    rate: f64,
-}
-
-fn eigenpairs(pencil: &Pencil, search: &ModeSearch) -> Result<Found, ModesError> {
-    let (from_hz, to_hz) = (search.from_hz, search.to_hz);
-    if !(from_hz >= 0.0 && to_hz > from_hz && to_hz.is_finite()) {
-        return Err(ModesError::Band { from_hz, to_hz });
-    }
-    let (from, to) = (TAU * from_hz, TAU * to_hz);
-    let mut found = Found { pairs: Vec::new(), complete_to: from, rate: f64::INFINITY };
-    let mut dimension = DIMENSION;
-    let mut ahead = 0.0;
-    while found.complete_to < to && found.pairs.len() < search.most {
-        let centre = found.complete_to + ahead;
-        let missing = ModesError::NotFound { frequency_hz: centre / TAU };
-        // An eigenvalue that the shift hits is missed by the next one.
-        let nudged = Complex::new(1e-7 * (to + 1.0), centre);
-        let near = around(Complex::new(0.0, centre), pencil, dimension)
-            .or_else(|| around(nudged, pencil, dimension))
-            .ok_or(missing)?;
-        let reach = OVERLAP * near.radius;
-        found.add(pencil, near.pairs, from, to);
-        if centre - reach > found.complete_to {
-            // Denser than thought: come back nearer, at last with a larger space.
-            ahead = 0.5 * reach;
-            if reach < 1e-4 * (to - from) {
-                if dimension >= LARGEST_DIMENSION {
-                    return Err(missing);
-                }
-                dimension *= 2;
-            }
-            continue;
-        }
-        if reach < 1e-6 * (to - from) {
-            if dimension >= LARGEST_DIMENSION {
-                return Err(missing);
-            }
-            dimension *= 2;
-            continue;
-        }
-        if centre == 0.0 {
-            for factor in REAL_SHIFTS {
-                let shift = Complex::new((factor * near.radius).min(1e4), 0.0);
-                if let Some(near) = around(shift, pencil, dimension) {
-                    found.add(pencil, near.pairs, from, to);
-                }
-            }
-        }
-        found.complete_to = centre + reach;
-        found.rate = found.rate.min(OVERLAP * near.radius);
-        ahead = 0.95 * reach;
-    }
-    found
-        .pairs
-        .sort_by(|a, b| (a.value.im, a.value.re).partial_cmp(&(b.value.im, b.value.re)).expect("finite"));
-    Ok(found)
-}
-
-impl Found {
-    /// Takes in what is new: within the band, true to the equation of motion, not overdamped.
-    fn add(&mut self, pencil: &Pencil, pairs: Vec<Eigenpair>, from: f64, to: f64) {
-        for mut pair in pairs {
-            let still = pair.value.im.abs() <= 1e-6 * pair.value.norm();
-            if still {
-                pair.value.im = 0.0;
-            }
-            let wanted = (from..=to).contains(&pair.value.im) && (!still || pair.value.re > 0.0);
-            if !wanted
-                || !pair.value.norm().is_finite()
-                || pencil.residual(pair.value, &pair.shape) > BELIEVED
-            {
-                continue;
-            }
-            normalise(&mut pair.shape);
-            // Equal eigenvalues have as many modes as independent shapes.
-            let mut rest = pair.shape.clone();
-            let tolerance = 1e-6 * pair.value.norm().max(1e-3 * to);
-            for other in self.pairs.iter().filter(|other| (other.value - pair.value).norm() <= tolerance) {
-                let common: Complex<f64> = other.shape.iter().zip(&rest).map(|(a, b)| a.conj() * b).sum();
-                for (value, other) in rest.iter_mut().zip(&other.shape) {
-                    *value -= common * other;
-                }
-            }
-            if rest.iter().map(Complex::norm_sqr).sum::<f64>() > 0.01 {
-                normalise(&mut rest);
-                self.pairs.push(Eigenpair { value: pair.value, shape: rest });
-            }
-        }
-    }
-}
-
-fn normalise(shape: &mut [Complex<f64>]) {
-    let size = shape.iter().map(Complex::norm_sqr).sum::<f64>().sqrt();
-    shape.iter_mut().for_each(|value| *value /= size);
 }
 
 impl Mode {

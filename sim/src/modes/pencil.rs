@@ -53,17 +53,6 @@ impl Pencil {
     pub(super) fn times_damping(&self, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
         times(&self.damping, x)
     }
-
-    /// `|Q(l) x|` relative to the sizes of its three terms: how well an eigenvalue and its shape satisfy the equation of motion.
-    pub(super) fn residual(&self, value: Complex<f64>, shape: &[Complex<f64>]) -> f64 {
-        let [inertia, damping, elastic] = self.matrices().map(|matrix| times(matrix, shape));
-        let (mut left, mut size) = (0.0, 0.0);
-        for ((m, c), k) in inertia.iter().zip(&damping).zip(&elastic) {
-            left += (value * value * m + value * c + k).norm_sqr();
-            size += (value * value * m).norm_sqr() + (value * c).norm_sqr() + k.norm_sqr();
-        }
-        (left / size).sqrt()
-    }
 }
 
 /// Adds what the closed contacts of an equilibrium do to stiffness and damping.

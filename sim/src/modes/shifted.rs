@@ -60,6 +60,23 @@ impl ShiftedPencil {
         regular.then(|| Self { lu, rows: Perm::new_checked(order.into(), place.into(), size), columns })
     }
 
+    /// The determinant's logarithm: of its magnitude, and its phase \[rad\] up to whole turns.
+    pub(super) fn log_determinant(&self) -> Complex<f64> {
+        let upper = self.lu.u_factor_unsorted();
+        let (mut size, mut direction) = (0.0, Complex::new(1.0, 0.0));
+        for column in 0..upper.ncols() {
+            let mut entries = upper.row_idx_of_col(column).zip(upper.val_of_col(column));
+            if let Some((_, pivot)) = entries.find(|(row, _)| *row == column) {
+                let length = pivot.norm();
+                size += length.ln();
+                direction *= pivot / length;
+                direction /= direction.norm();
+            }
+        }
+        let turned = if is_odd(self.rows.arrays().0) { std::f64::consts::PI } else { 0.0 };
+        Complex::new(size, direction.arg() + turned)
+    }
+
     /// Replaces a right-hand side, degree of freedom by degree of freedom from the top, by the solution.
     pub(super) fn solve_in_place(&self, x: &mut [Complex<f64>]) {
         let size = x.len();
@@ -73,6 +90,20 @@ impl ShiftedPencil {
             MemStack::new(&mut MemBuffer::new(scratch)),
         );
     }
+}
+
+/// Whether a permutation is an odd number of exchanges.
+fn is_odd(order: &[usize]) -> bool {
+    let mut seen = vec![false; order.len()];
+    let mut exchanges = 0;
+    for start in 0..order.len() {
+        let mut place = start;
+        while !std::mem::replace(&mut seen[place], true) {
+            place = order[place];
+            exchanges += usize::from(place != start);
+        }
+    }
+    exchanges % 2 == 1
 }
 
 /// The pencil at a shift by columns, without the entries that are zero.
@@ -149,6 +180,29 @@ mod tests {
             let left = shift * shift * inertia[k] + shift * damping[k] + elastic[k];
             assert!((left - right).norm() < 1e-10, "{k}: {left} against {right}");
         }
+    }
+
+    #[test]
+    fn determinant_is_that_of_the_dense_matrix() {
+        let matrices = [0.1, 0.4, 0.9].map(matrix);
+        let shift = Complex::new(0.3, 1.7);
+        let mut dense = nalgebra::DMatrix::<Complex<f64>>::zeros(DOFS * NODES, DOFS * NODES);
+        for column in 0..DOFS * NODES {
+            let mut unit = vec![Complex::new(0.0, 0.0); DOFS * NODES];
+            unit[column] = Complex::new(1.0, 0.0);
+            let [m, c, k] = matrices.each_ref().map(|matrix| times(matrix, &unit));
+            for row in 0..DOFS * NODES {
+                dense[(row, column)] = shift * shift * m[row] + shift * c[row] + k[row];
+            }
+        }
+        let expected = dense.determinant();
+        let factor =
+            ShiftedPencil::new(shift, matrices.each_ref(), &[[false; DOFS]; NODES]).expect("regular");
+        let found = factor.log_determinant();
+        assert!((found.re / expected.norm().ln() - 1.0).abs() < 1e-12, "{found} against {expected}");
+        // The direction tells an odd number of exchanges from an even one.
+        let apart = Complex::from_polar(1.0, found.im) - expected / expected.norm();
+        assert!(apart.norm() < 1e-9, "{found} against {expected}");
     }
 
     #[test]

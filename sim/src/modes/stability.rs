@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::arnoldi::Eigenpair;
 use super::pencil::{Pencil, add_contact, times};
-use super::{Mode, ModeKind, ModeSearch, ModesError, eigenpairs};
+use super::walk::eigenpairs;
+use super::{Completeness, Mode, ModeKind, ModeSearch, ModesError};
 use crate::linalg::BlockTridiagonal;
 use crate::model::{Model, add_element_matrix, clear_held};
 use crate::statics::Equilibrium;
@@ -23,10 +24,12 @@ const NEUTRAL: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Stability {
-    /// Whether all modes decay.
-    pub stable: bool,
+    /// Whether all modes decay; absent where none was found to grow and not all are known to have been found.
+    pub stable: Option<bool>,
     /// The frequency \[Hz\] up to which modes were looked at.
     pub complete_to_hz: f64,
+    /// Whether the modes that were looked at are all there are up to that frequency.
+    pub completeness: Completeness,
     /// The mode that grows fastest; absent where the scene is stable.
     pub instability: Option<Instability>,
 }
@@ -88,7 +91,14 @@ impl InstabilityKind {
 impl fmt::Display for Stability {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.instability {
-            None => write!(formatter, "stable about its equilibrium up to {:.0} Hz", self.complete_to_hz),
+            None if self.stable == Some(true) => {
+                write!(formatter, "stable about its equilibrium up to {:.0} Hz", self.complete_to_hz)
+            }
+            None => write!(
+                formatter,
+                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}",
+                self.complete_to_hz, self.completeness
+            ),
             Some(unstable) => write!(
                 formatter,
                 "physically unstable: {}, {:.3} Hz, growing with {:.3} 1/s, most at {:.1} m",
@@ -107,12 +117,18 @@ impl fmt::Display for Stability {
 /// When the modes cannot be found.
 pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, ModesError> {
     let pencil = Pencil::about(model, equilibrium);
-    let found = eigenpairs(&pencil, &ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() })?;
-    let growing = found.pairs.iter().filter(|pair| pair.value.re > NEUTRAL);
+    let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
+    let found = eigenpairs(&pencil, &search)?;
+    let growing = found.in_band(&search).filter(|pair| pair.value.re > NEUTRAL);
     let fastest = growing.clone().max_by(|a, b| a.value.re.total_cmp(&b.value.re));
     Ok(Stability {
-        stable: fastest.is_none(),
+        stable: match (fastest, found.completeness) {
+            (Some(_), _) => Some(false),
+            (None, Completeness::Counted) => Some(true),
+            (None, _) => None,
+        },
         complete_to_hz: (found.complete_to / TAU).min(BAND_HZ),
+        completeness: found.completeness,
         instability: fastest.map(|pair| {
             let mode = Mode::new(&pencil, pair, &model.mesh.depths());
             Instability {

@@ -254,7 +254,7 @@ quantities! {
     UNDAMPED_TORSION_HZ: "undamped_torsion_hz", "", FREQUENCY, "undamped torsion hz";
     /// Growth of that mode's amplitude.
     UNDAMPED_TORSION_GROWTH: "undamped_torsion_growth", "", RATE, "undamped torsion growth";
-    /// Whether small motions about the equilibrium decay.
+    /// Whether small motions about the equilibrium decay; absent where none was found to grow but not all were found.
     STABLE: "stable", "", -, "stable";
     /// How small motions about the equilibrium grow.
     INSTABILITY: "instability", "", -, "instability";

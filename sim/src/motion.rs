@@ -7,7 +7,7 @@ use crate::effect::{
 use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
-use crate::scenario::Effect;
+use crate::scenario::{Effect, Switch};
 use crate::statics::Equilibrium;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
@@ -41,6 +41,17 @@ pub struct DynamicSystem<const D: usize = DOFS> {
 impl Model {
     /// Assembles the equations of motion about an equilibrium.
     pub fn dynamic_system(&self, equilibrium: &Equilibrium) -> DynamicSystem {
+        self.system_without(equilibrium, |effect| !self.effects.is_active(effect))
+    }
+
+    /// The same with every motion that the scenario does not switch off: that nothing in the scene makes a string move along itself, or
+    /// twist, does not keep it from doing so.
+    pub fn system_of_all_motions(&self, equilibrium: &Equilibrium) -> DynamicSystem {
+        self.system_without(equilibrium, |effect| self.scenario.effects.switch(effect) == Switch::Off)
+    }
+
+    /// The equations of motion without the motions of those effects that are `still`.
+    fn system_without(&self, equilibrium: &Equilibrium, still: impl Fn(Effect) -> bool) -> DynamicSystem {
         let n = self.node_count();
         let [mut mass, mut stiffness, mut damping] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
         let mut damping_of: [_; DAMPING.len()] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
@@ -79,7 +90,7 @@ impl Model {
                 }
             }
         }
-        let held = self.held_in_motion();
+        let held = self.held_without(still);
         let mut load = self.constant_load(&equilibrium.drag);
         move_held_to_load(&stiffness, &held, &equilibrium.displacement, &mut load);
         for matrix in [&mut mass, &mut damping, &mut stiffness].into_iter().chain(&mut damping_of) {
@@ -102,8 +113,8 @@ impl Model {
         }
     }
 
-    fn held_in_motion(&self) -> Vec<[bool; DOFS]> {
-        let off = Effect::ALL.iter().filter(|&&effect| !self.effects.is_active(effect));
+    fn held_without(&self, still: impl Fn(Effect) -> bool) -> Vec<[bool; DOFS]> {
+        let off = Effect::ALL.iter().filter(|&&effect| still(effect));
         let still: Vec<usize> = off.filter_map(|&effect| room(effect).moves()).collect();
         (0..self.node_count())
             .map(|node| {

@@ -9,7 +9,7 @@ use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
 use drillsweep_sim::linalg::BlockTridiagonal;
 use drillsweep_sim::model::{Model, add_element_matrix};
 use drillsweep_sim::modes::{Completeness, Mode, ModeKind, ModeSearch, Modes, Pencil, modes, modes_of};
-use drillsweep_sim::scenario::{Effect, Material, Scenario, Switch, preset};
+use drillsweep_sim::scenario::{Effect, Material, Scenario, Section, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
 use nalgebra::DMatrix;
 
@@ -441,4 +441,43 @@ fn equal_eigenvalues_are_searched_again_and_those_still_missing_are_told() {
     assert!(many.modes.len() < 60, "too few searches");
     // With their conjugates.
     assert_eq!(many.completeness, Completeness::Missing(2 * (60 - many.modes.len())));
+}
+
+#[test]
+fn straight_strings_have_the_modes_of_rods_unless_they_are_switched_off() {
+    // A rod clamped above and free below: c (2 n - 1) / 4 L, axial with c^2 = E / rho, torsional with G / rho; where nothing in the scene
+    // moves it so, a run in time leaves these motions out.
+    let mut scenario = base();
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+    }
+    scenario.string.sections =
+        vec![Section { length: 200.0, count: 1, ..scenario.string.sections[2].clone() }];
+    scenario.string.unbalance.clear();
+    (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+    let active = scenario.active_effects();
+    assert!(!active.torsion && !active.axial_motion);
+    let material = scenario.string.material;
+    let shear = material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
+    let of_kind = |scenario: &Scenario, kind| -> Vec<f64> {
+        let found = modes_to(scenario, 20.0).into_iter().filter(|mode| mode.kind == kind);
+        found.map(|mode| mode.frequency_hz).collect()
+    };
+    for (kind, modulus, effect) in [
+        (ModeKind::Axial, material.youngs_modulus, Effect::AxialMotion),
+        (ModeKind::Torsional, shear, Effect::Torsion),
+    ] {
+        let quarter = (modulus / material.density).sqrt() / (4.0 * 200.0);
+        let expected: Vec<f64> =
+            [1.0, 3.0, 5.0, 7.0].map(|n| n * quarter).into_iter().filter(|hz| *hz < 20.0).collect();
+        let found = of_kind(&scenario, kind);
+        assert_eq!(found.len(), expected.len(), "{kind:?}: {found:?} against {expected:?}");
+        for (found, expected) in found.iter().zip(&expected) {
+            // Linear elements are (k h)^2 / 24 too stiff, 1e-5 here.
+            assert!((found / expected - 1.0).abs() < 1e-4, "{kind:?}: {found} against {expected}");
+        }
+        let mut without = scenario.clone();
+        without.effects.set(effect, Switch::Off);
+        assert_eq!(of_kind(&without, kind), [0.0; 0], "{kind:?} switched off");
+    }
 }

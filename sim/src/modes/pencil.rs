@@ -34,9 +34,10 @@ impl Pencil {
         Self { mass, damping, stiffness, held }
     }
 
-    /// Small motions of a model about its equilibrium, contacts closed there staying closed and sliding at the speed of rotation.
+    /// Small motions of a model about its equilibrium, contacts closed there staying closed and sliding at the speed of rotation. All degrees of
+    /// freedom move but those of motions that the scenario switches off, also where a run in time would not solve for them.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Self {
-        let system = model.dynamic_system(equilibrium);
+        let system = model.system_of_all_motions(equilibrium);
         let (mut damping, mut stiffness) = (system.damping, system.stiffness);
         add_contact(model, equilibrium, &mut stiffness, &mut damping);
         Self::new(system.mass, damping, stiffness, system.held)

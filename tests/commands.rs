@@ -63,10 +63,18 @@ fn sweep_is_submitted_watched_listed_shown_and_fetched() {
     );
 
     let output = data.path().join("results");
-    let files = json(&server, &["fetch", id, "--output", output.to_str().unwrap(), "--json"]);
-    let files = files.as_array().unwrap();
-    assert!(files.iter().all(|file| std::path::Path::new(file.as_str().unwrap()).exists()));
-    assert_eq!(files.len(), 1 + 3 * 6, "a table, and a folder a point: {files:?}");
+    let fetch = ["fetch", id, "--output", output.to_str().unwrap(), "--json"];
+    let files = json(&server, &fetch);
+    let listed = files.as_array().unwrap();
+    assert!(listed.iter().all(|file| std::path::Path::new(file.as_str().unwrap()).exists()));
+    assert_eq!(listed.len(), 1 + 3 * 6, "a table, and a folder a point: {files}");
+    // What was fetched stays as it is, and what is not there comes.
+    let (kept, lost) = (output.join("point-0001/profile.parquet"), output.join("point-0001/statics.parquet"));
+    let whole = std::fs::read(&lost).unwrap();
+    std::fs::write(&kept, "kept").unwrap();
+    std::fs::remove_file(&lost).unwrap();
+    assert_eq!(json(&server, &fetch), files);
+    assert_eq!((std::fs::read(&kept).unwrap(), std::fs::read(&lost).unwrap()), (b"kept".to_vec(), whole));
 
     // The same key is the same sweep; no such sweep is an error.
     let keyed = [&submit[..], &["--idempotency-key", "k", "--detach"]].concat();
@@ -81,6 +89,12 @@ fn sweep_is_cancelled_and_retried_and_its_fate_is_the_exit_status() {
     let submit = [&["submit", "paper-200m", "--flow-rate", "0.01,0.02", "--detach"][..], &SHORT].concat();
     let id = text(&server, &submit);
     let id = id.trim();
+    let output = data.path().join("results");
+    let fetch = ["fetch", id, "--output", output.to_str().unwrap()];
+    let early = run(&server, &fetch);
+    assert!(!early.status.success() && output.join("table.parquet").exists());
+    assert!(String::from_utf8_lossy(&early.stderr).contains("2 of 2 points have no result yet"));
+    assert!(run(&server, &[&fetch[..], &["--partial"]].concat()).status.success());
     assert_eq!(json(&server, &["cancel", id, "--json"])["state"], "cancelled");
     assert!(!run(&server, &["watch", id]).status.success(), "cancelled points have no result");
     assert!(text(&server, &["retry", id]).contains("2 queued"));

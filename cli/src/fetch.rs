@@ -29,11 +29,14 @@ pub(crate) struct FetchArguments {
     #[arg(long, default_value = "results")]
     output: PathBuf,
     /// Format of the files.
-    #[arg(long, value_enum, default_value = "csv")]
+    #[arg(long, value_enum, default_value = "parquet")]
     format: Format,
     /// Download the sweep's table only.
     #[arg(long)]
     table_only: bool,
+    /// Succeed although points have no result yet: what there is is fetched either way, and another fetch brings the rest.
+    #[arg(long)]
+    partial: bool,
     /// Print the names of the files as JSON instead of the directory's.
     #[arg(long)]
     json: bool,
@@ -56,11 +59,13 @@ impl Format {
     }
 }
 
-/// Writes `table.csv` with a row a point, and a folder a point with its tables and full spectra. A file that the server cannot give
-/// does not keep the others back: `missing.json` tells what is not there and why, and the command fails.
+/// Writes `table` with a row a point, and a folder a point with its tables and full spectra. A file that the server cannot give
+/// does not keep the others back: `missing.json` tells what is not there and why, and the command fails. Files of points that have
+/// not changed since they were fetched are left as they are, so that a fetch that was interrupted goes on.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server);
     let id = &path_segment(&client.sweep_id(&arguments.sweep)?);
+    let sweep: Sweep = client.get(&format!("/v1/sweeps/{id}"))?;
     let format = arguments.format.name();
     std::fs::create_dir_all(&arguments.output)
         .with_context(|| format!("cannot make {}", arguments.output.display()))?;
@@ -68,7 +73,7 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let mut files = Files::default();
     files.write(arguments.output.join(format!("table.{format}")), &table)?;
     if !arguments.table_only {
-        points(&client, id, &arguments.output, format, &mut files)?;
+        points(&client, &sweep, &arguments.output, format, &mut files)?;
     }
     let manifest = arguments.output.join("missing.json");
     if files.missing.is_empty() {
@@ -91,11 +96,23 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
         "{} files are missing; missing.json says which and why",
         files.missing.len()
     );
+    let open = sweep.counts.queued + sweep.counts.running;
+    if open > 0 {
+        let text = format!("{open} of {} points have no result yet", sweep.counts.total);
+        ensure!(arguments.partial, "{text}; fetch again when they do, or take what there is by --partial");
+        tracing::warn!("{text}");
+    }
     Ok(())
 }
 
-fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Files) -> anyhow::Result<()> {
-    let sweep: Sweep = client.get(&format!("/v1/sweeps/{id}"))?;
+fn points(
+    client: &Client,
+    sweep: &Sweep,
+    output: &Path,
+    format: &str,
+    files: &mut Files,
+) -> anyhow::Result<()> {
+    let id = path_segment(&sweep.id);
     let total = sweep.counts.total;
     let bar = ProgressBar::new(total);
     for ordinal in 1..=total {
@@ -103,7 +120,9 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
         let point: PointDetail = client.get(&path)?;
         let folder = output.join(format!("point-{ordinal:04}"));
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-        files.write(folder.join("point.json"), serde_json::to_string_pretty(&point)?.as_bytes())?;
+        // Written last, it says that what lies beside it is of this result.
+        let (mark, described) = (folder.join("point.json"), serde_json::to_string_pretty(&point)?);
+        files.is_unchanged = std::fs::read(&mark).is_ok_and(|known| known == described.as_bytes());
         let has = |name: &str| point.tables.iter().any(|table| table == name);
         for table in TABLES.iter().map(|table| table.name).filter(|table| has(table)) {
             let file = folder.join(format!("{table}.{format}"));
@@ -115,7 +134,7 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
                 files.download(client, &format!("{path}/cost?format={extension}"), file)?;
             }
         }
-        if has(tables::HISTORY.name) {
+        if has(tables::HISTORY.name) || has(tables::SPECTRA.name) {
             for node in point.summary.iter().flat_map(recorded_nodes) {
                 for window in point.scenario.spectrum_windows() {
                     let (from, to) = (json!(window.from), json!(window.to));
@@ -125,6 +144,7 @@ fn points(client: &Client, id: &str, output: &Path, format: &str, files: &mut Fi
                 }
             }
         }
+        files.write(mark, described.as_bytes())?;
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -142,6 +162,8 @@ fn recorded_nodes(summary: &Map<String, Value>) -> impl Iterator<Item = usize> {
 struct Files {
     written: Vec<PathBuf>,
     missing: Vec<Missing>,
+    /// Whether files of the point in hand that are there already are those that the server has.
+    is_unchanged: bool,
 }
 
 /// A file that the server could not give.
@@ -154,6 +176,10 @@ struct Missing {
 impl Files {
     /// Writes what the server answers; a problem that it answers with is noted.
     fn download(&mut self, client: &Client, path: &str, file: PathBuf) -> anyhow::Result<()> {
+        if self.is_unchanged && file.exists() {
+            self.written.push(file);
+            return Ok(());
+        }
         match client.file(path)? {
             Ok(bytes) => self.write(file, &bytes),
             Err(reason) => {
@@ -164,7 +190,11 @@ impl Files {
     }
 
     fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {
-        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        // Under another name first: what has its name is whole.
+        let part = path.with_added_extension("part");
+        std::fs::write(&part, bytes)
+            .and_then(|()| std::fs::rename(&part, &path))
+            .with_context(|| format!("cannot write {}", path.display()))?;
         self.written.push(path);
         Ok(())
     }

@@ -40,6 +40,8 @@ pub enum ProblemKind {
     TargetTooLong,
     /// The header fields are larger than the limit.
     HeaderTooLarge,
+    /// The body did not come in time.
+    RequestTimeout,
     /// None of the bytes asked for exist.
     RangeNotSatisfiable,
     /// No such route.
@@ -90,6 +92,7 @@ impl ProblemKind {
         ProblemKind::BodyTooLarge,
         ProblemKind::TargetTooLong,
         ProblemKind::HeaderTooLarge,
+        ProblemKind::RequestTimeout,
         ProblemKind::RangeNotSatisfiable,
         ProblemKind::NoSuchRoute,
         ProblemKind::MethodNotAllowed,
@@ -145,6 +148,7 @@ impl ProblemKind {
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
             ProblemKind::TargetTooLong => ("target-too-long", "Path and query are too long", 414),
             ProblemKind::HeaderTooLarge => ("header-too-large", "The header fields are too large", 431),
+            ProblemKind::RequestTimeout => ("request-timeout", "The body did not come in time", 408),
             ProblemKind::RangeNotSatisfiable => ("range-not-satisfiable", "No such bytes", 416),
             ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
             ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),

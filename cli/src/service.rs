@@ -9,11 +9,11 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
-use drillsweep_server::{Config, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
+use drillsweep_server::{Config, ConnectionLimits, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::fs::Mode;
-use rustix::process::{Signal, set_parent_process_death_signal};
+use rustix::process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit};
 use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
 use tokio::signal::unix::{SignalKind, signal};
@@ -59,6 +59,12 @@ struct ListenArguments {
     retention_interval: Duration,
     #[command(flatten)]
     retention: RetentionArguments,
+    /// Connections that may be open at once; beyond them is a reserve for health checks.
+    #[arg(long, default_value_t = ConnectionLimits::default().total)]
+    connections: usize,
+    /// Connections that one address may have open at once; those of this machine, where a reverse proxy may be, are not counted.
+    #[arg(long, default_value_t = ConnectionLimits::default().per_address)]
+    connections_per_address: usize,
     /// Points of an owner that may be queued or running.
     #[arg(long, default_value_t = OwnerLimits::default().open_points)]
     open_points: u64,
@@ -229,6 +235,11 @@ async fn serve_until(
             request_burst: arguments.request_burst,
             open_points: arguments.open_points,
         },
+        connections: ConnectionLimits {
+            total: arguments.connections.min(room_for_connections()),
+            per_address: arguments.connections_per_address,
+            ..ConnectionLimits::default()
+        },
         retention: Retaining {
             policy: arguments.retention.policy(),
             interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
@@ -238,6 +249,20 @@ async fn serve_until(
     drillsweep_server::serve(listeners, store.clone(), config, stopped(stop)).await?;
     store.close().await;
     Ok(())
+}
+
+/// How many connections the system's limit of open files leaves room for. The limit is raised as far as this process may.
+fn room_for_connections() -> usize {
+    /// For the database, stored files, the reserve of connections, and whatever the program is started by.
+    const OTHERS: u64 = 300;
+    /// As far as the limit is raised.
+    const ENOUGH: u64 = 65_536;
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let (current, raised) = (current.unwrap_or(ENOUGH), maximum.unwrap_or(ENOUGH).min(ENOUGH));
+    let is_raised =
+        raised > current && setrlimit(Resource::Nofile, Rlimit { current: Some(raised), maximum }).is_ok();
+    let files = if is_raised { raised } else { current };
+    usize::try_from(files.saturating_sub(OTHERS)).unwrap_or(usize::MAX).max(100)
 }
 
 async fn bind(address: SocketAddr) -> anyhow::Result<TcpListener> {

@@ -6,6 +6,7 @@
 mod answer;
 mod app;
 mod guard;
+mod listen;
 mod route;
 mod router;
 mod serve;
@@ -13,5 +14,6 @@ mod serve;
 pub use app::Config;
 pub use app::limit::OwnerLimits;
 pub use app::retain::Retaining;
+pub use listen::ConnectionLimits;
 pub use router::{openapi_json, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

@@ -10,6 +10,7 @@ use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
 
 use crate::app::{App, Config, retain};
+use crate::listen::serve_connections;
 use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
 use crate::router;
@@ -74,9 +75,13 @@ pub async fn serve(
     let collector = tokio::spawn(retain::collect(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
-        tokio::spawn(async move { axum::serve(listener, routes).await })
+        let limits = app.config.connections.clone();
+        tokio::spawn(
+            async move { serve_connections(listener, routes, &limits, std::future::pending()).await },
+        )
     });
-    let serving = axum::serve(listeners.api, router::routes(&app)).with_graceful_shutdown(async move {
+    let limits = app.config.connections.clone();
+    let serving = serve_connections(listeners.api, router::routes(&app), &limits, async move {
         shutdown.await;
         // The receivers cannot all be gone: the router holds one.
         let _ = stop.send(true);
@@ -86,7 +91,7 @@ pub async fn serve(
         tokio::time::sleep(drain_timeout).await;
     };
     let result = tokio::select! {
-        result = serving => result.map_err(ServeError::Listener),
+        () = serving => Ok(()),
         () = drained => Err(ServeError::DrainTimeout(drain_timeout)),
     };
     reaper.abort();

@@ -7,8 +7,10 @@ use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
 use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind};
 use serde::de::{DeserializeOwned, Error as _};
+use tokio::time::timeout;
 
 use crate::answer::error::Error;
+use crate::app::App;
 
 /// A JSON body, together with the bytes that came in.
 pub(crate) struct Json<T> {
@@ -18,10 +20,10 @@ pub(crate) struct Json<T> {
     pub(crate) bytes: Bytes,
 }
 
-impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
+impl<T: DeserializeOwned> FromRequest<App> for Json<T> {
     type Rejection = Error;
 
-    async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
+    async fn from_request(request: Request, state: &App) -> Result<Self, Error> {
         let media_type = request.headers().get(header::CONTENT_TYPE);
         let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
         let essence = media_type.split(';').next().unwrap_or_default().trim();
@@ -35,7 +37,12 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Json<T> {
             let detail = "the body must be sent as it is, without Content-Encoding";
             return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
         }
-        let bytes = Bytes::from_request(request, state).await.map_err(|rejection| {
+        let patience = state.config.connections.body;
+        let Ok(bytes) = timeout(patience, Bytes::from_request(request, state)).await else {
+            let detail = format!("the body did not come within {} s", patience.as_secs_f64());
+            return Err(Error::new(ProblemKind::RequestTimeout, detail));
+        };
+        let bytes = bytes.map_err(|rejection| {
             if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
                 let detail = format!("a body has at most {} bytes", LIMITS.body_bytes);
                 Error::new(ProblemKind::BodyTooLarge, detail)

@@ -15,6 +15,7 @@ use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
 use crate::app::readiness::Readiness;
 use crate::app::retain::Retaining;
+use crate::listen::ConnectionLimits;
 
 /// Event streams that may be open at once; each looks at the store some times a second.
 pub(crate) const EVENT_STREAMS: usize = 1_000;
@@ -32,6 +33,8 @@ pub struct Config {
     pub owner_limits: OwnerLimits,
     /// How long data are kept.
     pub retention: Retaining,
+    /// How many connections there may be, and how long they may take.
+    pub connections: ConnectionLimits,
 }
 
 impl Default for Config {
@@ -42,6 +45,7 @@ impl Default for Config {
             drain_timeout: Duration::from_secs(10),
             owner_limits: OwnerLimits::default(),
             retention: Retaining::default(),
+            connections: ConnectionLimits::default(),
         }
     }
 }

@@ -23,6 +23,7 @@ use tracing::Span;
 use crate::answer::error::Error;
 use crate::app::App;
 use crate::guard::{auth, measure};
+use crate::listen::InReserve;
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
@@ -44,6 +45,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(from_fn(refuse_long_requests))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
+            .layer(from_fn(keep_reserve))
             .layer(from_fn_with_state(app.clone(), auth::guard))
             .layer(DefaultBodyLimit::max(LIMITS.body_bytes)),
     )
@@ -102,6 +104,17 @@ async fn refuse_long_requests(request: Request, next: Next) -> Response<Body> {
         return next.run(request).await;
     };
     Error::new(kind, format!("{what} have more than {limit} bytes")).into_response()
+}
+
+/// What connections in the reserve may ask for: what tells how the service is, and costs little.
+const LIGHT: [&str; 6] = ["/livez", "/readyz", "/v1/queue", "/v1/workers", "/v1/limits", "/v1/retention"];
+
+/// Refuses all else to connections in the reserve.
+async fn keep_reserve(request: Request, next: Next) -> Response<Body> {
+    if request.extensions().get::<InReserve>().is_some() && !LIGHT.contains(&request.uri().path()) {
+        return Error::unavailable("all connections are taken").into_response();
+    }
+    next.run(request).await
 }
 
 /// Answers 304 instead of what the client has a copy of.

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "in a test a failure is a panic")]
 
 mod bench;
+mod connections;
 mod control;
 mod damage;
 mod errors;

@@ -5,6 +5,7 @@
 
 mod answer;
 mod app;
+mod collect;
 mod guard;
 mod listen;
 mod route;

@@ -9,7 +9,8 @@ use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
 
-use crate::app::{App, Config, retain};
+use crate::app::{App, Config};
+use crate::collect;
 use crate::listen::serve_connections;
 use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
@@ -72,7 +73,7 @@ pub async fn serve(
     let mut stopped = stopping.clone();
     let app = App::new(store, config, stopping);
     let reaper = tokio::spawn(reap_expired_leases(app.clone()));
-    let collector = tokio::spawn(retain::collect(app.clone()));
+    let collector = tokio::spawn(collect::collect(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         let limits = app.config.connections.clone();

@@ -1,4 +1,4 @@
-"""A client that a generator makes of the OpenAPI document submits sweeps with axes of every form, and reads them back."""
+"""A client generated from the OpenAPI document submits sweeps with axes of every form, and reads them back."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from service import REPOSITORY, SHORT
 
 AXES: list[tuple[dict[str, Any], dict[str, Any]]] = [

@@ -26,6 +26,8 @@ const INSET_SIDE: f64 = 120.0;
 const INSET_GAP: f64 = 10.0;
 /// A motion below this part of the hole is shown by itself unless the whole hole is asked for.
 const SMALL_MOTION: f64 = 0.1;
+/// A motion below this part of the hole is rest: histories have seven digits, and their last one would fill the picture.
+const LEAST_MOTION: f64 = 1e-5;
 
 /// The path of one node across its hole, looking down the hole, with the low side down where there is one.
 ///
@@ -103,8 +105,7 @@ impl OrbitPlot {
         let is_small = |motion: &View| wall.is_some_and(|wall| motion.half < SMALL_MOTION * wall);
         let motion = motion
             .filter(|motion| self.zoom.unwrap_or_else(|| is_small(motion)))
-            // What does not move fills no picture, nor what moves by less than the numbers resolve.
-            .filter(|motion| motion.half > 1e-9 * whole.half);
+            .filter(|motion| motion.half > LEAST_MOTION * whole.half);
         let view = motion.unwrap_or(whole);
         let (across, down) = (view.axis(0), view.axis(1));
         let ticks = |axis: Option<PlotAxis>| axis.map(|axis| axis.ticks()).unwrap_or_default();
@@ -312,7 +313,12 @@ mod tests {
 
     #[test]
     fn both_axes_have_one_scale_and_the_wall_is_round() {
-        let plot = OrbitPlot { path: vec![[1.0, 0.0], [0.0, 5.0]], wall: Some(38.0), ..OrbitPlot::default() };
+        let plot = OrbitPlot {
+            path: vec![[1.0, 0.0], [0.0, 5.0]],
+            wall: Some(38.0),
+            zoom: Some(false),
+            ..OrbitPlot::default()
+        };
         let svg = plot.svg();
         let circle = points(&svg, "wall");
         let [x, y] = middle(&circle);

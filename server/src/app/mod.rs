@@ -1,5 +1,6 @@
 //! What the handlers share, and how the service is set up.
 
+pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
 pub(crate) mod readiness;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use drillsweep_store::Store;
 use tokio::sync::{Semaphore, watch};
 
+use crate::app::lane::Lane;
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
 use crate::app::readiness::Readiness;
@@ -35,6 +37,10 @@ pub struct Config {
     pub retention: Retaining,
     /// How many connections there may be, and how long they may take.
     pub connections: ConnectionLimits,
+    /// Large answers (tables, pictures, views of histories) that are computed at once, and as many plans and expansions of sweeps.
+    pub large_answers: usize,
+    /// Requests for them that may wait; those beyond are told to come back.
+    pub large_answers_waiting: usize,
 }
 
 impl Default for Config {
@@ -46,6 +52,8 @@ impl Default for Config {
             owner_limits: OwnerLimits::default(),
             retention: Retaining::default(),
             connections: ConnectionLimits::default(),
+            large_answers: std::thread::available_parallelism().map_or(2, std::num::NonZero::get),
+            large_answers_waiting: 256,
         }
     }
 }
@@ -62,6 +70,10 @@ pub(crate) struct App {
     pub(crate) readiness: Arc<Readiness>,
     /// Places for event streams.
     pub(crate) streams: Arc<Semaphore>,
+    /// Places for views of results, which load and write out tables.
+    pub(crate) views: Arc<Lane>,
+    /// Places for expanding and planning sweeps, which searches an equilibrium, and for `rk4` estimates how long a step may be.
+    pub(crate) plans: Arc<Lane>,
 }
 
 impl App {
@@ -73,6 +85,8 @@ impl App {
             metrics: Arc::new(Metrics::new()),
             readiness: Arc::default(),
             streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
+            views: Arc::new(Lane::new(config.large_answers, config.large_answers_waiting)),
+            plans: Arc::new(Lane::new(config.large_answers, config.large_answers_waiting)),
             config: Arc::new(config),
         }
     }

@@ -2,20 +2,15 @@
 
 use axum::http::{Method, Uri, header};
 use axum::response::Response;
+use drillsweep_store::TokenRecord;
 
-use crate::guard::auth::Caller;
-
-/// Notes a request that was carried out; those that only read are not noted. The request's id is in the line's span.
-pub(crate) fn note(caller: &Caller, method: &Method, uri: &Uri, response: &Response) {
+/// Notes a request that was carried out, with its token where there are any; those that only read are not noted. The request's id is in the line's span.
+pub(crate) fn note(token: Option<&TokenRecord>, method: &Method, uri: &Uri, response: &Response) {
     if is_reading(method) || !response.status().is_success() {
         return;
     }
     // Of what was made.
     let location = response.headers().get(header::LOCATION).and_then(|value| value.to_str().ok());
-    let token = match caller {
-        Caller::Local => None,
-        Caller::Bearer(token) => Some(token),
-    };
     tracing::info!(
         owner = token.map(|token| token.owner.as_str()),
         token.id = token.map(|token| token.id.as_str()),

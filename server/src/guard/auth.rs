@@ -51,6 +51,14 @@ impl Caller {
         }
     }
 
+    /// The token that the request came with.
+    fn token(&self) -> Option<&TokenRecord> {
+        match self {
+            Caller::Local => None,
+            Caller::Bearer(token) => Some(token),
+        }
+    }
+
     /// Whose budget of requests a request is taken from.
     fn budget(&self) -> &str {
         match self {
@@ -81,7 +89,7 @@ pub(crate) async fn guard(
             let (method, uri) = (request.method().clone(), request.uri().clone());
             request.extensions_mut().insert(caller.clone());
             let response = next.run(request).await;
-            audit::note(&caller, &method, &uri, &response);
+            audit::note(caller.token(), &method, &uri, &response);
             response
         }
         Err(error) => error.into_response(),

@@ -12,7 +12,6 @@ use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
 use crate::answer::artifact::{self, Recording, SpectrumSource};
-use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, PictureResponse, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
@@ -78,19 +77,21 @@ pub(crate) async fn profile(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
+    let place = app.views.enter().await?;
     let parquet = artifact::load(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
     if format == Format::Parquet && fields.is_none() {
         return Ok(format::file(parquet, format, &file_name));
     }
     let title = caption(&app.store, &id, n, "Profile").await?;
-    blocking(move || {
-        let (table, fields) = (artifact::decode(parquet, None)?, fields.as_deref());
-        format::respond_or_draw(&table, fields, format, &file_name, |table| {
-            chart::profile(table, fields, &title)
+    place
+        .run(move || {
+            let (table, fields) = (artifact::decode(parquet, None)?, fields.as_deref());
+            format::respond_or_draw(&table, fields, format, &file_name, |table| {
+                chart::profile(table, fields, &title)
+            })
         })
-    })
-    .await
+        .await
 }
 
 /// The static equilibrium, node by node
@@ -156,15 +157,17 @@ async fn whole_table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
+    let place = app.views.enter().await?;
     let parquet = artifact::load(&app.store, &id, n, name).await?;
     let file_name = file_name(&id, n, name);
     if format == Format::Parquet && query.fields.is_none() {
         return Ok(format::file(parquet, format, &file_name));
     }
-    blocking(move || {
-        format::respond(&artifact::decode(parquet, None)?, query.fields.as_deref(), format, &file_name)
-    })
-    .await
+    place
+        .run(move || {
+            format::respond(&artifact::decode(parquet, None)?, query.fields.as_deref(), format, &file_name)
+        })
+        .await
 }
 
 /// Which part of the recorded histories is wanted.
@@ -241,21 +244,23 @@ pub(crate) async fn history(
         let parquet = artifact::load(&app.store, &id, n, tables::HISTORY.name).await?;
         return Ok(format::file(parquet, format, &file_name));
     }
+    let place = app.views.enter().await?;
     let recording = Recording::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "History").await?;
-    blocking(move || {
-        let table = match choice {
-            None => recording.table()?,
-            Some(choice) => recording.table_of(choice)?,
-        };
-        let max_points = query.max_points.map(|points| points as usize);
-        let table = history::history(table, query.from, query.to, max_points);
-        let fields = query.fields.as_deref();
-        format::respond_or_draw(&table, fields, format, &file_name, |table| {
-            chart::history(table, fields, &title)
+    place
+        .run(move || {
+            let table = match choice {
+                None => recording.table()?,
+                Some(choice) => recording.table_of(choice)?,
+            };
+            let max_points = query.max_points.map(|points| points as usize);
+            let table = history::history(table, query.from, query.to, max_points);
+            let fields = query.fields.as_deref();
+            format::respond_or_draw(&table, fields, format, &file_name, |table| {
+                chart::history(table, fields, &title)
+            })
         })
-    })
-    .await
+        .await
 }
 
 /// Which part of one node's orbit is wanted.
@@ -319,18 +324,20 @@ pub(crate) async fn orbit(
         let detail = format!("must be {} or more", orbit::FEWEST_POINTS);
         return Err(Error::parameter("max_points", Some(&points.to_string()), detail));
     }
+    let place = app.views.enter().await?;
     let recording = Recording::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Orbit").await?;
-    blocking(move || {
-        let motion = recording.motion_of(choice)?;
-        let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
-        let hole = recording.hole_at(motion.node)?;
-        let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
-        format::respond_or_draw(&table, None, format, &file_name, |table| {
-            chart::orbit(table, &hole, &title, query.zoom)
+    place
+        .run(move || {
+            let motion = recording.motion_of(choice)?;
+            let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
+            let hole = recording.hole_at(motion.node)?;
+            let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
+            format::respond_or_draw(&table, None, format, &file_name, |table| {
+                chart::orbit(table, &hole, &title, query.zoom)
+            })
         })
-    })
-    .await
+        .await
 }
 
 /// Which full spectrum is wanted.
@@ -413,28 +420,30 @@ pub(crate) async fn spectrum(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
+    let place = app.views.enter().await?;
     let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     let point = app.store.point(&id, n.into()).await?;
-    blocking(move || {
-        let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
-        let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
-        let (node, table) = match source {
-            SpectrumSource::Recording(recording) => {
-                let motion = recording.motion_of(choice)?;
-                let part = motion.columns().window(from, to);
-                (motion.node, motion.label(spectrum::spectrum(&part, window, range_hz, peaks)?))
-            }
-            SpectrumSource::Kept(kept) => {
-                let kept = kept.spectrum_of(choice, from, to, window)?;
-                (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)))
-            }
-        };
-        let table = spectrum::mark_resolved(table, resolved_hz);
-        let file_name = file_name(&id, n, &format!("spectrum-{node}"));
-        format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
-    })
-    .await
+    place
+        .run(move || {
+            let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
+            let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
+            let (node, table) = match source {
+                SpectrumSource::Recording(recording) => {
+                    let motion = recording.motion_of(choice)?;
+                    let part = motion.columns().window(from, to);
+                    (motion.node, motion.label(spectrum::spectrum(&part, window, range_hz, peaks)?))
+                }
+                SpectrumSource::Kept(kept) => {
+                    let kept = kept.spectrum_of(choice, from, to, window)?;
+                    (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)))
+                }
+            };
+            let table = spectrum::mark_resolved(table, resolved_hz);
+            let file_name = file_name(&id, n, &format!("spectrum-{node}"));
+            format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
+        })
+        .await
 }
 
 fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {

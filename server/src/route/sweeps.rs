@@ -149,12 +149,16 @@ async fn submit(
         Cache::Only => CachePolicy::Only,
     };
     // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
-    let (expansion, new_sweep) = blocking(move || {
-        let expansion = expand(&request)?;
-        let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key)?;
-        Ok((expansion, new_sweep))
-    })
-    .await?;
+    let (expansion, new_sweep) = app
+        .plans
+        .enter()
+        .await?
+        .run(move || {
+            let expansion = expand(&request)?;
+            let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key)?;
+            Ok((expansion, new_sweep))
+        })
+        .await?;
     if query.dry_run {
         return Ok(Json(plan(&app, expansion, cache).await?).into_response());
     }
@@ -208,7 +212,8 @@ async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<Dry
         (known(Some(&expansion)).await?, known(expansion.verification.as_deref()).await?);
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
-    blocking(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
+    let place = app.plans.enter().await?;
+    place.run(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
 }
 
 /// What distinguishes two requests with the same key.
@@ -602,12 +607,16 @@ pub(crate) async fn append(
     };
     let request_json = records::write(&request)?;
     let verify = original.verify;
-    let (expansion, points) = blocking(move || {
-        let expansion = expand_added(request, &original)?;
-        let points = records::new_points(&expansion)?;
-        Ok((expansion, points))
-    })
-    .await?;
+    let (expansion, points) = app
+        .plans
+        .enter()
+        .await?
+        .run(move || {
+            let expansion = expand_added(request, &original)?;
+            let points = records::new_points(&expansion)?;
+            Ok((expansion, points))
+        })
+        .await?;
     let (expansion, verification) = match verify {
         None => (expansion, NewVerification::default()),
         Some(verify) => {
@@ -681,20 +690,22 @@ pub(crate) async fn table(
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    let place = app.views.enter().await?;
     let records = app.store.table_rows(&id).await?;
     let verified = Verified::load(&app.store, &id).await?;
-    blocking(move || {
-        let rows = verified.rows(&records)?;
-        let mut table = points::points(&rows);
-        let findings = &verified.findings;
-        if !findings.warnings.is_empty() {
-            table = table.attribute("warnings", findings.warnings.clone());
-        }
-        let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
-        let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-        format::respond_or_draw(&table, fields, format, &format!("sweep-{id}"), |table| {
-            chart::sweep(table, &parameters, fields, findings, title)
+    place
+        .run(move || {
+            let rows = verified.rows(&records)?;
+            let mut table = points::points(&rows);
+            let findings = &verified.findings;
+            if !findings.warnings.is_empty() {
+                table = table.attribute("warnings", findings.warnings.clone());
+            }
+            let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
+            let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
+            format::respond_or_draw(&table, fields, format, &format!("sweep-{id}"), |table| {
+                chart::sweep(table, &parameters, fields, findings, title)
+            })
         })
-    })
-    .await
+        .await
 }

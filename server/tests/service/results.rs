@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
+use drillsweep_server::Config;
 use drillsweep_table::{Column, parquet};
 use serde_json::{Value, json};
 
@@ -246,4 +247,22 @@ async fn what_the_client_has_a_copy_of_is_not_sent_again() {
     bench.succeed().await;
     assert_eq!(again(&table, &table_tag).await.status, StatusCode::OK);
     assert_eq!(again(&orbit, &orbit_tag).await.status, StatusCode::NOT_MODIFIED);
+}
+
+#[tokio::test]
+async fn large_answers_are_computed_a_few_at_once_and_light_ones_beside_them() {
+    let bench = Bench::with(Config { large_answers: 1, large_answers_waiting: 0, ..Config::default() }).await;
+    let id = bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01]}}})).await;
+    bench.succeed().await;
+    let path = format!("/v1/sweeps/{id}/points/1/history?format=csv");
+    let answers = futures::future::join_all((0..8).map(|_| bench.get(&path))).await;
+    let (served, refused): (Vec<_>, Vec<_>) = answers.iter().partition(|answer| answer.status == 200);
+    assert!(!served.is_empty() && !refused.is_empty(), "{} served", served.len());
+    for answer in refused {
+        answer.problem(503, "unavailable");
+        assert!(answer.headers.contains_key("retry-after"));
+    }
+    // The lane is free again, and was never that of the list.
+    assert_eq!(bench.get(&path).await.status, 200);
+    assert_eq!(bench.get("/v1/sweeps").await.status, 200);
 }

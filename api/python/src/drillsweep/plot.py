@@ -72,7 +72,9 @@ def spectrum(
     run's steps resolve is shaded, and no line there is labelled.
     """
     np = require("numpy", "plot")
-    table = point.spectrum(node=node, depth=depth, nearest=nearest, time=time, window=window, range_hz=range_hz, peaks=peaks + 1)
+    table = point.spectrum(
+        node=node, depth=depth, nearest=nearest, time=time, window=window, range_hz=range_hz, peaks=peaks + 1
+    )
     # As wide as the line that any window makes of a mean.
     is_mean = np.abs(table["frequency"]) < 2.5 * table.attributes["resolution"]
     shown = _shown("amplitude")

@@ -265,8 +265,8 @@ class Sweep:
             file: The archive.
             tables: Names of the tables of each point, such as `["profile", "history"]`; None means all.
 
-        Tables that the service has lost, or that have expired, are not in it. A warning says so, and `manifest.json` in the archive
-        which they are and why.
+        Tables that the service has lost, or that have expired, are not in it. A warning says so, and `manifest.json`
+        in the archive which they are and why.
         """
         names = None if tables is None else ",".join(tables)
         archive = self._client.download(f"{self.path}/export", file, {"artifacts": names})
@@ -314,8 +314,8 @@ class Sweep:
             is_pinned: Whether it, and all that belongs to it, is kept whatever its age.
             expires: When it is to be deleted, once all its points are final and unless it is pinned: a time, a span
                 from now, or None for never. A time without a zone is this machine's.
-            only_as_read: Whether to raise `ChangedMeanwhile`, and change nothing, where somebody else has changed the sweep
-                since this object read it. That its points have gone on does not count.
+            only_as_read: Whether to raise `ChangedMeanwhile`, and change nothing, where somebody else has changed the
+                sweep since this object read it. That its points have gone on does not count.
         """
         if isinstance(expires, timedelta):
             expires = datetime.now(timezone.utc) + expires

@@ -3,8 +3,10 @@
 //! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
+mod continuation;
 mod newton;
 mod overload;
+mod relaxation;
 
 pub use newton::NewtonSettings;
 pub use overload::Overload;
@@ -26,6 +28,10 @@ const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
 /// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge: shorter steps
 /// alone, then held by a spring thirty times as stiff too. They are orders of magnitude, without a derivation.
 const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
+
+/// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other where it does not reach the loads: none,
+/// then the one that the search begins with, which holds the string where its loads do not stretch it yet, and one thirty times as stiff.
+const PATH_SPRINGS: [f64; 3] = [0.0, 3e4, 1e6];
 
 /// Stiffness of softer walls on the way to the scenario's own, a decade apart: each lets the string ten times deeper in than the next one, from
 /// where Newton's method has to find the next.
@@ -81,7 +87,7 @@ pub enum StaticsError {
         residual: f64,
         /// Node where it stands, from 1.
         node: usize,
-        /// Where the string is loaded beyond its stability between two supports; absent where it is not.
+        /// The instability that the string has wherever it lies; absent where none is shown.
         overload: Option<Overload>,
     },
     /// The tangent broke down.
@@ -216,7 +222,7 @@ impl Equilibrium {
 }
 
 /// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with
-/// shorter steps held by a stiffer spring.
+/// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, and by plain steps of any length.
 fn with_fallbacks(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -244,6 +250,18 @@ fn with_fallbacks(
         if let Ok(outcome) = newton::solve(model, &model.wall, load, displacement, &slow) {
             return Ok(outcome);
         }
+    }
+    displacement.clone_from(&start);
+    let found = PATH_SPRINGS
+        .iter()
+        .find_map(|&spring| continuation::follow(model, load, displacement, spring))
+        .or_else(|| relaxation::settle(model, load, displacement))
+        .or_else(|| {
+            displacement.clone_from(&start);
+            newton::finish(model, load, displacement)
+        });
+    if let Some(outcome) = found {
+        return Ok(outcome);
     }
     Err(match failure {
         StaticsError::NotConverged { iterations, residual, node, .. } => {

@@ -19,6 +19,13 @@ const SHIFT_AGAIN_ABOVE: f64 = 10.0;
 /// (switched evolution relaxation, Mulder and van Leer 1985; Kelley and Keyes 1998, who prove that it converges).
 const SHIFT_CHANGE: f64 = 10.0;
 
+/// Iterations of plain Newton next to an equilibrium.
+pub(super) const LAST_ITERATIONS: usize = 40;
+
+/// Last step of plain Newton next to an equilibrium, in the largest displacement: of metres of sag, rounding leaves more than the tolerance of
+/// strings that lie in their hole.
+const ARRIVED: f64 = 1e-9;
+
 /// How the search goes about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewtonSettings {
@@ -108,8 +115,24 @@ pub(super) fn solve(
     })
 }
 
+/// Plain Newton from `displacement` next to an equilibrium under `load`, with steps as long as they are.
+pub(super) fn finish(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> Option<NewtonOutcome> {
+    let largest = displacement.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let plain = NewtonSettings {
+        initial_shift: 0.0,
+        largest_step: f64::INFINITY,
+        iteration_limit: LAST_ITERATIONS,
+        tolerance: NewtonSettings::default().tolerance.max(ARRIVED * largest),
+    };
+    solve(model, &model.wall, load, displacement, &plain).ok()
+}
+
 /// Unbalanced forces and the exact tangent stiffness, held degrees of freedom made trivial.
-fn linearise(
+pub(super) fn linearise(
     model: &Model,
     wall: &Wall,
     load: &[[f64; DOFS]],
@@ -162,7 +185,7 @@ fn linearise(
 }
 
 /// Half the elements on both sides of every node \[m\].
-fn tributary_lengths(model: &Model) -> Vec<f64> {
+pub(super) fn tributary_lengths(model: &Model) -> Vec<f64> {
     let mut lengths = vec![0.0; model.node_count()];
     for (e, element) in model.elements.iter().enumerate() {
         lengths[e] += 0.5 * element.chord.length;

@@ -1,14 +1,26 @@
-//! Loads beyond the string's stability: why there may be no equilibrium.
+//! Loads beyond the string's stability: why there may be no equilibrium, or none at which it would stay.
 
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::model::Model;
+use nalgebra::{SMatrix, SymmetricEigen};
 
-/// Stretch of string that is loaded beyond its stability while nothing holds it in between.
+use crate::freedom::{DOFS, THETA_X, THETA_Y};
+use crate::linalg::{Block, BlockTridiagonal};
+use crate::model::{Model, add_element_matrix, clear_held};
+
+/// Size up to which an eigenvalue of a pivot block, whose diagonal is scaled to 1, counts as zero.
+const ZERO: f64 = 1e-9;
+
+/// A string that is unstable at every equilibrium it may have: even with all nodes held by the wall, or under its loads where there is none, its
+/// stiffness has negative eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overload {
-    /// Measured depth of its upper end \[m\].
+    /// Number of those eigenvalues.
+    pub negative_eigenvalues: usize,
+    /// Whether they are those of a string whose nodes are all held by the wall.
+    pub held_by_wall: bool,
+    /// Measured depth \[m\] of the upper end of the stretch that is loaded most.
     pub measured_depth: f64,
     /// Its length \[m\]: an element, since the wall holds nodes only; the whole string where there is no wall.
     pub length: f64,
@@ -16,7 +28,7 @@ pub struct Overload {
     pub compression: f64,
     /// Torque \[N m\].
     pub torque: f64,
-    /// `P / P_Euler + (T / T_Greenhill)^2`, pinned ends; 1 is the limit.
+    /// `P / P_Euler + (T / T_Greenhill)^2`, pinned ends.
     pub ratio: f64,
 }
 
@@ -24,8 +36,10 @@ impl fmt::Display for Overload {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             formatter,
-            "the string is physically unstable: {:.2} m at {:.1} m depth carry {:.1} kN of compression and {:.2} kN m of torque, {:.3} times \
-             what buckles them between their ends",
+            "the string is physically unstable: {} eigenvalues of its stiffness are negative{}; {:.2} m at {:.1} m depth carry {:.1} kN of \
+             compression and {:.2} kN m of torque, {:.3} times what buckles them between pinned ends",
+            self.negative_eigenvalues,
+            if self.held_by_wall { " even where the wall holds every node" } else { "" },
             self.length,
             self.measured_depth,
             self.compression / 1e3,
@@ -38,35 +52,148 @@ impl fmt::Display for Overload {
 /// What a failed search says about the physics.
 pub(super) fn verdict(overload: Option<&Overload>) -> String {
     overload.map_or_else(
-        || "no stretch of the string is beyond its buckling load: the search itself failed".to_owned(),
+        || "the string is not shown to be unstable: the search itself failed".to_owned(),
         Overload::to_string,
     )
 }
 
-/// The stretch that is furthest beyond its stability under `load`, if there is any.
+/// The instability of a string wherever it lies, if there is one, with the stretch that is loaded most.
 ///
-/// A shaft with pinned ends under thrust P and torque T buckles where P / (EI) + (T / 2EI)^2 = (pi / l)^2 (Greenhill 1883). Tension is
-/// summed up from the bit along the string's buoyed weight, without the wall's friction and the mud's drag; torque is the bit's.
+/// Compression follows from the balance along the string and does not depend on where it lies: it is summed up from the bit along the buoyed
+/// weight, without the mud's drag; torque is the bit's. Contact acts on the lateral displacements of nodes, so that it holds the string at
+/// most as bearings there do, which leave rotations free. Without a wall, what follows the end of the string (torque, flow) is left out, so that the
+/// stiffness is symmetric. If the stiffness of the string is negative in some direction with all these
+/// displacements held, it is so at every equilibrium. A shaft with pinned ends under thrust P and torque T buckles where P / (EI) + (T / 2EI)^2 =
+/// (pi / l)^2 (Greenhill 1883).
 pub(super) fn find(model: &Model) -> Option<Overload> {
     let string = model.mesh.length();
+    let held_by_wall = model.effects.contact;
     let torque = if model.effects.torque_stiffening { model.scenario.operation.torque_on_bit } else { 0.0 };
     let mut tension = model.scenario.operation.weight_on_bit;
-    let mut worst: Option<Overload> = None;
+    let mut stiffness = BlockTridiagonal::zeros(model.node_count());
+    let mut worst = Overload {
+        negative_eigenvalues: 0,
+        held_by_wall,
+        measured_depth: 0.0,
+        length: string,
+        compression: 0.0,
+        torque,
+        ratio: f64::NEG_INFINITY,
+    };
     for (e, element) in model.elements.iter().enumerate().rev() {
         tension += 0.5 * element.axial_weight;
         let bending = element.beam.section().bending_stiffness();
         let momentum =
             element.momentum.filter(|_| model.effects.flow_stiffness).map_or(0.0, |flow| flow.lateral_flux());
-        let middle = tension;
+        let by_tension =
+            element.tension_unit.map_or(element.elastic, |unit| element.elastic + unit * tension);
+        let own = if held_by_wall { element.stiffness(tension, torque) } else { by_tension };
+        add_element_matrix(&mut stiffness, e, &own);
+        let thrust = if model.effects.axial_stiffening { -tension } else { 0.0 };
         tension += 0.5 * element.axial_weight;
-        let thrust = if model.effects.axial_stiffening { -middle } else { 0.0 };
         let compression = thrust + momentum;
-        let length = if model.effects.contact { element.beam.length() } else { string };
+        let length = if held_by_wall { element.beam.length() } else { string };
         let ratio = (compression / bending + (0.5 * torque / bending).powi(2)) * (length / PI).powi(2);
-        if ratio > worst.map_or(1.0, |worst| worst.ratio) {
-            let measured_depth = if model.effects.contact { model.mesh.elements[e].top } else { 0.0 };
-            worst = Some(Overload { measured_depth, length, compression, torque, ratio });
+        if ratio > worst.ratio {
+            let measured_depth = if held_by_wall { model.mesh.elements[e].top } else { 0.0 };
+            worst = Overload { measured_depth, length, compression, ratio, ..worst };
         }
     }
-    worst
+    let negative_eigenvalues = negative_directions(model, stiffness);
+    (negative_eigenvalues > 0).then_some(Overload { negative_eigenvalues, ..worst })
+}
+
+/// In how many directions the stiffness is negative, with the lateral displacements of all nodes held where there is a wall: the negative
+/// eigenvalues of the pivot blocks of its symmetric part (Sylvester's law of inertia).
+fn negative_directions(model: &Model, mut stiffness: BlockTridiagonal) -> usize {
+    let nodes = model.node_count();
+    let held: Vec<[bool; DOFS]> = (0..nodes)
+        .map(|node| {
+            let by_top = model.held_by_top(node);
+            let bends = |dof: usize| [THETA_X, THETA_Y].contains(&dof);
+            std::array::from_fn(|dof| by_top[dof] || (model.effects.contact && !bends(dof)))
+        })
+        .collect();
+    clear_held(&mut stiffness, &held);
+    let matrix = |block: &Block| SMatrix::<f64, DOFS, DOFS>::from_fn(|i, j| block[(i, j)]);
+    let mut negative = 0;
+    let mut above: Option<SMatrix<f64, DOFS, DOFS>> = None;
+    for (node, held) in held.iter().enumerate() {
+        let mut pivot = matrix(&stiffness.diagonal[node]);
+        pivot = (pivot + pivot.transpose()) * 0.5;
+        if let Some(inverse) = above {
+            let coupling =
+                (matrix(&stiffness.lower[node]) + matrix(&stiffness.upper[node - 1]).transpose()) * 0.5;
+            pivot -= coupling * inverse * coupling.transpose();
+        }
+        for dof in (0..DOFS).filter(|&dof| held[dof]) {
+            pivot[(dof, dof)] = 1.0;
+        }
+        // Rows of stiffness per length and per angle on one scale.
+        let scale = pivot.diagonal().map(|value| 1.0 / value.abs().sqrt().max(f64::MIN_POSITIVE));
+        let scaled = SMatrix::<f64, DOFS, DOFS>::from_fn(|i, j| scale[i] * pivot[(i, j)] * scale[j]);
+        negative += SymmetricEigen::new(scaled).eigenvalues.iter().filter(|value| **value < -ZERO).count();
+        above = pivot.try_inverse();
+        if above.is_none() {
+            return negative;
+        }
+    }
+    negative
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Effect, Scenario, Section, SectionKind, SurveyStation, Switch, preset};
+
+    /// Horizontal drillpipe of 40 elements of 5 m, pushed from below.
+    fn pushed(thrust: f64) -> Scenario {
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.mud = None;
+        scenario.well.survey = [0.0, 200.0]
+            .map(|measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 })
+            .to_vec();
+        scenario.string.sections = vec![Section {
+            kind: SectionKind::Drillpipe,
+            count: 1,
+            length: 200.0,
+            outer_diameter: 0.127,
+            inner_diameter: 0.108,
+            tool_joint: None,
+        }];
+        scenario.string.gauges.clear();
+        scenario.string.unbalance.clear();
+        scenario.recording.nodes.clear();
+        scenario.mesh.lengths_mut().unwrap().drillpipe = 5.0;
+        scenario.operation.weight_on_bit = -thrust;
+        scenario.operation.torque_on_bit = 0.0;
+        scenario
+    }
+
+    #[test]
+    fn instability_between_nodes_on_the_wall_begins_at_an_elements_own_load() {
+        // Spans of one element each buckle into opposite half waves; for cubic shapes 2 E I / L - P L / 6 of a half wave is zero at
+        // 12 E I / L^2 (Przemieniecki 1968), 1 % less for the shear of this pipe. The clamped top is half a span's difference in 40.
+        let bending = 2.03e11 * PI / 64.0 * (0.127_f64.powi(4) - 0.108_f64.powi(4));
+        let buckles = 12.0 * bending / 25.0;
+        let found = |share: f64| find(&Model::new(&pushed(share * buckles)).unwrap());
+        assert_eq!(found(0.97), None);
+        let overload = found(1.03).unwrap();
+        assert!(overload.held_by_wall && overload.negative_eigenvalues > 0, "{overload}");
+        assert!((overload.length - 5.0).abs() < 1e-9 && overload.ratio > 1.0, "{overload}");
+    }
+
+    #[test]
+    fn instability_without_a_wall_begins_at_eulers_load() {
+        let bending = 2.03e11 * PI / 64.0 * (0.127_f64.powi(4) - 0.108_f64.powi(4));
+        let euler = bending * (0.5 * PI / 200.0).powi(2);
+        let found = |share: f64| {
+            let mut scenario = pushed(share * euler);
+            scenario.effects.set(Effect::Contact, Switch::Off);
+            find(&Model::new(&scenario).unwrap())
+        };
+        assert_eq!(found(0.99), None);
+        // In both planes.
+        assert_eq!(found(1.01).unwrap().negative_eigenvalues, 2);
+    }
 }

@@ -1,0 +1,106 @@
+//! Equilibria next to the loads that buckle a string, and of strings that sag by metres, against beam theory.
+
+use std::f64::consts::PI;
+
+use drillsweep_sim::beam::BeamSection;
+use drillsweep_sim::model::{GRAVITY, Model};
+use drillsweep_sim::scenario::{
+    Effect, Gauge, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
+};
+use drillsweep_sim::statics::Equilibrium;
+
+/// A horizontal string of one section without mud, friction and torque.
+fn horizontal(length: f64, diameters: [f64; 2], element: f64) -> Scenario {
+    let mut scenario = preset("paper-200m").expect("shipped preset");
+    scenario.mud = None;
+    scenario.well.survey = [0.0, length]
+        .map(|measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 })
+        .to_vec();
+    let [outer_diameter, inner_diameter] = diameters;
+    scenario.string.sections = vec![Section {
+        kind: SectionKind::Collar,
+        count: 1,
+        length,
+        outer_diameter,
+        inner_diameter,
+        tool_joint: None,
+    }];
+    scenario.string.gauges.clear();
+    scenario.string.unbalance.clear();
+    scenario.recording.nodes.clear();
+    scenario.mesh.lengths_mut().expect("has target lengths").collar = element;
+    (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+    scenario.operation.torque_on_bit = 0.0;
+    scenario
+}
+
+fn section(scenario: &Scenario) -> BeamSection {
+    let of = &scenario.string.sections[0];
+    BeamSection::pipe(of.outer_diameter, of.inner_diameter, &scenario.string.material)
+}
+
+#[test]
+fn collars_lie_on_the_low_side_up_to_dawson_and_paslays_load() {
+    for share in [0.84, 0.9, 0.95] {
+        let mut scenario = horizontal(400.0, [0.159, 0.071], 4.0);
+        scenario.string.gauges.push(Gauge { measured_depth: 400.0, clearance: 1e-4 });
+        let (beam, clearance) = (section(&scenario), 0.5 * (scenario.well.hole_diameter - 0.159));
+        let weight = beam.density * beam.area * GRAVITY;
+        scenario.operation.weight_on_bit =
+            -share * 2.0 * (beam.bending_stiffness() * weight / clearance).sqrt();
+        let model = Model::new(&scenario).expect("valid");
+        let equilibrium = Equilibrium::find(&model).unwrap_or_else(|error| panic!("{share}: {error}"));
+        // The wall and the clamp carry the weight; far from both ends every node has its own, and none leaves the low side.
+        for node in 40..60 {
+            let force = equilibrium.normal_force[node] / (weight * 4.0);
+            assert!((force - 1.0).abs() < 0.1, "{share}: node {node} carries {force} of its weight");
+            let [u, v, ..] = equilibrium.displacement[node];
+            let radius = u.hypot(v);
+            assert!((radius / clearance - 1.0).abs() < 0.02, "{share}: node {node} at {radius} m");
+            let [u0, v0, ..] = equilibrium.displacement[50];
+            assert!(
+                u * u0 + v * v0 > 0.99 * radius * u0.hypot(v0),
+                "{share}: node {node} leaves the low side"
+            );
+        }
+    }
+}
+
+#[test]
+fn cantilevers_next_to_eulers_load_sag_as_beam_columns_do() {
+    // E I y'' = P (d - y) + q (L - x)^2 / 2 with y(0) = y'(0) = 0 and y(L) = d.
+    for (length, share) in [(20.0, 0.5), (20.0, 0.95), (20.0, 0.99), (80.0, 0.8)] {
+        let mut scenario = horizontal(length, [0.127, 0.108], length / 40.0);
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        let beam = section(&scenario);
+        let (stiffness, q) = (beam.bending_stiffness(), beam.density * beam.area * GRAVITY);
+        let p = share * stiffness * (0.5 * PI / length).powi(2);
+        scenario.operation.weight_on_bit = -p;
+        let k = (p / stiffness).sqrt();
+        let (sine, cosine) = (k * length).sin_cos();
+        let constant = q * stiffness / (p * p);
+        let expected =
+            -q * length * length / (2.0 * p) + constant - (constant - q * length / (p * k) * sine) / cosine;
+        let model = Model::new(&scenario).expect("valid");
+        let equilibrium = Equilibrium::find(&model).unwrap_or_else(|error| panic!("{share}: {error}"));
+        let [u, v, ..] = *equilibrium.displacement.last().expect("the bit");
+        let sag = u.hypot(v);
+        // Shear lowers the load that buckles by P / k G S, below 1e-4, which a share of 0.99 makes 1e-2.
+        let tolerance = 1e-4 / (1.0 - share);
+        assert!((sag / expected - 1.0).abs() < tolerance, "{length} m at {share}: {sag} m for {expected} m");
+    }
+}
+
+#[test]
+fn a_string_that_nothing_stretches_finds_the_wall() {
+    // Pinned above, it has no stiffness against turning until it lies on the low side.
+    let mut scenario = horizontal(100.0, [0.127, 0.108], 2.0);
+    scenario.operation.weight_on_bit = 0.0;
+    scenario.operation.top = drillsweep_sim::scenario::TopCondition::Pinned;
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("rests");
+    let beam = section(&scenario);
+    let weight = beam.density * beam.area * GRAVITY * 100.0;
+    let carried: f64 = equilibrium.normal_force.iter().sum();
+    assert!(carried > 0.9 * weight && carried < weight, "{carried} N of {weight} N; the pin has the rest");
+}

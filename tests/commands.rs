@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
+use rustix::process::Signal;
 use serde_json::{Value, json};
 
 use crate::{BINARY, listen};
@@ -336,4 +337,28 @@ fn output_ends_quietly_where_nobody_reads_and_errors_are_messages() {
         let help = text(&server, &[command, "--help"]);
         assert!(!help.contains("\\["), "{help}");
     }
+}
+
+#[test]
+fn checking_a_store_leaves_no_trace_in_it() {
+    let data = tempfile::tempdir().unwrap();
+    let (mut serve, server) = listen(data.path(), &["serve"]);
+    let submit = [&["submit", "paper-200m", "--detach"][..], &SHORT].concat();
+    text(&server, &submit);
+    let directory = data.path().to_str().unwrap();
+    let files = || {
+        let mut names: Vec<_> = std::fs::read_dir(data.path())
+            .unwrap()
+            .map(|entry| entry.unwrap())
+            .map(|entry| (entry.file_name(), entry.metadata().unwrap().modified().unwrap()))
+            .collect();
+        names.sort();
+        names
+    };
+    assert!(run(&server, &["check", "--data", directory]).status.success(), "beside a running service");
+    serve.signal(Signal::TERM);
+    assert!(serve.0.wait().unwrap().success());
+    let before = files();
+    assert!(run(&server, &["check", "--data", directory]).status.success());
+    assert_eq!(files(), before);
 }

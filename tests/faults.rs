@@ -609,7 +609,7 @@ fn damaged_result_is_told_and_computed_again() {
     let missing: Value =
         serde_json::from_slice(&std::fs::read(fetched.join("missing.json")).unwrap()).unwrap();
     assert!(missing[0]["reason"].as_str().unwrap().contains("table profile"), "{missing}");
-    assert!(fetched.join("table.csv").exists() && fetched.join("point-0001/point.json").exists());
+    assert!(fetched.join("table.parquet").exists() && fetched.join("point-0001/point.json").exists());
 
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
     for query in ["profile", "history?format=parquet", "orbit?node=49", "spectrum?node=49"] {

@@ -326,7 +326,7 @@ fn bodies_that_unfold_or_never_end_are_refused() {
     // 10 kB of gzip that would be 10 MB.
     let bomb = gzip_of_zeros(10 << 20);
     assert!(bomb.len() < 20 << 10, "{}", bomb.len());
-    assert_eq!(post(&bomb, Some("gzip")), 400, "it is taken as it is, and is not JSON");
+    assert_eq!(post(&bomb, Some("gzip")), 415);
     assert_eq!(post("[".repeat(1 << 20).as_bytes(), None), 400);
     assert_eq!(post(r#"{"axes":"#.repeat(100_000).as_bytes(), None), 400);
     let limit = get(&format!("{server}/v1/limits"))["body_bytes"].as_u64().unwrap();

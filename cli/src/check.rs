@@ -26,7 +26,10 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
     let config = arguments.data.existing_store(Role::Worker)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let (report, repair) = runtime.block_on(async {
-        let store = Store::open(&config).await?;
+        let store = match arguments.repair {
+            true => Store::open(&config).await?,
+            false => Store::open_read_only(&config).await?,
+        };
         let report = store.check().await?;
         let repair = match arguments.repair {
             true => Some(store.repair(&report, PHYSICS_VERSION.into()).await?),

@@ -135,6 +135,24 @@ impl Store {
         Ok(Self { pool, database_path, blobs })
     }
 
+    /// Opens the store to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
+    ///
+    /// # Errors
+    /// When the database cannot be opened.
+    pub async fn open_read_only(config: &StoreConfig) -> Result<Self> {
+        let mut log = OsString::from(&config.database_path);
+        log.push("-wal");
+        let options = SqliteConnectOptions::new()
+            .filename(&config.database_path)
+            .read_only(true)
+            // SQLite would make files for its write-ahead log even to read. Whoever writes has one already.
+            .immutable(!Path::new(&log).exists())
+            .busy_timeout(BUSY_TIMEOUT);
+        let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await?;
+        let blobs = BlobStore::open(&config.blob_directory)?;
+        Ok(Self { pool, database_path: config.database_path.clone(), blobs })
+    }
+
     /// The object store.
     pub fn blobs(&self) -> &BlobStore {
         &self.blobs

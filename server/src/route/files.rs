@@ -27,8 +27,9 @@ pub(crate) struct ArtifactPath {
     /// Number of the point in the sweep, from 1.
     #[param(minimum = 1)]
     n: u32,
-    /// Name of the file, as the list of files has it.
-    #[param(example = "history")]
+    /// Name of the file, as the list of files has it; it may end as the file's link does, in `.parquet` or `.json`, so that what is
+    /// saved under the link's name has its extension.
+    #[param(example = "history.parquet")]
     name: String,
 }
 
@@ -48,7 +49,11 @@ pub(crate) async fn list(
     let key = artifact::result_key(&app.store, &id, n).await?;
     let entry = |artifact: drillsweep_store::Artifact| {
         Ok(ArtifactEntry {
-            link: format!("/v1/sweeps/{id}/points/{n}/artifacts/{}", artifact.name),
+            link: format!(
+                "/v1/sweeps/{id}/points/{n}/artifacts/{}{}",
+                artifact.name,
+                extension(&artifact.media_type)
+            ),
             name: artifact.name,
             media_type: artifact.media_type,
             bytes: artifact.bytes.unsigned_abs(),
@@ -95,7 +100,13 @@ pub(crate) async fn show(
     headers: HeaderMap,
 ) -> Result<Response> {
     let key = artifact::result_key(&app.store, &id, n).await?;
-    let stored = artifact::find(&app.store, &key, &name).await?;
+    let ending = [PARQUET, JSON].into_iter().find_map(|ending| Some((name.strip_suffix(ending)?, ending)));
+    let stored = artifact::find(&app.store, &key, ending.map_or(&name, |(stem, _)| stem)).await?;
+    if let Some((stem, ending)) = ending.filter(|(_, ending)| *ending != extension(&stored.media_type)) {
+        let detail =
+            format!("{stem} is kept as {stem}{}, not as {stem}{ending}", extension(&stored.media_type));
+        return Err(Error::new(ProblemKind::NoSuchTable, detail));
+    }
     artifact::check_age(&stored)?;
     let length = stored.bytes.unsigned_abs();
     let tag = format!("\"{}\"", stored.blob);
@@ -133,6 +144,17 @@ pub(crate) async fn show(
     let bytes = artifact::read(&app.store, &key, &stored, Some(wanted)).await?;
     let place = format!("bytes {}-{}/{length}", range.start(), range.end());
     Ok((StatusCode::PARTIAL_CONTENT, usual, [(header::CONTENT_RANGE, place)], bytes).into_response())
+}
+
+const PARQUET: &str = ".parquet";
+const JSON: &str = ".json";
+
+/// How the name of a saved file of this type ends.
+fn extension(media_type: &str) -> &'static str {
+    match media_type {
+        "application/json" => JSON,
+        _ => PARQUET,
+    }
 }
 
 fn not_satisfiable(length: u64) -> Response {

@@ -68,6 +68,9 @@ async fn a_file_is_served_whole_and_in_ranges() {
 async fn who_has_a_file_does_not_get_it_again() {
     let (bench, path) = finished().await;
     let link = format!("{path}/points/1/artifacts/history");
+    let named = bench.get(&format!("{link}.parquet")).await;
+    assert_eq!((named.status.as_u16(), &named.body), (200, &bench.get(&link).await.body));
+    bench.get(&format!("{link}.json")).await.problem(404, "no-such-table");
     let whole = bench.get(&link).await;
     let tag = whole.headers[header::ETAG].to_str().unwrap().to_owned();
     for known in [tag.clone(), format!("W/{tag}"), format!("\"other\", {tag}"), "*".to_owned()] {

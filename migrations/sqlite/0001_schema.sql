@@ -15,6 +15,11 @@ CREATE TABLE sweep (
     -- A JSON array of texts.
     tags                    TEXT    NOT NULL DEFAULT '[]',
     cancelled               INTEGER NOT NULL DEFAULT 0,
+    -- The ordinal up to which the work of a cancelled sweep is cancelled; none once all of it is.
+    cancelled_to            INTEGER,
+    -- Since when nobody sees it: while its points are being stored, or taken away. What stays so for long was left behind by a
+    -- process that died, and is taken away.
+    hidden                  INTEGER,
     -- Its points are not handed out, but for those that another live sweep wants.
     paused                  INTEGER NOT NULL DEFAULT 0,
     -- All that belongs to it is kept.
@@ -48,6 +53,9 @@ CREATE TABLE sweep (
 ) STRICT;
 
 CREATE INDEX sweep_by_owner ON sweep (owner, id);
+-- What was begun and is to be brought to its end.
+CREATE INDEX sweep_half_cancelled ON sweep (id) WHERE cancelled_to IS NOT NULL;
+CREATE INDEX sweep_hidden ON sweep (hidden) WHERE hidden IS NOT NULL;
 
 -- The requests by which points were added to a sweep, a row each: in the row of the sweep, which is written with every change
 -- of one of its points, they would make each of these writes as long as all of them.

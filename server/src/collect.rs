@@ -1,4 +1,4 @@
-//! Deleting what need not be kept, where the service sees to that.
+//! The task that deletes what need not be kept.
 
 use std::time::Duration;
 

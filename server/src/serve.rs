@@ -10,7 +10,7 @@ use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
 
 use crate::app::{App, Config};
-use crate::collect;
+use crate::collect::collect;
 use crate::listen::serve_connections;
 use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
@@ -73,7 +73,7 @@ pub async fn serve(
     let mut stopped = stopping.clone();
     let app = App::new(store, config, stopping);
     let reaper = tokio::spawn(reap_expired_leases(app.clone()));
-    let collector = tokio::spawn(collect::collect(app.clone()));
+    let collector = tokio::spawn(collect(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         let limits = app.config.connections.clone();
@@ -103,6 +103,9 @@ pub async fn serve(
     result
 }
 
+/// How long a sweep may be hidden without anybody storing or deleting points of it.
+const LEFT_BEHIND: Duration = Duration::from_secs(60);
+
 /// Gives the points of dead workers back to the queue, time after time, until the service stops. Workers do
 /// the same when they claim; this keeps what clients see right when there are none.
 async fn reap_expired_leases(mut app: App) {
@@ -123,6 +126,13 @@ async fn reap_expired_leases(mut app: App) {
                 tracing::warn!(number, "leases have expired; their points are queued again");
             }
             Err(error) => tracing::error!(%error, "the search for expired leases failed"),
+        }
+        match app.store.finish_what_was_begun(LEFT_BEHIND.as_millis() as i64).await {
+            Ok(0) => {}
+            Ok(number) => {
+                tracing::warn!(number, "half-stored, half-cancelled or half-deleted sweeps were finished")
+            }
+            Err(error) => tracing::error!(%error, "the search for half-finished sweeps failed"),
         }
         if Instant::now() < outdated_from {
             continue;

@@ -30,8 +30,12 @@ fn queue(role: Role) -> Queue {
     Queue { runtime, store, _directory: directory }
 }
 
-/// A sweep whose texts are as long as real ones.
 fn sweep(number: i64) -> NewSweep {
+    sweep_of(number, POINTS)
+}
+
+/// A sweep whose texts are as long as real ones.
+fn sweep_of(number: i64, points: i64) -> NewSweep {
     let point = |ordinal: i64| NewPoint {
         ordinal,
         parameters_json: format!(r#"{{"flow_rate":0.03,"mud_density":{ordinal}}}"#),
@@ -50,7 +54,7 @@ fn sweep(number: i64) -> NewSweep {
         idempotency_key: None,
         base_json: format!("{number:>3000}"),
         physics_version: 1,
-        points: (1..=POINTS).map(point).collect(),
+        points: (1..=points).map(point).collect(),
         verification: NewVerification::default(),
     }
 }
@@ -96,6 +100,33 @@ fn submit_ten_thousand_points(bencher: Bencher) {
         .bench_local_values(|sweep| {
             queue.runtime.block_on(queue.store.submit_sweep(&sweep)).expect("submitted")
         });
+}
+
+/// What one owner's point waits for while another owner submits and cancels a hundred thousand, time after time.
+#[divan::bench(sample_count = 500, sample_size = 1)]
+fn submit_beside_a_hundred_thousand_points(bencher: Bencher) {
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let runtime = Runtime::new().expect("a runtime");
+    let config = StoreConfig::in_directory(directory.path(), Role::Server);
+    let store = runtime.block_on(Store::open(&config)).expect("a store");
+    let busy = store.clone();
+    runtime.spawn(async move {
+        for number in 1.. {
+            busy.submit_sweep(&sweep_of(number, 100_000)).await.expect("submitted");
+            busy.cancel_sweep(&number.to_string()).await.expect("cancelled");
+        }
+    });
+    let number = Cell::new(0);
+    bencher
+        .with_inputs(|| {
+            number.set(number.get() + 1);
+            NewSweep {
+                owner: "bob".to_owned(),
+                id: format!("bob's {number:?}"),
+                ..sweep_of(-number.get(), 1)
+            }
+        })
+        .bench_local_values(|sweep| runtime.block_on(store.submit_sweep(&sweep)).expect("submitted"));
 }
 
 /// One more point, to a sweep that has one and to one that has ten thousand.

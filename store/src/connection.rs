@@ -2,13 +2,16 @@
 
 use std::ffi::OsString;
 use std::fs::{File, TryLockError};
+use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Sqlite, Transaction};
+use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Sqlite, SqliteConnection, Transaction};
+use tokio::sync::{Mutex, OwnedMutexGuard};
 
 use crate::blob::BlobStore;
 use crate::error::{Result, StoreError};
@@ -66,6 +69,39 @@ pub struct Store {
     pub(crate) pool: SqlitePool,
     pub(crate) database_path: PathBuf,
     blobs: BlobStore,
+    /// Whose turn it is to write.
+    writers: Arc<Mutex<()>>,
+}
+
+/// A transaction that writes. It is undone unless it is committed.
+pub(crate) struct Writing {
+    transaction: Transaction<'static, Sqlite>,
+    /// Given up after the transaction: fields are dropped in their order.
+    _turn: OwnedMutexGuard<()>,
+}
+
+impl Writing {
+    pub(crate) async fn commit(self) -> Result<()> {
+        Ok(self.transaction.commit().await?)
+    }
+
+    pub(crate) async fn rollback(self) -> Result<()> {
+        Ok(self.transaction.rollback().await?)
+    }
+}
+
+impl Deref for Writing {
+    type Target = SqliteConnection;
+
+    fn deref(&self) -> &SqliteConnection {
+        &self.transaction
+    }
+}
+
+impl DerefMut for Writing {
+    fn deref_mut(&mut self) -> &mut SqliteConnection {
+        &mut self.transaction
+    }
 }
 
 /// Pages that a connection keeps, in KiB (hence the sign). A large submission touches the indexes of keys, which are hashes, all
@@ -132,7 +168,7 @@ impl Store {
         drop(opening);
         let blobs = BlobStore::open(&config.blob_directory)?;
         let database_path = config.database_path.clone();
-        Ok(Self { pool, database_path, blobs })
+        Ok(Self { pool, database_path, blobs, writers: Arc::default() })
     }
 
     /// Opens the store to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
@@ -165,8 +201,13 @@ impl Store {
 
     /// A transaction that takes the write lock at once: a deferred one fails with "database is locked" however
     /// long the busy timeout is.
-    pub(crate) async fn write(&self) -> Result<Transaction<'static, Sqlite>> {
-        Ok(self.pool.begin_with("BEGIN IMMEDIATE").await?)
+    ///
+    /// Within a process writers take turns in the order in which they ask: SQLite's own waiting is trying again after a while,
+    /// by which one that writes time after time would get in before one that waits.
+    pub(crate) async fn write(&self) -> Result<Writing> {
+        let turn = self.writers.clone().lock_owned().await;
+        let transaction = self.pool.begin_with("BEGIN IMMEDIATE").await?;
+        Ok(Writing { transaction, _turn: turn })
     }
 
     /// Milliseconds since the epoch by the database's clock.

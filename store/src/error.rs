@@ -46,6 +46,12 @@ pub enum StoreError {
     /// An idempotency key was used for another request.
     #[error("the idempotency key was used for another request before")]
     IdempotencyConflict,
+    /// The sweep that an idempotency key was used for is just being stored.
+    #[error("the sweep of this idempotency key is just being stored")]
+    Arriving,
+    /// A sweep was not shown in time, and was taken away.
+    #[error("storing the sweep took so long that it was taken away as if its process had died")]
+    TakenAway,
 }
 
 impl StoreError {
@@ -96,7 +102,9 @@ impl StoreError {
                     .and_then(|code| code.parse::<i64>().ok())
                     .is_some_and(|code| matches!(code & 0xff, 5 | 6))
             }
-            StoreError::Database(sqlx::Error::PoolTimedOut) => true,
+            StoreError::Database(sqlx::Error::PoolTimedOut)
+            | StoreError::Arriving
+            | StoreError::TakenAway => true,
             _ => false,
         }
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sqlx::{Sqlite, SqliteExecutor, Transaction};
+use sqlx::{SqliteConnection, SqliteExecutor};
 
 use crate::blob::BlobId;
 use crate::connection::Store;
@@ -108,12 +108,12 @@ struct Earlier {
 }
 
 impl Earlier {
-    async fn read(tx: &mut Transaction<'static, Sqlite>, key: &[u8]) -> Result<Option<Self>> {
+    async fn read(tx: &mut SqliteConnection, key: &[u8]) -> Result<Option<Self>> {
         let row: Option<(String, String, bool)> =
-            sqlx::query_as(sql::queue::EARLIER_RESULT).bind(key).fetch_optional(&mut **tx).await?;
+            sqlx::query_as(sql::queue::EARLIER_RESULT).bind(key).fetch_optional(&mut *tx).await?;
         let Some((summary, provenance, disagrees)) = row else { return Ok(None) };
         let blobs: Vec<(String, String)> =
-            sqlx::query_as(sql::queue::EARLIER_BLOBS).bind(key).fetch_all(&mut **tx).await?;
+            sqlx::query_as(sql::queue::EARLIER_BLOBS).bind(key).fetch_all(&mut *tx).await?;
         Ok(Some(Self { summary, provenance, disagrees, blobs: blobs.into_iter().collect() }))
     }
 
@@ -420,7 +420,7 @@ impl Store {
 
 /// Marks a result as other than the one before.
 async fn note_disagreement(
-    tx: &mut Transaction<'static, Sqlite>,
+    tx: &mut SqliteConnection,
     key: &[u8],
     differences: &str,
     earlier_provenance: &str,
@@ -429,17 +429,13 @@ async fn note_disagreement(
         .bind(key)
         .bind(differences)
         .bind(earlier_provenance)
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?;
     Ok(())
 }
 
 /// Marks a result as one of which another has been seen, though the last two agree.
-async fn keep_disagreement(
-    tx: &mut Transaction<'static, Sqlite>,
-    key: &[u8],
-    earlier_provenance: &str,
-) -> Result<()> {
-    sqlx::query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut **tx).await?;
+async fn keep_disagreement(tx: &mut SqliteConnection, key: &[u8], earlier_provenance: &str) -> Result<()> {
+    sqlx::query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut *tx).await?;
     Ok(())
 }

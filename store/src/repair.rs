@@ -1,6 +1,6 @@
 //! Computing anew what rows name and the object store cannot give.
 
-use sqlx::{Sqlite, Transaction};
+use sqlx::SqliteConnection;
 
 use crate::blob::BlobId;
 use crate::check::CheckReport;
@@ -100,15 +100,14 @@ impl Store {
 
 /// Marks a result as damaged and queues its work behind what its owner has in the queue.
 async fn queue(
-    tx: &mut Transaction<'static, Sqlite>,
+    tx: &mut SqliteConnection,
     key: &WorkKey,
     physics_version: i64,
     tries: Tries,
 ) -> Result<Repair> {
-    let marked =
-        sqlx::query(sql::repair::MARK).bind(key.as_slice()).execute(&mut **tx).await?.rows_affected();
+    let marked = sqlx::query(sql::repair::MARK).bind(key.as_slice()).execute(&mut *tx).await?.rows_affected();
     let (owner, state, version): (String, String, i64) =
-        sqlx::query_as(sql::repair::WORK).bind(key.as_slice()).fetch_one(&mut **tx).await?;
+        sqlx::query_as(sql::repair::WORK).bind(key.as_slice()).fetch_one(&mut *tx).await?;
     if version != physics_version {
         return Ok(Repair::OtherNumbers(version));
     }
@@ -122,7 +121,7 @@ async fn queue(
     sqlx::query(sql::repair::QUEUE)
         .bind(key.as_slice())
         .bind(order.last + PLACE_OF_A_POINT)
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?;
     Ok(Repair::Queued)
 }

@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, HashSet};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use sqlx::{Sqlite, Transaction};
+use sqlx::SqliteConnection;
 
 use crate::blob::StoredObject;
-use crate::connection::Store;
+use crate::connection::{Store, Writing};
 use crate::error::Result;
 use crate::sql;
 
@@ -158,11 +158,7 @@ impl Store {
     }
 
     /// Lets others write between two steps. A dry run undoes them all together in the end.
-    async fn go_on(
-        &self,
-        tx: Transaction<'static, Sqlite>,
-        is_dry_run: bool,
-    ) -> Result<Transaction<'static, Sqlite>> {
+    async fn go_on(&self, tx: Writing, is_dry_run: bool) -> Result<Writing> {
         if is_dry_run {
             return Ok(tx);
         }
@@ -190,29 +186,25 @@ impl Store {
 }
 
 /// Sweeps take their points, events and idempotency keys along.
-async fn delete_expired_sweeps(tx: &mut Transaction<'static, Sqlite>, now: i64) -> Result<u64> {
-    Ok(sqlx::query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut **tx).await?.rows_affected())
+async fn delete_expired_sweeps(tx: &mut SqliteConnection, now: i64) -> Result<u64> {
+    Ok(sqlx::query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut *tx).await?.rows_affected())
 }
 
 /// Work that is final and that no point wants, with its result and artifacts.
-async fn delete_unwanted_work(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
-    let results = sqlx::query(sql::retention::DELETE_RESULTS).execute(&mut **tx).await?.rows_affected();
-    sqlx::query(sql::retention::DELETE_WORK).execute(&mut **tx).await?;
+async fn delete_unwanted_work(tx: &mut SqliteConnection) -> Result<u64> {
+    let results = sqlx::query(sql::retention::DELETE_RESULTS).execute(&mut *tx).await?.rows_affected();
+    sqlx::query(sql::retention::DELETE_WORK).execute(&mut *tx).await?;
     Ok(results)
 }
 
 /// Bases that no work changes any more.
-async fn delete_unused_scenarios(tx: &mut Transaction<'static, Sqlite>) -> Result<u64> {
-    Ok(sqlx::query(sql::retention::DELETE_SCENARIOS).execute(&mut **tx).await?.rows_affected())
+async fn delete_unused_scenarios(tx: &mut SqliteConnection) -> Result<u64> {
+    Ok(sqlx::query(sql::retention::DELETE_SCENARIOS).execute(&mut *tx).await?.rows_affected())
 }
 
 /// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
-async fn expire_artifacts(
-    tx: &mut Transaction<'static, Sqlite>,
-    policy: &RetentionPolicy,
-    now: i64,
-) -> Result<u64> {
-    let names: Vec<String> = sqlx::query_scalar(sql::retention::ARTIFACT_NAMES).fetch_all(&mut **tx).await?;
+async fn expire_artifacts(tx: &mut SqliteConnection, policy: &RetentionPolicy, now: i64) -> Result<u64> {
+    let names: Vec<String> = sqlx::query_scalar(sql::retention::ARTIFACT_NAMES).fetch_all(&mut *tx).await?;
     let mut expired = 0;
     for name in names {
         let age = policy.artifact_ages.get(&name).unwrap_or(&policy.other_artifacts);
@@ -220,7 +212,7 @@ async fn expire_artifacts(
             .bind(&name)
             .bind(now)
             .bind(now.saturating_sub(milliseconds(*age)))
-            .execute(&mut **tx)
+            .execute(&mut *tx)
             .await?
             .rows_affected();
     }
@@ -228,23 +220,19 @@ async fn expire_artifacts(
 }
 
 /// Events, idempotency keys, workers and owners' turns that nobody will ask for; tells the number of events.
-async fn delete_old_rows(
-    tx: &mut Transaction<'static, Sqlite>,
-    policy: &RetentionPolicy,
-    now: i64,
-) -> Result<u64> {
+async fn delete_old_rows(tx: &mut SqliteConnection, policy: &RetentionPolicy, now: i64) -> Result<u64> {
     let events = sqlx::query(sql::retention::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?
         .rows_affected();
     for (statement, age) in [
         (sql::retention::DELETE_IDEMPOTENCY_KEYS, IDEMPOTENCY_MS),
         (sql::retention::DELETE_WORKERS, WORKER_MS),
     ] {
-        sqlx::query(statement).bind(now - age).execute(&mut **tx).await?;
+        sqlx::query(statement).bind(now - age).execute(&mut *tx).await?;
     }
-    sqlx::query(sql::retention::DELETE_TURNS).execute(&mut **tx).await?;
+    sqlx::query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
     Ok(events)
 }
 

@@ -144,24 +144,35 @@ statements! {
         INSERT_SWEEP = "insert_sweep",
         INSERT_TURN = "insert_turn",
         INSERT_WORK = "insert_work",
+        KEEP_HIDDEN = "keep_hidden",
         KNOWN_RESULTS = "known_results",
         KNOWN_SWEEP = "known_sweep",
         KNOWN_WORK = "known_work",
         POINTS_OF = "points_of",
         SET_POINTS = "set_points",
+        SHOW = "show",
         VERSION_OF_POINTS = "version_of_points",
     }
     sweep {
         CANCEL = "cancel",
+        CANCELLED_TO = "cancelled_to",
+        CANCEL_TO = "cancel_to",
         CANCEL_WORK = "cancel_work",
         CHANGE = "change",
         CHANGE_PRIORITY_OF_WORK = "change_priority_of_work",
         COUNT_EVENTS = "count_events",
         DELETABLE = "deletable",
         DELETE = "delete",
+        DELETE_EVENTS = "delete_events",
+        DELETE_POINTS = "delete_points",
+        FORGET_KEYS = "forget_keys",
+        HALF_CANCELLED = "half_cancelled",
+        HIDE = "hide",
         HOLD_BACK = "hold_back",
         KEEP_RUNNING_WORK = "keep_running_work",
+        LAST_POINT = "last_point",
         LEAVE_WORK = "leave_work",
+        LEFT_HIDDEN = "left_hidden",
         LIST = "list",
         ONE = "one",
         OWN_RESULTS = "own_results",
@@ -169,6 +180,7 @@ statements! {
         RECOUNT = "recount",
         RETRY_WORK = "retry_work",
         REVIVE = "revive",
+        STOP_WORK = "stop_work",
         VERSION = "version",
     }
     token {
@@ -218,6 +230,8 @@ mod tests {
         "work_open_by_version",
         "work_waiting",
         "result_disagrees",
+        "sweep_half_cancelled",
+        "sweep_hidden",
     ];
 
     /// The statements that go through anything else from end to end, and what: they count or delete over all, or list the

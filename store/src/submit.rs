@@ -4,15 +4,19 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use serde_json::{Value, json};
-use sqlx::{Sqlite, SqliteConnection, SqliteExecutor, Transaction};
+use sqlx::{SqliteConnection, SqliteExecutor};
 
-use crate::connection::Store;
+use crate::connection::{Store, Writing};
 use crate::error::{Result, StoreError};
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 
 /// Distance of one point from the next in its owner's order.
 pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
+
+/// Points that are stored, cancelled or deleted under one hold of the write lock: few enough that others do not have to wait long,
+/// and enough that the commits do not count.
+pub(crate) const POINTS_AT_ONCE: i64 = 500;
 
 /// Rows of one statement: enough that the calls do not count.
 pub(crate) const ROWS_AT_ONCE: usize = 1_000;
@@ -149,46 +153,83 @@ pub enum SubmitOutcome {
 }
 
 impl Store {
-    /// Stores a sweep with all its points in one transaction. Work that is known is not done again, unless the sweep asks
+    /// Stores a sweep with all its points: nobody sees it before all of them are stored, but a large one does not keep others from
+    /// writing, and its first points may be computed before. Work that is known is not done again, unless the sweep asks
     /// for it: a finished point counts at once, a failed one stays failed, a cancelled one is queued again.
+    ///
+    /// Where this is not awaited to its end, what is left is taken away by [`finish_what_was_begun`](Self::finish_what_was_begun).
     ///
     /// # Errors
     /// When the idempotency key was used for another request, or the database fails.
     pub async fn submit_sweep(&self, sweep: &NewSweep) -> Result<SubmitOutcome> {
-        let mut tx = self.write().await?;
-        if let Some(known) = known_sweep(&mut tx, sweep).await? {
-            return Ok(SubmitOutcome::Known(known));
-        }
-        let runs = &sweep.verification.runs;
-        let (points, runs) = match sweep.cache {
-            CachePolicy::Reuse | CachePolicy::Only => {
-                (with_fuller(&mut tx, &sweep.points).await?, with_fuller(&mut tx, runs).await?)
-            }
-            CachePolicy::Refresh => (Cow::from(&sweep.points), Cow::from(runs)),
-        };
         if sweep.cache == CachePolicy::Only {
-            let (points, verifications) =
-                (not_computed(&mut tx, &points).await?, not_computed(&mut tx, &runs).await?);
+            let mut connection = self.pool.acquire().await?;
+            if let Some(known) = known_sweep(&mut connection, sweep).await? {
+                return Ok(SubmitOutcome::Known(known));
+            }
+            let points = with_fuller(&mut connection, &sweep.points).await?;
+            let runs = with_fuller(&mut connection, &sweep.verification.runs).await?;
+            let points = not_computed(&mut connection, &points).await?;
+            let verifications = not_computed(&mut connection, &runs).await?;
             if !points.is_empty() || !verifications.is_empty() {
                 return Ok(SubmitOutcome::NotComputed { points, verifications });
             }
         }
+        let mut tx = self.write().await?;
+        if let Some(known) = known_sweep(&mut tx, sweep).await? {
+            return Ok(SubmitOutcome::Known(known));
+        }
         let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
         insert_sweep(&mut tx, sweep, now).await?;
+        let order = end_of_order(&mut tx, &sweep.owner).await?;
+        match self.store_points(tx, sweep, order, now).await {
+            Ok(()) => Ok(SubmitOutcome::Created),
+            Err(error) => {
+                // What is left of it nobody sees, and if this fails too it is taken away later.
+                if let Err(error) = self.take_away(&sweep.id).await {
+                    tracing::warn!(%error, sweep = sweep.id, "half a sweep is left for later");
+                }
+                Err(error)
+            }
+        }
+    }
+
+    /// Stores the points of a hidden sweep by and by, so that nobody has to wait for all of them, and shows it.
+    async fn store_points(&self, mut tx: Writing, sweep: &NewSweep, order: Order, now: i64) -> Result<()> {
         let wanted = Wanted {
             sweep_id: &sweep.id,
-            order: end_of_order(&mut tx, &sweep.owner).await?,
+            order,
             owner: &sweep.owner,
             priority: sweep.priority,
             physics_version: sweep.physics_version,
             cache: sweep.cache,
             is_paused: false,
         };
-        insert(&mut tx, &wanted, (&sweep.base_json, &points), (&sweep.verification.base_json, &runs), now)
-            .await?;
-        count(&mut tx, &sweep.id, 0, now).await?;
-        tx.commit().await?;
-        Ok(SubmitOutcome::Created)
+        let at_once = POINTS_AT_ONCE as usize;
+        let points = sweep.points.chunks(at_once).map(|rows| (Role::Point, &sweep.base_json, rows));
+        let runs = sweep.verification.runs.chunks(at_once);
+        let runs = runs.map(|rows| (Role::Verification, &sweep.verification.base_json, rows));
+        let mut place = order.last;
+        let mut is_first = true;
+        for (role, base_json, rows) in points.chain(runs) {
+            if !is_first {
+                tx.commit().await?;
+                tx = self.write().await?;
+                still_hidden(&mut tx, sql::submit::KEEP_HIDDEN, &sweep.id).await?;
+            }
+            is_first = false;
+            let rows = match sweep.cache {
+                CachePolicy::Reuse | CachePolicy::Only => with_fuller(&mut tx, rows).await?,
+                CachePolicy::Refresh => Cow::from(rows),
+            };
+            let base = insert_base(&mut tx, base_json).await?;
+            insert_work(&mut tx, &wanted, base, &rows, place, now).await?;
+            insert_points(&mut tx, &sweep.id, role, &rows).await?;
+            count(&mut tx, &sweep.id, role, &rows, now).await?;
+            place += PLACE_OF_A_POINT * rows.len() as i64;
+        }
+        still_hidden(&mut tx, sql::submit::SHOW, &sweep.id).await?;
+        tx.commit().await
     }
 
     /// Which of some points a sweep has not, by their ordinals: those that [`append_points`](Self::append_points) would add.
@@ -259,7 +300,9 @@ impl Store {
         insert(&mut tx, &wanted, (base_json, &fresh), (&verification.base_json, &runs), now).await?;
         sqlx::query(sql::submit::INSERT_APPENDED).bind(sweep_id).bind(request_json).execute(&mut *tx).await?;
         sqlx::query(sql::submit::SET_POINTS).bind(sweep_id).bind(total as i64).execute(&mut *tx).await?;
-        count(&mut tx, sweep_id, known, now).await?;
+        for (role, rows) in [(Role::Point, fresh.as_slice()), (Role::Verification, &runs)] {
+            count(&mut tx, sweep_id, role, rows, now).await?;
+        }
         tx.commit().await?;
         Ok(AppendOutcome::Added(fresh.len() as u64))
     }
@@ -304,21 +347,22 @@ impl Store {
 }
 
 /// The sweep that was stored before under the same idempotency key.
-async fn known_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep) -> Result<Option<String>> {
+async fn known_sweep(tx: &mut SqliteConnection, sweep: &NewSweep) -> Result<Option<String>> {
     let Some((key, body_hash)) = &sweep.idempotency_key else { return Ok(None) };
-    let known: Option<(Vec<u8>, String)> = sqlx::query_as(sql::submit::KNOWN_SWEEP)
+    let known: Option<(Vec<u8>, String, bool)> = sqlx::query_as(sql::submit::KNOWN_SWEEP)
         .bind(&sweep.owner)
         .bind(key)
-        .fetch_optional(&mut **tx)
+        .fetch_optional(&mut *tx)
         .await?;
     match known {
         None => Ok(None),
-        Some((known_hash, _)) if known_hash != body_hash => Err(StoreError::IdempotencyConflict),
-        Some((_, id)) => Ok(Some(id)),
+        Some((known_hash, ..)) if known_hash != body_hash => Err(StoreError::IdempotencyConflict),
+        Some((_, _, true)) => Err(StoreError::Arriving),
+        Some((_, id, false)) => Ok(Some(id)),
     }
 }
 
-async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, now: i64) -> Result<()> {
+async fn insert_sweep(tx: &mut SqliteConnection, sweep: &NewSweep, now: i64) -> Result<()> {
     sqlx::query(sql::submit::INSERT_SWEEP)
         .bind(&sweep.id)
         .bind(&sweep.name)
@@ -329,7 +373,7 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
         .bind(now)
         .bind(&sweep.tags_json)
         .bind(sweep.cache == CachePolicy::Refresh)
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?;
     if let Some((key, body_hash)) = &sweep.idempotency_key {
         sqlx::query(sql::submit::INSERT_IDEMPOTENCY_KEY)
@@ -338,7 +382,7 @@ async fn insert_sweep(tx: &mut Transaction<'static, Sqlite>, sweep: &NewSweep, n
             .bind(body_hash.as_slice())
             .bind(&sweep.id)
             .bind(now)
-            .execute(&mut **tx)
+            .execute(&mut *tx)
             .await?;
     }
     Ok(())
@@ -382,12 +426,12 @@ async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey])
 }
 
 /// Which of the points have neither a result nor failed, by ordinal.
-async fn not_computed(tx: &mut Transaction<'static, Sqlite>, points: &[NewPoint]) -> Result<Vec<i64>> {
+async fn not_computed(tx: &mut SqliteConnection, points: &[NewPoint]) -> Result<Vec<i64>> {
     let mut missing = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
         let keys = points.iter().map(|point| &point.work_key);
         let known: Vec<Vec<u8>> =
-            sqlx::query_scalar(sql::submit::KNOWN_WORK).bind(list_of(keys)).fetch_all(&mut **tx).await?;
+            sqlx::query_scalar(sql::submit::KNOWN_WORK).bind(list_of(keys)).fetch_all(&mut *tx).await?;
         let known: HashSet<&[u8]> = known.iter().map(Vec::as_slice).collect();
         let is_missing = |point: &&NewPoint| !known.contains(point.work_key.as_slice());
         missing.extend(points.iter().filter(is_missing).map(|point| point.ordinal));
@@ -440,23 +484,23 @@ pub(crate) struct Order {
 }
 
 /// Where an owner's order ends; an owner that has had no turn gets the first.
-pub(crate) async fn end_of_order(tx: &mut Transaction<'static, Sqlite>, owner: &str) -> Result<Order> {
-    sqlx::query(sql::submit::INSERT_TURN).bind(owner).execute(&mut **tx).await?;
-    let (first, last) = sqlx::query_as(sql::submit::ENDS_OF_ORDER).bind(owner).fetch_one(&mut **tx).await?;
+pub(crate) async fn end_of_order(tx: &mut SqliteConnection, owner: &str) -> Result<Order> {
+    sqlx::query(sql::submit::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
+    let (first, last) = sqlx::query_as(sql::submit::ENDS_OF_ORDER).bind(owner).fetch_one(&mut *tx).await?;
     Ok(Order { first, last })
 }
 
 /// Stores a base scenario by the hash of its text, unless it is there.
-async fn insert_base(tx: &mut Transaction<'static, Sqlite>, text: &str) -> Result<[u8; 32]> {
+async fn insert_base(tx: &mut SqliteConnection, text: &str) -> Result<[u8; 32]> {
     let hash = *blake3::hash(text.as_bytes()).as_bytes();
-    sqlx::query(sql::submit::INSERT_SCENARIO).bind(hash.as_slice()).bind(text).execute(&mut **tx).await?;
+    sqlx::query(sql::submit::INSERT_SCENARIO).bind(hash.as_slice()).bind(text).execute(&mut *tx).await?;
     Ok(hash)
 }
 
 /// Stores points of a sweep, the runs that verify some of them, and the work behind both, at the end of its owner's order:
 /// the points first. Each with the base that they change.
 async fn insert(
-    tx: &mut Transaction<'static, Sqlite>,
+    tx: &mut SqliteConnection,
     wanted: &Wanted<'_>,
     points: (&str, &[NewPoint]),
     verification: (&str, &[NewPoint]),
@@ -478,7 +522,7 @@ async fn insert(
 }
 
 async fn insert_work(
-    tx: &mut Transaction<'static, Sqlite>,
+    tx: &mut SqliteConnection,
     wanted: &Wanted<'_>,
     base: [u8; 32],
     points: &[NewPoint],
@@ -498,13 +542,13 @@ async fn insert_work(
         .bind(now)
         .bind(wanted.cache == CachePolicy::Refresh)
         .bind(wanted.order.first)
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?;
     Ok(())
 }
 
 async fn insert_points(
-    tx: &mut Transaction<'static, Sqlite>,
+    tx: &mut SqliteConnection,
     sweep_id: &str,
     role: Role,
     points: &[NewPoint],
@@ -516,14 +560,28 @@ async fn insert_points(
         .bind(sweep_id)
         .bind(matches!(role, Role::Verification))
         .bind(rows.collect::<Value>().to_string())
-        .execute(&mut **tx)
+        .execute(&mut *tx)
         .await?;
     Ok(())
 }
 
-/// Counts the points of a sweep that are new, those after the ordinal `after`, and their verifications; from then on the counts
-/// follow the work.
-async fn count(tx: &mut Transaction<'static, Sqlite>, id: &str, after: i64, now: i64) -> Result<()> {
-    sqlx::query(sql::submit::COUNT).bind(id).bind(after).bind(now).execute(&mut **tx).await?;
+/// Counts points of a sweep that are new, or runs that verify points; from then on the counts follow the work.
+async fn count(tx: &mut SqliteConnection, id: &str, role: Role, rows: &[NewPoint], now: i64) -> Result<()> {
+    let ordinals: Value = rows.iter().map(|row| row.ordinal).collect();
+    sqlx::query(sql::submit::COUNT)
+        .bind(id)
+        .bind(ordinals.to_string())
+        .bind(now)
+        .bind(matches!(role, Role::Verification))
+        .execute(&mut *tx)
+        .await?;
     Ok(())
+}
+
+/// Runs a statement about a sweep that is hidden while its points are stored.
+async fn still_hidden(tx: &mut SqliteConnection, statement: &'static str, id: &str) -> Result<()> {
+    match sqlx::query(statement).bind(id).execute(&mut *tx).await?.rows_affected() {
+        1 => Ok(()),
+        _ => Err(StoreError::TakenAway),
+    }
 }

@@ -1,13 +1,13 @@
 //! Sweeps: reading, changing, pausing, cancelling, retrying.
 
 use sqlx::sqlite::SqliteRow;
-use sqlx::{Row as _, Sqlite, Transaction};
+use sqlx::{Row as _, SqliteConnection};
 
 use crate::connection::Store;
 use crate::error::Result;
 use crate::sql;
 use crate::state::StateCounts;
-use crate::submit::{PLACE_OF_A_POINT, end_of_order};
+use crate::submit::{PLACE_OF_A_POINT, POINTS_AT_ONCE, end_of_order};
 
 /// A stored sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,12 +118,68 @@ impl Store {
                 sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&mut *tx).await?;
             return Ok(version.is_some());
         }
-        sqlx::query(sql::sweep::CANCEL_WORK).bind(id).execute(&mut *tx).await?;
-        let left = sqlx::query(sql::sweep::LEAVE_WORK).bind(id).execute(&mut *tx).await?.rows_affected();
-        sqlx::query(sql::sweep::COUNT_EVENTS).bind(id).bind(left as i64).execute(&mut *tx).await?;
-        hold_back(&mut tx, id).await?;
+        sqlx::query(sql::sweep::STOP_WORK).bind(id).execute(&mut *tx).await?;
+        // From here on the sweep counts as cancelled, and its work follows by and by.
+        let mut is_whole = cancel_next(&mut tx, id).await?;
         tx.commit().await?;
+        while !is_whole {
+            is_whole = self.go_on_cancelling(id).await?;
+        }
         Ok(true)
+    }
+
+    async fn go_on_cancelling(&self, id: &str) -> Result<bool> {
+        let mut tx = self.write().await?;
+        let is_whole = cancel_next(&mut tx, id).await?;
+        tx.commit().await?;
+        Ok(is_whole)
+    }
+
+    /// Brings to its end what processes that died have left: sweeps whose work is not all cancelled, and those that nobody sees and that
+    /// nobody has worked on for `silence_ms`, because not all of their points were stored, or deleted. Tells how many sweeps that were.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn finish_what_was_begun(&self, silence_ms: i64) -> Result<u64> {
+        let hidden: Vec<String> =
+            sqlx::query_scalar(sql::sweep::LEFT_HIDDEN).bind(silence_ms).fetch_all(&self.pool).await?;
+        for id in &hidden {
+            self.take_away(id).await?;
+        }
+        let cancelled: Vec<String> =
+            sqlx::query_scalar(sql::sweep::HALF_CANCELLED).fetch_all(&self.pool).await?;
+        for id in &cancelled {
+            while !self.go_on_cancelling(id).await? {}
+        }
+        Ok((hidden.len() + cancelled.len()) as u64)
+    }
+
+    /// Deletes a hidden sweep by and by, so that nobody has to wait for all of it.
+    pub(crate) async fn take_away(&self, id: &str) -> Result<()> {
+        self.cancel_sweep(id).await?;
+        let mut deleted_to = 0;
+        loop {
+            let mut tx = self.write().await?;
+            let is_there =
+                sqlx::query(sql::sweep::HIDE).bind(id).execute(&mut *tx).await?.rows_affected() == 1;
+            if !is_there {
+                return Ok(());
+            }
+            deleted_to += POINTS_AT_ONCE;
+            sqlx::query(sql::sweep::DELETE_POINTS).bind(id).bind(deleted_to).execute(&mut *tx).await?;
+            let events = sqlx::query(sql::sweep::DELETE_EVENTS)
+                .bind(id)
+                .bind(POINTS_AT_ONCE)
+                .execute(&mut *tx)
+                .await?
+                .rows_affected();
+            let points: i64 = sqlx::query_scalar(sql::sweep::LAST_POINT).bind(id).fetch_one(&mut *tx).await?;
+            if events == 0 && points <= deleted_to {
+                sqlx::query(sql::sweep::DELETE).bind(id).execute(&mut *tx).await?;
+                return tx.commit().await;
+            }
+            tx.commit().await?;
+        }
     }
 
     /// Pauses a sweep or lets it go on: while it is paused its points are not handed out, but for those that another
@@ -213,8 +269,10 @@ impl Store {
             return Ok(DeleteOutcome::Unfinished);
         }
         if !is_dry_run {
-            sqlx::query(sql::sweep::DELETE).bind(id).execute(&mut *tx).await?;
+            sqlx::query(sql::sweep::HIDE).bind(id).execute(&mut *tx).await?;
+            sqlx::query(sql::sweep::FORGET_KEYS).bind(id).execute(&mut *tx).await?;
             tx.commit().await?;
+            self.take_away(id).await?;
         }
         Ok(DeleteOutcome::Deleted {
             points: points.unsigned_abs(),
@@ -299,9 +357,24 @@ pub struct SweepChanges {
     pub expires: Option<Option<i64>>,
 }
 
+/// Cancels the work of the next points of a cancelled sweep. True once there is no more.
+async fn cancel_next(tx: &mut SqliteConnection, id: &str) -> Result<bool> {
+    let half: Option<(i64, i64)> =
+        sqlx::query_as(sql::sweep::CANCELLED_TO).bind(id).fetch_optional(&mut *tx).await?;
+    let Some((after, points)) = half else { return Ok(true) };
+    let last = after + POINTS_AT_ONCE;
+    let run = |statement| sqlx::query(statement).bind(id).bind(after).bind(last);
+    run(sql::sweep::CANCEL_WORK).execute(&mut *tx).await?;
+    let left = run(sql::sweep::LEAVE_WORK).execute(&mut *tx).await?.rows_affected();
+    sqlx::query(sql::sweep::COUNT_EVENTS).bind(id).bind(left as i64).execute(&mut *tx).await?;
+    run(sql::sweep::HOLD_BACK).execute(&mut *tx).await?;
+    sqlx::query(sql::sweep::CANCEL_TO).bind(id).bind(last).execute(&mut *tx).await?;
+    Ok(last >= points)
+}
+
 /// Holds back or lets go what a sweep has in the queue: work is held while only paused sweeps want it.
-async fn hold_back(tx: &mut Transaction<'static, Sqlite>, id: &str) -> Result<()> {
-    sqlx::query(sql::sweep::HOLD_BACK).bind(id).execute(&mut **tx).await?;
+async fn hold_back(tx: &mut SqliteConnection, id: &str) -> Result<()> {
+    sqlx::query(sql::sweep::HOLD_BACK).bind(id).bind(0).bind(i64::MAX).execute(&mut *tx).await?;
     Ok(())
 }
 

@@ -1,7 +1,9 @@
 //! Extractors that answer with problems naming what is wrong: the field, the parameter, what would be valid.
 
+use std::time::Duration;
+
 use axum::body::Bytes;
-use axum::extract::{FromRequest, FromRequestParts, Request};
+use axum::extract::{FromRef, FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
@@ -10,7 +12,6 @@ use serde::de::{DeserializeOwned, Error as _};
 use tokio::time::timeout;
 
 use crate::answer::error::Error;
-use crate::app::App;
 
 /// A JSON body, together with the bytes that came in.
 pub(crate) struct Json<T> {
@@ -20,10 +21,19 @@ pub(crate) struct Json<T> {
     pub(crate) bytes: Bytes,
 }
 
-impl<T: DeserializeOwned> FromRequest<App> for Json<T> {
+/// How long a body may take to come.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyPatience(pub(crate) Duration);
+
+impl<T, S> FromRequest<S> for Json<T>
+where
+    T: DeserializeOwned,
+    S: Send + Sync,
+    BodyPatience: FromRef<S>,
+{
     type Rejection = Error;
 
-    async fn from_request(request: Request, state: &App) -> Result<Self, Error> {
+    async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
         let media_type = request.headers().get(header::CONTENT_TYPE);
         let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
         let essence = media_type.split(';').next().unwrap_or_default().trim();
@@ -37,7 +47,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Json<T> {
             let detail = "the body must be sent as it is, without Content-Encoding";
             return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
         }
-        let patience = state.config.connections.body;
+        let BodyPatience(patience) = FromRef::from_ref(state);
         let Ok(bytes) = timeout(patience, Bytes::from_request(request, state)).await else {
             let detail = format!("the body did not come within {} s", patience.as_secs_f64());
             return Err(Error::new(ProblemKind::RequestTimeout, detail));

@@ -9,9 +9,11 @@ pub(crate) mod retain;
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::extract::FromRef;
 use drillsweep_store::Store;
 use tokio::sync::{Semaphore, watch};
 
+use crate::answer::extract::BodyPatience;
 use crate::app::lane::Lane;
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
@@ -89,5 +91,11 @@ impl App {
             plans: Arc::new(Lane::new(config.large_answers, config.large_answers_waiting)),
             config: Arc::new(config),
         }
+    }
+}
+
+impl FromRef<App> for BodyPatience {
+    fn from_ref(app: &App) -> Self {
+        BodyPatience(app.config.connections.body)
     }
 }

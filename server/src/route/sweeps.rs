@@ -23,7 +23,7 @@ use serde::Deserialize;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
-use crate::answer::blocking::blocking;
+use crate::answer::blocking::{blocking, to_the_end};
 use crate::answer::document::{Conditional, PictureResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
@@ -166,7 +166,13 @@ async fn submit(
         let added = new_sweep.points.len() + new_sweep.verification.runs.len();
         quota::check_open_points(&app, &new_sweep.owner, added).await?;
     }
-    let id = match app.store.submit_sweep(&new_sweep).await? {
+    let store = app.store.clone();
+    let (new_sweep, outcome) = to_the_end(async move {
+        let outcome = store.submit_sweep(&new_sweep).await?;
+        Ok((new_sweep, outcome))
+    })
+    .await?;
+    let id = match outcome {
         SubmitOutcome::Created => new_sweep.id,
         SubmitOutcome::Known(id) => id,
         SubmitOutcome::NotComputed { points, verifications } => {
@@ -425,7 +431,8 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
     responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
-    app.store.cancel_sweep(&id).await?;
+    let (store, cancelled) = (app.store.clone(), id.clone());
+    to_the_end(async move { store.cancel_sweep(&cancelled).await }).await?;
     Ok(Json(load(&app, &id).await?))
 }
 
@@ -569,7 +576,8 @@ pub(crate) async fn delete(
     let current = load(&app, &id).await?.revision;
     let expected = expected_revision(&headers, current)?;
     let refused = |detail: String| Err(Error::new(ProblemKind::Conflict, detail));
-    match app.store.delete_sweep(&id, expected, dry_run).await? {
+    let (store, deleted) = (app.store.clone(), id.clone());
+    match to_the_end(async move { store.delete_sweep(&deleted, expected, dry_run).await }).await? {
         DeleteOutcome::Deleted { points, results, bytes } => {
             Ok(Json(SweepDeletion { dry_run, points, results, bytes }))
         }

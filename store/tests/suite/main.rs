@@ -69,6 +69,11 @@ macro_rules! conformance {
                 urgency_counts_within_an_owner_only,
                 retried_points_do_not_go_before_everybody_else,
             }
+            large {
+                half_a_sweep_is_seen_by_nobody_and_taken_away,
+                a_large_submission_lets_others_in_between,
+                a_cancellation_holds_from_its_beginning_and_is_brought_to_its_end,
+            }
             lease {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
                 a_buried_workers_points_are_free_at_once_and_nobody_elses,
@@ -157,6 +162,7 @@ mod control;
 mod counts;
 mod failure;
 mod fairness;
+mod large;
 mod lease;
 mod probe;
 mod repair;

@@ -1,6 +1,5 @@
--- Counts the points of a sweep that are new, and the runs that verify them; from then on the counts follow the work.
--- ?1 sweep, ?2 ordinal after which they are new, ?3 time.
--- Both values of `verifies` are named so that the new ones are found by the key, and not among all.
+-- Counts the points of a sweep that are new, or the runs that verify points; from then on the counts follow the work.
+-- ?1 sweep, ?2 their ordinals, a JSON array, ?3 time, ?4 whether they are runs.
 UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
                   verifications, verifications_queued, verifications_running, verifications_done,
                   verifications_failed, verifications_cancelled, finished) = (
@@ -18,5 +17,5 @@ UPDATE sweep SET (points_queued, points_running, points_done, points_failed, poi
            CASE WHEN points_queued + points_running + verifications_queued + verifications_running
                      + total(w.is_open) = 0 THEN ?3 END
     FROM point p JOIN work w ON w.key = p.work_key
-    WHERE p.sweep_id = ?1 AND p.verifies IN (0, 1) AND p.ordinal > ?2)
+    WHERE p.sweep_id = ?1 AND p.verifies = ?4 AND p.ordinal IN (SELECT value FROM json_each(?2)))
 WHERE id = ?1

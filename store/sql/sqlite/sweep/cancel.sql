@@ -2,7 +2,7 @@
 -- again until it has ended (`cancel_work`).
 -- ?1 sweep.
 UPDATE sweep SET
-    cancelled = 1, version = version + 1, revision = revision + 1, finished = coalesce(finished, (SELECT now FROM clock)),
+    cancelled = 1, cancelled_to = 0, version = version + 1, revision = revision + 1, finished = coalesce(finished, (SELECT now FROM clock)),
     points_cancelled = points_cancelled + points_queued + points_running, points_queued = 0, points_running = 0,
     verifications_cancelled = verifications_cancelled + verifications_queued + verifications_running,
     verifications_queued = 0, verifications_running = 0

@@ -5,4 +5,4 @@ UPDATE sweep SET
     name = CASE WHEN ?2 THEN ?3 ELSE name END, priority = coalesce(?4, priority),
     tags = coalesce(?5, tags), pinned = coalesce(?6, pinned),
     expires = CASE WHEN ?7 THEN ?8 ELSE expires END, version = version + 1, revision = revision + 1
-WHERE id = ?1 AND (?9 IS NULL OR revision = ?9)
+WHERE id = ?1 AND hidden IS NULL AND (?9 IS NULL OR revision = ?9)

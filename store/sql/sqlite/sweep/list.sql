@@ -11,7 +11,7 @@ SELECT id, name, owner, request, priority, version, revision, cancelled, paused,
            WHERE w.state = 'leased' AND p.sweep_id = sweep.id
              AND (sweep.cancelled = 0 OR w.stage_of_cancelled = 'running')) END AS running_progress
 FROM sweep
-WHERE (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
+WHERE hidden IS NULL AND (?1 IS NULL OR owner = ?1) AND (?2 IS NULL OR id < ?2)
   AND (?4 IS NULL OR ?4 = CASE WHEN cancelled <> 0 THEN 'cancelled'
                                WHEN finished IS NOT NULL THEN 'completed'
                                WHEN paused <> 0 THEN 'paused'

@@ -11,4 +11,4 @@ SELECT id, name, owner, request, priority, version, revision, cancelled, paused,
            WHERE w.state = 'leased' AND p.sweep_id = sweep.id
              AND (sweep.cancelled = 0 OR w.stage_of_cancelled = 'running')) END AS running_progress
 FROM sweep
-WHERE id = ?1
+WHERE id = ?1 AND hidden IS NULL

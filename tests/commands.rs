@@ -107,7 +107,15 @@ fn sweep_is_cancelled_and_retried_and_its_fate_is_the_exit_status() {
     assert!(!run(&server, &["health", "--worker", "--data", data]).status.success());
     assert!(run(&server, &["worker", "--drain", "--data", data]).status.success());
     assert!(text(&server, &["watch", id]).contains("2 succeeded"));
+    let deletion = json(&server, &["delete", id, "--dry-run", "--json"]);
+    assert_eq!((&deletion["points"], &deletion["results"]), (&json!(2), &json!(2)));
+    text(&server, &["change", id, "--pin"]);
+    let pinned = run(&server, &["delete", id]);
+    assert!(!pinned.status.success() && String::from_utf8_lossy(&pinned.stderr).contains("is pinned"));
+    text(&server, &["change", id, "--unpin"]);
     assert_eq!(json(&server, &["check", "--data", data, "--json"])["results"], 2);
+    assert!(text(&server, &["delete", id]).starts_with("deleted"));
+    assert!(!run(&server, &["show", id]).status.success());
     assert!(!run(&server, &["check", "--data", "/nowhere"]).status.success());
 }
 

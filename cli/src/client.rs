@@ -80,6 +80,12 @@ impl Client {
         json(self.authorized(self.agent.patch(&url)).send_json(body).with_context(|| no_answer(&url))?)
     }
 
+    /// Deletes, and reads JSON.
+    pub(crate) fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        let url = format!("{}{path}", self.server);
+        json(self.authorized(self.agent.delete(&url)).call().with_context(|| no_answer(&url))?)
+    }
+
     /// Reads JSON.
     pub(crate) fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         json(self.request(path)?)

@@ -67,6 +67,8 @@ enum Command {
     Resume(sweeps::SweepArguments),
     /// Change name, tags, priority, pin or expiry of a sweep.
     Change(sweeps::ChangeArguments),
+    /// Delete a sweep whose points are final, and the results that no other sweep has.
+    Delete(sweeps::DeleteArguments),
     /// Add points to a sweep, over its own parameters; those that it has are skipped.
     Append(submit::AppendArguments),
     /// List the failed points of all sweeps, the latest first.
@@ -173,6 +175,7 @@ fn run() -> anyhow::Result<()> {
         Command::Pause(arguments) => sweeps::pause(&arguments),
         Command::Resume(arguments) => sweeps::resume(&arguments),
         Command::Change(arguments) => sweeps::change(&arguments),
+        Command::Delete(arguments) => sweeps::delete(&arguments),
         Command::Append(arguments) => submit::append(&arguments),
         Command::Failures(arguments) => sweeps::failures(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),

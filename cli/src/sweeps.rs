@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_api::{
-    FailureList, PointCounts, PointDetail, Queue, Sweep, SweepList, SweepPatch, SweepVerification, WorkerList,
+    FailureList, PointCounts, PointDetail, Queue, Sweep, SweepDeletion, SweepList, SweepPatch,
+    SweepVerification, WorkerList,
 };
 use drillsweep_table::quantity::unit;
 use jiff::{SignedDuration, Timestamp};
@@ -228,6 +229,39 @@ fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
     let id = client.sweep_id(&arguments.sweep)?;
     let sweep: Sweep = client.post(&format!("/v1/sweeps/{}/{verb}", path_segment(&id)), &json!({}))?;
     print_sweep(&sweep, arguments.json)
+}
+
+#[derive(Args)]
+pub(crate) struct DeleteArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    /// The sweep: its identifier, the beginning of it, or its name.
+    sweep: String,
+    /// Report what would be deleted, and delete nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Deletes a sweep whose points are final, unless it is pinned.
+pub(crate) fn delete(arguments: &DeleteArguments) -> anyhow::Result<()> {
+    let client = Client::new(&arguments.server);
+    let id = client.sweep_id(&arguments.sweep)?;
+    let path = format!("/v1/sweeps/{}?dry_run={}", path_segment(&id), arguments.dry_run);
+    let deletion: SweepDeletion = client.delete(&path)?;
+    if arguments.json {
+        return print_json(&deletion);
+    }
+    let verb = if deletion.dry_run { "would be deleted" } else { "deleted" };
+    print(&format!(
+        "{verb}: {id} with {} points; {} results of {:.1} MB are no other sweep's, and go with the next collection",
+        deletion.points,
+        deletion.results,
+        deletion.bytes as f64 * 1e-6
+    ));
+    Ok(())
 }
 
 #[derive(Args)]

@@ -186,7 +186,7 @@ impl Store {
             .busy_timeout(BUSY_TIMEOUT);
         let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await?;
         let blobs = BlobStore::open(&config.blob_directory)?;
-        Ok(Self { pool, database_path: config.database_path.clone(), blobs })
+        Ok(Self { pool, database_path: config.database_path.clone(), blobs, writers: Arc::default() })
     }
 
     /// The object store.

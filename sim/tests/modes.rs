@@ -451,8 +451,7 @@ fn straight_strings_have_the_modes_of_rods_unless_they_are_switched_off() {
     for station in &mut scenario.well.survey {
         (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
     }
-    scenario.string.sections =
-        vec![Section { length: 200.0, count: 1, ..scenario.string.sections[2].clone() }];
+    scenario.string.sections = vec![Section { length: 200.0, count: 1, ..scenario.string.sections[2] }];
     scenario.string.unbalance.clear();
     (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
     let active = scenario.active_effects();

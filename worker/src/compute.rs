@@ -101,12 +101,12 @@ pub enum ComputeError {
     #[error(transparent)]
     Transient(TransientError),
     /// The run in time failed; beside it, whether the scene itself is unstable.
-    #[error("{error}; {}", .stability.map_or_else(String::new, |stability| stability.to_string()))]
+    #[error("{error}; {}", .stability.as_ref().map_or_else(String::new, |stability| stability.to_string()))]
     Run {
         /// What was seen.
         error: TransientError,
         /// The verdict of the linearised equations; absent where they could not be judged.
-        stability: Option<Stability>,
+        stability: Option<Box<Stability>>,
     },
     /// A cost study has no reference to compare with.
     #[error(transparent)]
@@ -253,7 +253,9 @@ pub fn compute_from(
     let started = Stopwatch::start();
     let judge = || stability(&model, &equilibrium).ok();
     let failed = |error| match error {
-        error @ TransientError::Diverged { .. } => ComputeError::Run { error, stability: judge() },
+        error @ TransientError::Diverged { .. } => {
+            ComputeError::Run { error, stability: judge().map(Box::new) }
+        }
         error => ComputeError::Transient(error),
     };
     let run = |member| match Transient::member(&model, &equilibrium, member)

@@ -28,15 +28,16 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// The node at `index` of a mesh whose nodes have these measured depths \[m\], from the top down; none if there is none.
-    pub fn of_mesh(depths: &[f64], index: usize) -> Option<Self> {
+    /// The node of this number, which is at `index` of the measured depths \[m\] of a mesh's nodes from the top down; none if there is
+    /// none.
+    pub fn of_mesh(node: u32, depths: &[f64], index: usize) -> Option<Self> {
         let depth = *depths.get(index)?;
         let above =
             index.checked_sub(1).and_then(|above| depths.get(above)).map(|above| (depth - above) / 2.0);
         let below = depths.get(index + 1).map(|below| (below - depth) / 2.0);
         let reach = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(0.0);
         Some(Self {
-            node: u32::try_from(index + 1).ok()?,
+            node,
             measured_depth: depth,
             reach: (depth - reach(above, below), depth + reach(below, above)),
         })
@@ -144,10 +145,10 @@ mod tests {
     #[test]
     fn a_node_reaches_to_the_middles_of_its_elements_and_as_far_beyond_an_end() {
         let depths = [0.0, 2.0, 3.0, 3.5];
-        let reach = |index| Recorded::of_mesh(&depths, index).unwrap().reach;
+        let reach = |index| Recorded::of_mesh(7, &depths, index).unwrap().reach;
         assert_eq!((reach(0), reach(1), reach(3)), ((-1.0, 1.0), (1.0, 2.5), (3.25, 3.75)));
-        assert_eq!(Recorded::of_mesh(&depths, 1).unwrap().node, 2);
-        assert_eq!(Recorded::of_mesh(&depths, 4), None);
+        assert_eq!(Recorded::of_mesh(7, &depths, 1).unwrap().node, 7);
+        assert_eq!(Recorded::of_mesh(7, &depths, 4), None);
     }
 
     #[test]

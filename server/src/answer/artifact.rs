@@ -320,7 +320,7 @@ fn nodes_among(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Resu
     };
     let of_mesh = |recorded: u32| {
         let row = nodes.iter().position(|node| *node == Some(recorded.into()))?;
-        Recorded::of_mesh(depths, row)
+        Recorded::of_mesh(recorded, depths, row)
     };
     Ok(recorded.into_iter().filter_map(of_mesh).collect())
 }

@@ -66,7 +66,7 @@ mod tests {
     #[tokio::test]
     async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
         let lane = Arc::new(Lane::new(1, 1));
-        let first = lane.enter().await.ok().expect("a place is free");
+        let first = lane.enter().await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
             let lane = lane.clone();
             async move { lane.enter().await.map(drop).is_ok() }

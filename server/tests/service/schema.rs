@@ -30,7 +30,10 @@ static OPERATIONS: LazyLock<Vec<Operation>> = LazyLock::new(|| {
             operations.push(Operation {
                 method: method.to_uppercase(),
                 path: path.clone(),
-                body: jsonschema::draft202012::new(&schema).unwrap(),
+                body: jsonschema::draft202012::options()
+                    .should_validate_formats(true)
+                    .build(&schema)
+                    .unwrap(),
             });
         }
     }

@@ -157,9 +157,9 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
     let bench = Bench::new().await;
     for (body, pointer, words) in [
         (r#"{"preset": "paper-200m", "axis": {}}"#, "/axis", "unknown field `axis`"),
-        (r#"{"preset": 200}"#, "/preset", "invalid type"),
+        (r#"{"preset": 200}"#, "/preset", "must be a string"),
         (r#"{"axes": {"flow_rate": {"from": 1, "count": 2}}}"#, "/axes/flow_rate", "`to`"),
-        (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "invalid type"),
+        (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "must be a number"),
         (r#"{"preset": "#, "", "EOF"),
         (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
         (r#" [null, "anne"]"#, "", "object, not an array"),

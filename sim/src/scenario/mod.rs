@@ -83,7 +83,7 @@ impl Scenario {
     }
 
     /// The windows whose full spectra are summarised: what `recording` says, or the last sixth of the run, from a sample on; none
-    /// where that holds fewer than [`FEWEST_SAMPLES`].
+    /// where that holds fewer than 8.
     pub fn spectrum_windows(&self) -> Vec<TimeWindow> {
         if let Some(given) = &self.recording.spectrum_windows {
             return given.clone();

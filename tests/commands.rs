@@ -302,7 +302,7 @@ fn a_dry_run_is_a_table_and_a_submission_says_how_to_go_on() {
     let output = run(&server, &[&submit[..], &["--detach"]].concat());
     let (id, hints) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert_eq!(id.lines().count(), 1, "{id}");
-    for hint in ["drillsweep watch", "drillsweep fetch", "orbit?format=svg"] {
+    for hint in ["drillsweep watch", "drillsweep fetch", "profile?format=svg"] {
         assert!(hints.lines().any(|line| line.contains(hint) && line.contains(id.trim())), "{hints}");
     }
 }

@@ -210,7 +210,7 @@ fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
         "{} points; watch:  drillsweep watch {id}{at}\n\
          when complete:  drillsweep fetch {id}{at} --output results\n\
          table of points:  {server}/v1/sweeps/{id}/table?format=csv\n\
-         orbit of a point:  {server}/v1/sweeps/{id}/points/1/orbit?format=svg",
+         C_f along the string:  {server}/v1/sweeps/{id}/points/1/profile?format=svg",
         sweep.counts.total
     )
 }

@@ -238,13 +238,8 @@ fn inset(area: &Rectangle, whole: View, view: View, wall: Option<f64>, path: &[P
     let [x, y] = position(view.middle);
     let marked = Rectangle { left: x - half, top: y - half, right: x + half, bottom: y + half };
     shapes.push(Shape::Rectangle(marked, Stroke::solid(Colour::TEXT, 1.0)));
-    let text = Text::new(
-        "whole hole",
-        [frame.left + 5.0, frame.bottom - 5.0],
-        Anchor::Start,
-        10.5,
-        Colour::QUIET_TEXT,
-    );
+    let text =
+        Text::new("whole hole", [frame.left, frame.bottom + 13.0], Anchor::Start, 10.5, Colour::QUIET_TEXT);
     shapes.push(Shape::Text(text));
     Shape::Group("inset", shapes)
 }

@@ -6,7 +6,8 @@ use drillsweep_store::TokenRecord;
 
 /// Notes a request that was carried out, with its token where there are any; those that only read are not noted. The request's id is in the line's span.
 pub(crate) fn note(token: Option<&TokenRecord>, method: &Method, uri: &Uri, response: &Response) {
-    if is_reading(method) || !response.status().is_success() {
+    let is_dry_run = uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
+    if is_reading(method) || is_dry_run || !response.status().is_success() {
         return;
     }
     // Of what was made.

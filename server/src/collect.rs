@@ -13,7 +13,10 @@ const LOOK: Duration = Duration::from_secs(60);
 /// it; without one, from the service's first start, so that nothing is deleted before an operator has read what would be.
 pub(crate) async fn collect(mut app: App) {
     let Some(interval) = app.config.retention.interval else { return };
-    tracing::info!(every = ?interval, policy = ?app.config.retention.policy, "what need not be kept is deleted");
+    tracing::info!(
+        every_hours = interval.as_secs_f64() / 3600.0,
+        "what has expired is deleted; GET /v1/retention tells the ages"
+    );
     let started = app.store.now_ms().await;
     let mut ticks = tokio::time::interval(LOOK.min(interval));
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);

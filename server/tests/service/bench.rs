@@ -66,6 +66,11 @@ impl Bench {
         Bench { routes: router(store.clone(), config, stopping), store, stop, directory }
     }
 
+    /// Serves the same store by another configuration.
+    pub(crate) fn reconfigure(&mut self, config: Config) {
+        self.routes = router(self.store.clone(), config, self.stop.subscribe());
+    }
+
     pub(crate) async fn send(&self, request: Request<Body>) -> Answer {
         let (parts, body) = request.into_parts();
         let sent = body.collect().await.unwrap().to_bytes();

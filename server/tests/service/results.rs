@@ -250,19 +250,17 @@ async fn what_the_client_has_a_copy_of_is_not_sent_again() {
 }
 
 #[tokio::test]
-async fn large_answers_are_computed_a_few_at_once_and_light_ones_beside_them() {
-    let bench = Bench::with(Config { large_answers: 1, large_answers_waiting: 0, ..Config::default() }).await;
-    let id = bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01]}}})).await;
-    bench.succeed().await;
-    let path = format!("/v1/sweeps/{id}/points/1/history?format=csv");
-    let answers = futures::future::join_all((0..8).map(|_| bench.get(&path))).await;
-    let (served, refused): (Vec<_>, Vec<_>) = answers.iter().partition(|answer| answer.status == 200);
-    assert!(!served.is_empty() && !refused.is_empty(), "{} served", served.len());
-    for answer in refused {
+async fn large_answers_beyond_their_places_are_refused_and_light_ones_are_not() {
+    let (mut bench, path) = finished().await;
+    bench.reconfigure(Config { large_answers: 0, large_answers_waiting: 0, ..Config::default() });
+    for view in ["points/1/history?format=csv", "points/1/orbit?node=49", "points/1/profile", "table"] {
+        let answer = bench.get(&format!("{path}/{view}")).await;
         answer.problem(503, "unavailable");
-        assert!(answer.headers.contains_key("retry-after"));
+        assert!(answer.headers.contains_key("retry-after"), "{view}");
     }
-    // The lane is free again, and was never that of the list.
-    assert_eq!(bench.get(&path).await.status, 200);
-    assert_eq!(bench.get("/v1/sweeps").await.status, 200);
+    let dry_run = bench.post("/v1/sweeps?dry_run=true", json!({"preset": "paper-200m"})).await;
+    dry_run.problem(503, "unavailable");
+    for light in ["/v1/sweeps", path.as_str(), "/v1/queue"] {
+        assert_eq!(bench.get(light).await.status, StatusCode::OK, "{light}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Tables as Parquet: byte-stream-split and zstd, in row groups small enough to read a window of a long history without the rest.
 
+use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -16,8 +17,11 @@ use bytes::Bytes;
 
 use crate::table::{Column, Table};
 
-/// Rows of a row group.
+/// Rows of a row group at most.
 const ROW_GROUP: usize = 10_000;
+
+/// Bytes of a row group at most, before compression: what writing or reading a table of many columns takes at once.
+const ROW_GROUP_BYTES: usize = 32 << 20;
 
 /// Prefix of the metadata keys that hold units.
 const UNIT_PREFIX: &str = "unit.";
@@ -38,6 +42,9 @@ pub enum TableError {
         /// The first column's length.
         expected: usize,
     },
+    /// A piece of a table with other columns than the ones before it.
+    #[error("a piece of a table has other columns than the table")]
+    OtherColumns,
     /// A column of a type that is not used here.
     #[error("column {0:?} has a type that is not used here")]
     UnknownType(String),
@@ -52,51 +59,126 @@ pub enum TableError {
 /// # Errors
 /// When the columns differ in length.
 pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
-    let rows = table.rows();
-    let mut fields = Vec::with_capacity(table.columns.len());
-    let mut properties = WriterProperties::builder()
-        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
-        .set_dictionary_enabled(false)
-        .set_created_by("drillsweep".to_owned());
-    let mut units = Vec::new();
-    for (name, column) in &table.columns {
-        if column.len() != rows {
-            return Err(TableError::Ragged { name: name.clone(), rows: column.len(), expected: rows });
+    let mut writer = Writer::new(Vec::new(), table)?;
+    writer.write(table)?;
+    writer.finish()
+}
+
+/// Writes a table piece by piece, as [`write()`] writes it in one; it holds one row group in memory, whatever the length of the table.
+/// How a table is cut into pieces does not change the bytes.
+pub struct Writer<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+    types: Vec<PhysicalType>,
+    rows_of_group: usize,
+    /// The rows that do not make a row group yet, in the columns of the layout.
+    pending: Table,
+    has_groups: bool,
+}
+
+impl<W: Write + Send> Writer<W> {
+    /// A writer of tables with the columns of `layout`, which may have rows: what is missing among its whole numbers says
+    /// whether something may be missing.
+    ///
+    /// # Errors
+    /// When the sink fails.
+    pub fn new(sink: W, layout: &Table) -> Result<Self, TableError> {
+        let mut properties = WriterProperties::builder()
+            .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
+            .set_dictionary_enabled(false)
+            .set_created_by("drillsweep".to_owned());
+        let mut units = Vec::new();
+        let mut fields = Vec::with_capacity(layout.columns.len());
+        let types: Vec<PhysicalType> = layout.columns.values().map(physical_type).collect();
+        for (name, &physical) in layout.columns.keys().zip(&types) {
+            let converted =
+                if physical == PhysicalType::BYTE_ARRAY { ConvertedType::UTF8 } else { ConvertedType::NONE };
+            fields.push(Arc::new(
+                Type::primitive_type_builder(name, physical)
+                    .with_repetition(Repetition::REQUIRED)
+                    .with_converted_type(converted)
+                    .build()?,
+            ));
+            if matches!(physical, PhysicalType::DOUBLE | PhysicalType::FLOAT) {
+                let path = ColumnPath::new(vec![name.clone()]);
+                properties = properties.set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
+            }
+            if let Some(unit) = layout.units.get(name) {
+                units.push(KeyValue::new(format!("{UNIT_PREFIX}{name}"), unit.clone()));
+            }
         }
-        let physical = physical_type(column);
-        let converted =
-            if physical == PhysicalType::BYTE_ARRAY { ConvertedType::UTF8 } else { ConvertedType::NONE };
-        fields.push(Arc::new(
-            Type::primitive_type_builder(name, physical)
-                .with_repetition(Repetition::REQUIRED)
-                .with_converted_type(converted)
-                .build()?,
-        ));
-        if matches!(physical, PhysicalType::DOUBLE | PhysicalType::FLOAT) {
-            let path = ColumnPath::new(vec![name.clone()]);
-            properties = properties.set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
-        }
-        if let Some(unit) = table.units.get(name) {
-            units.push(KeyValue::new(format!("{UNIT_PREFIX}{name}"), unit.clone()));
-        }
+        let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
+        let properties = Arc::new(properties.set_key_value_metadata(Some(units)).build());
+        Ok(Self {
+            file: SerializedFileWriter::new(sink, schema, properties)?,
+            rows_of_group: rows_of_group(&types),
+            types,
+            pending: layout.without_rows(),
+            has_groups: false,
+        })
     }
-    let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
-    let properties = Arc::new(properties.set_key_value_metadata(Some(units)).build());
-    let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties)?;
-    let mut start = 0;
-    while start < rows || (start == 0 && rows == 0) {
-        let end = (start + ROW_GROUP).min(rows);
-        let mut group = writer.next_row_group()?;
-        write_group(&mut group, table, start..end)?;
+
+    /// Adds rows.
+    ///
+    /// # Errors
+    /// When the columns are not those of the layout or differ in length, or the sink fails.
+    pub fn write(&mut self, rows: &Table) -> Result<(), TableError> {
+        let count = rows.rows();
+        for (name, column) in &rows.columns {
+            if column.len() != count {
+                return Err(TableError::Ragged { name: name.clone(), rows: column.len(), expected: count });
+            }
+        }
+        if !rows.has_columns_of(&self.pending) {
+            return Err(TableError::OtherColumns);
+        }
+        let mut start = 0;
+        while start < count {
+            let end = (start + self.rows_of_group - self.pending.rows()).min(count);
+            if end - start == self.rows_of_group {
+                self.write_group(rows, start..end)?;
+            } else {
+                self.pending.append(rows, start..end);
+                if self.pending.rows() == self.rows_of_group {
+                    self.write_pending()?;
+                }
+            }
+            start = end;
+        }
+        Ok(())
+    }
+
+    /// Writes what is left, and the file's footer.
+    ///
+    /// # Errors
+    /// When the sink fails.
+    pub fn finish(mut self) -> Result<W, TableError> {
+        // A table without rows has a row group without rows.
+        if self.pending.rows() > 0 || !self.has_groups {
+            self.write_pending()?;
+        }
+        Ok(self.file.into_inner()?)
+    }
+
+    fn write_pending(&mut self) -> Result<(), TableError> {
+        let emptied = self.pending.without_rows();
+        let pending = std::mem::replace(&mut self.pending, emptied);
+        self.write_group(&pending, 0..pending.rows())
+    }
+
+    fn write_group(&mut self, table: &Table, rows: Range<usize>) -> Result<(), TableError> {
+        let mut group = self.file.next_row_group()?;
+        write_group(&mut group, table, &self.types, rows)?;
         group.close()?;
-        if rows == 0 {
-            break;
-        }
-        start = end;
+        self.has_groups = true;
+        Ok(())
     }
-    writer.close()?;
-    Ok(bytes)
+}
+
+/// Rows of a row group of columns of these types.
+fn rows_of_group(types: &[PhysicalType]) -> usize {
+    let width: usize =
+        types.iter().map(|physical| if *physical == PhysicalType::FLOAT { 4 } else { 8 }).sum();
+    (ROW_GROUP_BYTES / width.max(1)).clamp(1, ROW_GROUP)
 }
 
 /// The type in which a column is kept.
@@ -109,35 +191,38 @@ fn physical_type(column: &Column) -> PhysicalType {
     }
 }
 
-fn write_group(
-    group: &mut SerializedRowGroupWriter<'_, &mut Vec<u8>>,
+fn write_group<W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
     table: &Table,
+    types: &[PhysicalType],
     rows: Range<usize>,
 ) -> Result<(), TableError> {
-    for column in table.columns.values() {
+    for (column, physical) in table.columns.values().zip(types) {
         let Some(mut writer) = group.next_column()? else { break };
         let rows = rows.clone();
-        match column {
-            Column::Number(values) => {
+        match (column, physical) {
+            (Column::Number(values), PhysicalType::DOUBLE) => {
                 writer.typed::<DoubleType>().write_batch(&values[rows], None, None)?;
             }
-            Column::Single(values) => {
+            (Column::Single(values), PhysicalType::FLOAT) => {
                 writer.typed::<FloatType>().write_batch(&values[rows], None, None)?;
             }
-            Column::Integer(values) if physical_type(column) == PhysicalType::INT64 => {
-                let values: Vec<i64> = values[rows].iter().flatten().copied().collect();
+            (Column::Integer(values), PhysicalType::INT64) => {
+                let values: Option<Vec<i64>> = values[rows].iter().copied().collect();
+                let values = values.ok_or(TableError::OtherColumns)?;
                 writer.typed::<Int64Type>().write_batch(&values, None, None)?;
             }
-            Column::Integer(values) => {
+            (Column::Integer(values), PhysicalType::DOUBLE) => {
                 let number = |value: &Option<i64>| value.map_or(f64::NAN, |value| value as f64);
                 let values: Vec<f64> = values[rows].iter().map(number).collect();
                 writer.typed::<DoubleType>().write_batch(&values, None, None)?;
             }
-            Column::Text(values) => {
+            (Column::Text(values), PhysicalType::BYTE_ARRAY) => {
                 let text = |text: &Option<String>| ByteArray::from(text.as_deref().unwrap_or_default());
                 let texts: Vec<ByteArray> = values[rows].iter().map(text).collect();
                 writer.typed::<ByteArrayType>().write_batch(&texts, None, None)?;
             }
+            _ => return Err(TableError::OtherColumns),
         }
         writer.close()?;
     }

@@ -1,5 +1,7 @@
 //! The table: columns by name, of one length.
 
+use std::ops::Range;
+
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -67,6 +69,16 @@ impl Column {
         }
     }
 
+    fn append(&mut self, other: &Column, rows: Range<usize>) {
+        match (self, other) {
+            (Column::Integer(own), Column::Integer(values)) => own.extend_from_slice(&values[rows]),
+            (Column::Number(own), Column::Number(values)) => own.extend_from_slice(&values[rows]),
+            (Column::Single(own), Column::Single(values)) => own.extend_from_slice(&values[rows]),
+            (Column::Text(own), Column::Text(values)) => own.extend_from_slice(&values[rows]),
+            _ => panic!("a column is continued in another type"),
+        }
+    }
+
     /// The same in double precision, where it is in single; every value is kept.
     #[must_use]
     pub fn widened(self) -> Column {
@@ -104,6 +116,33 @@ impl Table {
     pub fn with(mut self, name: impl Into<String>, column: Column) -> Self {
         self.push(name, column);
         self
+    }
+
+    /// The columns with their units and types, without a row.
+    #[must_use]
+    pub fn without_rows(&self) -> Self {
+        let emptied = |(name, column): (&String, &Column)| (name.clone(), column.rows(0..0));
+        Self {
+            attributes: self.attributes.clone(),
+            columns: self.columns.iter().map(emptied).collect(),
+            units: self.units.clone(),
+        }
+    }
+
+    /// Whether another table has columns of the same names and types, in the same order.
+    pub(crate) fn has_columns_of(&self, other: &Table) -> bool {
+        let type_of = |(name, column)| (name, std::mem::discriminant::<Column>(column));
+        self.columns.iter().map(type_of).eq(other.columns.iter().map(type_of))
+    }
+
+    /// Adds some rows of a table with the same columns.
+    ///
+    /// # Panics
+    /// When names or types of the columns differ, or there are no such rows.
+    pub(crate) fn append(&mut self, other: &Table, rows: Range<usize>) {
+        for (name, column) in &other.columns {
+            self.columns[name].append(column, rows.clone());
+        }
     }
 
     /// Sets an attribute of the table as a whole.

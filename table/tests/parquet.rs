@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 use bytes::Bytes;
-use drillsweep_table::parquet::{TableError, column_names, read, write};
+use drillsweep_table::parquet::{TableError, Writer, column_names, read, write};
 use drillsweep_table::{Column, Table};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -39,6 +39,32 @@ fn a_table_comes_back_with_every_value_unit_and_name() {
     }
     let empty = Table::default();
     assert_eq!(read(encode(&empty), None, None).unwrap(), empty);
+}
+
+#[test]
+fn a_table_written_in_pieces_has_the_same_bytes() {
+    for (rows, piece) in [(0, 1), (25_000, 25_000), (25_000, 777), (25_000, 10_000), (20_001, 19_999)] {
+        let table = history(rows);
+        let mut writer = Writer::new(Vec::new(), &table.without_rows()).unwrap();
+        for start in (0..rows).step_by(piece) {
+            writer.write(&rows_of(&table, start..(start + piece).min(rows))).unwrap();
+        }
+        assert!(writer.finish().unwrap() == write(&table).unwrap(), "{rows} rows by {piece}");
+    }
+    let mut writer = Writer::new(Vec::new(), &history(0)).unwrap();
+    let other = Table::default().with("time", Column::Number(vec![0.0]));
+    assert!(matches!(writer.write(&other), Err(TableError::OtherColumns)));
+}
+
+#[test]
+fn a_row_group_of_many_columns_is_as_small_as_one_of_few() {
+    let samples = Column::Single(vec![0.5; 9_000]);
+    let table = (0..2_400).fold(Table::default(), |table, n| table.with(format!("u_{n}"), samples.clone()));
+    let reader = SerializedFileReader::new(encode(&table)).unwrap();
+    let rows: Vec<i64> = reader.metadata().row_groups().iter().map(|group| group.num_rows()).collect();
+    // 32 MiB of 9,600 bytes a row.
+    assert_eq!(rows, [3_495, 3_495, 2_010]);
+    assert_eq!(read(encode(&table), Some(&["u_7"]), Some(3_400..3_600)).unwrap().rows(), 200);
 }
 
 #[test]

@@ -25,6 +25,11 @@ pub struct DryRun {
     pub cpu_time: Option<f64>,
     /// The same shared out among the workers there are now \[s\]; absent where there are none.
     pub wall_time: Option<f64>,
+    /// Tables of the points without a result, of reference runs too, before they are compressed \[bytes\]; stored they usually take half
+    /// of that.
+    pub table_bytes: u64,
+    /// Memory that a worker takes for a point at most, about \[bytes\].
+    pub memory_bytes: u64,
     /// The points, by ordinal.
     pub points: Vec<PlannedPoint>,
     /// The reference runs that would verify some of them; absent where none is verified.
@@ -71,9 +76,13 @@ impl DryRun {
         let speed: Option<MachineSpeed> = speed_json.and_then(|json| serde_json::from_str(json).ok());
         let plans = plans(expansion, speed.as_ref());
         let mut cpu_time = cpu_time(expansion, known, &plans);
+        let mut table_bytes = table_bytes(expansion, known, &plans);
+        let mut memory_bytes = memory_bytes(&plans);
         let verification = expansion.verification.as_ref().map(|references| {
-            let of_references =
-                self::cpu_time(references, known_references, &self::plans(references, speed.as_ref()));
+            let plans = self::plans(references, speed.as_ref());
+            table_bytes += self::table_bytes(references, known_references, &plans);
+            memory_bytes = memory_bytes.max(self::memory_bytes(&plans));
+            let of_references = self::cpu_time(references, known_references, &plans);
             cpu_time = cpu_time.zip(of_references).map(|(points, references)| points + references);
             PlannedVerification {
                 total: references.points.len() as u64,
@@ -90,6 +99,8 @@ impl DryRun {
             }),
             cpu_time,
             wall_time: cpu_time.filter(|_| workers > 0).map(|time| time / workers as f64),
+            table_bytes,
+            memory_bytes,
             points: planned(expansion),
             verification,
             warnings: expansion.warnings.clone(),
@@ -107,6 +118,18 @@ fn plans(expansion: &Expansion, speed: Option<&MachineSpeed>) -> Vec<Plan> {
 fn cpu_time(expansion: &Expansion, known: u64, plans: &[Plan]) -> Option<f64> {
     let unknown = (expansion.points.len() as u64).saturating_sub(known) as f64;
     Some(mean_cpu_time(plans)? * unknown)
+}
+
+/// Bytes of the tables of the points without a result, by some of their plans.
+fn table_bytes(expansion: &Expansion, known: u64, plans: &[Plan]) -> u64 {
+    let unknown = (expansion.points.len() as u64).saturating_sub(known);
+    let of_plans: u64 = plans.iter().map(|plan| plan.footprint.table_bytes).sum();
+    (unknown as f64 * of_plans as f64 / plans.len().max(1) as f64).round() as u64
+}
+
+/// The most bytes of memory that one of the plans tells.
+fn memory_bytes(plans: &[Plan]) -> u64 {
+    plans.iter().map(|plan| plan.footprint.memory_bytes).max().unwrap_or(0)
 }
 
 fn planned(expansion: &Expansion) -> Vec<PlannedPoint> {

@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
 use serde_json::json;
 
 use crate::print;
 use crate::scenario::ScenarioArguments;
+use crate::submit::megabytes;
 
 #[derive(Args)]
 pub(crate) struct PlanArguments {
@@ -55,6 +57,9 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         plan.elements, plan.shortest_element, plan.longest_element, plan.nodes
     )?;
     writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
+    let Footprint { memory_bytes, table_bytes } = plan.footprint;
+    let [memory, tables] = [memory_bytes, table_bytes].map(megabytes);
+    writeln!(text, "{memory} of memory at most, {tables} of tables before compression")?;
     if let Some(estimate) = &plan.mesh_error {
         writeln!(text, "{estimate}")?;
     }

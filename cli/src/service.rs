@@ -1,9 +1,13 @@
 //! The roles of the binary that keep running: server, worker, and both together.
 
+use std::ffi::OsStr;
+use std::fs::DirBuilder;
 use std::net::SocketAddr;
 use std::num::NonZeroU32;
+use std::os::unix::fs::DirBuilderExt as _;
+use std::os::unix::process::ExitStatusExt as _;
 use std::path::PathBuf;
-use std::process::Stdio;
+use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 
 use anyhow::Context;
@@ -85,6 +89,16 @@ pub(crate) struct UpArguments {
     /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
     #[arg(long, value_parser = parse_span)]
     point_timeout: Option<Duration>,
+    #[command(flatten)]
+    scratch: ScratchArguments,
+}
+
+#[derive(Args)]
+struct ScratchArguments {
+    /// Directory for temporary files, which hold what a running point records: up to 6 GiB a worker, on a disk of its own machine; `scratch`
+    /// in the data directory unless given.
+    #[arg(long, env = "DRILLSWEEP_SCRATCH")]
+    scratch: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -112,9 +126,25 @@ pub(crate) struct WorkerArguments {
     /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
     #[arg(long, value_parser = parse_span)]
     point_timeout: Option<Duration>,
+    #[command(flatten)]
+    scratch: ScratchArguments,
+    /// Simulated seconds per second at most: holds points back, to see what becomes of a running one that is stopped or lost.
+    #[arg(long, env = "DRILLSWEEP_PACE", hide = true, value_parser = parse_pace)]
+    pace: Option<f64>,
     /// End when the process that started this one ends.
     #[arg(long, hide = true)]
     with_parent: bool,
+}
+
+impl ScratchArguments {
+    /// The directory, which is made where it is not there.
+    fn directory(&self, data: &DataArguments) -> anyhow::Result<PathBuf> {
+        let directory = self.scratch.clone().unwrap_or_else(|| data.data.join("scratch"));
+        // For this user alone, as all data are.
+        let make = DirBuilder::new().recursive(true).mode(0o700).create(&directory);
+        make.with_context(|| format!("cannot make {}", directory.display()))?;
+        Ok(directory)
+    }
 }
 
 impl DataArguments {
@@ -164,6 +194,8 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         drain: arguments.drain,
         max_runtime: arguments.max_runtime,
         point_timeout: arguments.point_timeout,
+        pace: arguments.pace,
+        scratch: arguments.scratch.directory(&arguments.data)?,
         ..WorkerConfig::new(arguments.data.store(Role::Worker))
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -182,6 +214,11 @@ fn lease(seconds: f64) -> anyhow::Result<Duration> {
 fn parse_span(text: &str) -> anyhow::Result<Duration> {
     let span = time_span::parse(text).ok().filter(|span| !span.is_zero());
     span.with_context(|| format!("write a time span such as 3h, 90m or 600s, got {text:?}"))
+}
+
+fn parse_pace(text: &str) -> anyhow::Result<f64> {
+    let pace = text.parse().ok().filter(|pace| (1e-3..=1e6).contains(pace));
+    pace.with_context(|| format!("write a number from 0.001 to 1e6, got {text:?}"))
 }
 
 /// A time span, or 0 for never.
@@ -302,6 +339,7 @@ fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
                 .iter()
                 .flat_map(|time| ["--point-timeout".to_owned(), time.as_secs_f64().to_string()]),
         )
+        .args(arguments.scratch.scratch.iter().flat_map(|path| [OsStr::new("--scratch"), path.as_os_str()]))
         .stdin(Stdio::null())
         // Ctrl-C reaches the whole group: the parent decides when its workers end.
         .process_group(0);
@@ -314,12 +352,14 @@ async fn keep_worker(
     stop: watch::Receiver<bool>,
 ) -> anyhow::Result<()> {
     while !*stop.borrow() {
+        let kills = memory_kills();
         let mut child = command.spawn().context("a worker cannot be started")?;
         let process = child.id();
         tokio::select! {
             status = child.wait() => {
-                tracing::warn!(status = %status?, "a worker ended; a new one is started");
-                if let Some(process) = process && let Err(error) = bury(store, process).await {
+                let note = obituary(status?, memory_kills() > kills);
+                tracing::warn!("a worker ended: {note}; a new one is started");
+                if let Some(process) = process && let Err(error) = bury(store, process, &note).await {
                     tracing::warn!(%error, "its point is queued again when its lease expires");
                 }
                 tokio::select! {
@@ -334,11 +374,28 @@ async fn keep_worker(
 }
 
 /// Releases the points of a worker that has ended: a process that was waited for writes nothing more.
-async fn bury(store: &StoreConfig, process: u32) -> drillsweep_store::Result<()> {
+async fn bury(store: &StoreConfig, process: u32, note: &str) -> drillsweep_store::Result<()> {
     let store = Store::open(store).await?;
-    store.bury_worker(&host_name(), i64::from(process)).await?;
+    store.bury_worker(&host_name(), i64::from(process), Some(note)).await?;
     store.close().await;
     Ok(())
+}
+
+/// How a worker ended, for those who look for the reason.
+fn obituary(status: ExitStatus, was_memory_short: bool) -> String {
+    match (status.signal(), status.code()) {
+        // The system ends processes with this signal when memory is short; so do people.
+        (Some(9), _) if was_memory_short => "the system ended it for lack of memory".to_owned(),
+        (Some(signal), _) => format!("signal {signal} ended it"),
+        (None, code) => format!("it ended with exit code {}", code.unwrap_or_default()),
+    }
+}
+
+/// Processes that the system has ended for lack of memory since it was started; 0 where it does not tell.
+fn memory_kills() -> u64 {
+    let counters = std::fs::read_to_string("/proc/vmstat").unwrap_or_default();
+    let count = counters.lines().find_map(|line| line.strip_prefix("oom_kill "));
+    count.and_then(|count| count.trim().parse().ok()).unwrap_or(0)
 }
 
 /// Asks a child to end, and ends it after a while.

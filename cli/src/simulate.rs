@@ -1,6 +1,8 @@
 //! One point without a server.
 
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Seek as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -104,9 +106,14 @@ where
 
 fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
-    for artifact in computed.encode()? {
+    for artifact in &computed.artifacts {
         let path = directory.join(artifact.file_name());
-        std::fs::write(&path, &artifact.bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        let write = || {
+            let mut content = &artifact.file;
+            content.rewind()?;
+            std::io::copy(&mut content, &mut File::create(&path)?)
+        };
+        write().with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
 }

@@ -222,10 +222,17 @@ struct DryRun {
     known: u64,
     cpu_time: Option<f64>,
     wall_time: Option<f64>,
+    table_bytes: u64,
+    memory_bytes: u64,
     points: Vec<PlannedPoint>,
     verification: Option<PlannedVerification>,
     #[serde(default)]
     warnings: Vec<FieldProblem>,
+}
+
+/// Bytes as a size that people read.
+pub(crate) fn megabytes(bytes: u64) -> String {
+    format!("{} MB", number((bytes as f64 / 1e6).ceil()))
 }
 
 /// Points of a dry run that are shown.
@@ -244,6 +251,8 @@ impl DryRun {
         if let Some(time) = self.wall_time {
             let _ = write!(text, ", {} s with the workers there are", number(time.ceil()));
         }
+        let [tables, memory] = [self.table_bytes, self.memory_bytes].map(megabytes);
+        let _ = write!(text, "\n{tables} of tables before compression, {memory} of memory a worker");
         let names: Vec<&String> =
             self.points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
         let named = |name: &&String| match unit(name).filter(|unit| *unit != "1") {

@@ -14,17 +14,27 @@ pub struct Control {
     own_time: AtomicU64,
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Shared {
     cancel: AtomicBool,
     suspend: AtomicBool,
     simulated_time: AtomicU64,
+    observer: Option<Observer>,
 }
+
+type Observer = Box<dyn Fn(&Control, f64) + Send + Sync>;
 
 impl Control {
     /// A handle that asks for nothing.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A handle whose runs call `observer` with their simulated time \[s\] where they could be suspended, ten times a second
+    /// of simulated time, and go on when it returns: to stop a run at a certain time, or to hold it there.
+    pub fn observed_by(observer: impl Fn(&Control, f64) + Send + Sync + 'static) -> Self {
+        let shared = Shared { observer: Some(Box::new(observer)), ..Shared::default() };
+        Self { shared: Arc::new(shared), own_time: AtomicU64::default() }
     }
 
     /// A handle for one more run that is watched and stopped with this one.
@@ -57,12 +67,31 @@ impl Control {
         f64::from_bits(self.shared.simulated_time.load(Ordering::Relaxed))
     }
 
+    /// Tells the observer, if there is one, that this handle's run has come to a time \[s\] at which it could be suspended.
+    pub(crate) fn reach(&self, simulated_time: f64) {
+        if let Some(observer) = &self.shared.observer {
+            observer(self, simulated_time);
+        }
+    }
+
     /// Takes in the simulated time of this handle's run \[s\].
     pub(crate) fn report(&self, simulated_time: f64) {
         let before = f64::from_bits(self.own_time.swap(simulated_time.to_bits(), Ordering::Relaxed));
         let add = |total: u64| Some((f64::from_bits(total) + (simulated_time - before)).to_bits());
         // The update never declines, so it never fails.
         let _ = self.shared.simulated_time.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
+    }
+}
+
+impl std::fmt::Debug for Shared {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { cancel, suspend, simulated_time, observer: _ } = self;
+        formatter
+            .debug_struct("Shared")
+            .field("cancel", cancel)
+            .field("suspend", suspend)
+            .field("simulated_time", &f64::from_bits(simulated_time.load(Ordering::Relaxed)))
+            .finish_non_exhaustive()
     }
 }
 

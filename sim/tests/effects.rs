@@ -156,19 +156,17 @@ fn fewer_degrees_of_freedom_resume_to_the_same_bits() {
         assert_eq!(degrees_of_freedom, if torsion == Switch::On { 5 } else { 4 });
         let model = Model::new(&scenario).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
-        let control = Control::new();
-        let outcome = std::thread::scope(|scope| {
-            let watched = &control;
-            scope.spawn(move || {
-                while watched.simulated_time() < 0.05 {
-                    std::hint::spin_loop();
-                }
-                watched.suspend();
-            });
-            Transient::new(&model, &equilibrium).unwrap().run(&control)
+        let control = Control::observed_by(|control, time| {
+            if time >= 0.05 {
+                control.suspend();
+            }
         });
-        let Ok(Outcome::Suspended(checkpoint)) = outcome else { panic!("not suspended: {outcome:?}") };
-        let resumed = Transient::resume(&model, &equilibrium, &checkpoint).unwrap().run(&Control::new());
+        let outcome = Transient::new(&model, &equilibrium).unwrap().run(&control);
+        let Ok(Outcome::Suspended(checkpoint, histories)) = outcome else {
+            panic!("not suspended: {outcome:?}")
+        };
+        let resumed =
+            Transient::resume(&model, &equilibrium, &checkpoint).unwrap().run_on(&Control::new(), histories);
         let Ok(Outcome::Finished(resumed)) = resumed else { panic!("not finished: {resumed:?}") };
         assert_eq!(*resumed, whole);
     }

@@ -1,6 +1,9 @@
 //! Arrays, by the hash of their bytes.
 
+use std::fs::File;
+use std::io::Write;
 use std::ops::Range;
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
@@ -14,6 +17,9 @@ use object_store::{ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions,
 
 use crate::error::{Result, StoreError};
 use crate::hash_tree::{self, HashTree, HashTreeBuilder, HashTrees};
+
+/// Bytes of a large file that are in memory at once.
+const PART: usize = 8 << 20;
 
 /// The folder of scratch objects.
 const SCRATCH: &str = "probe";
@@ -74,6 +80,54 @@ impl BlobStore {
         Ok(id)
     }
 
+    /// Writes a file as a blob, as [`put`](Self::put) writes bytes; a large one is never in memory as a whole. Gives its size
+    /// \[bytes\], too. The file's own position does not matter.
+    ///
+    /// # Errors
+    /// When the file cannot be read or the object store fails.
+    pub async fn put_file(&self, file: &File) -> Result<(BlobId, u64)> {
+        let file = Arc::new(file.try_clone().map_err(StoreError::LocalFile)?);
+        let mut hasher = blake3::Hasher::new();
+        let read = async |from: u64| {
+            let file = file.clone();
+            let part = tokio::task::spawn_blocking(move || read_part(&file, from)).await;
+            part.map_err(std::io::Error::other).flatten().map_err(StoreError::LocalFile)
+        };
+        let first = read(0).await?;
+        if first.len() < PART {
+            let bytes = first.len() as u64;
+            return Ok((self.put(first).await?, bytes));
+        }
+        let mut part = first;
+        while !part.is_empty() {
+            hasher.update(&part);
+            part = read(hasher.count()).await?;
+        }
+        let (id, bytes) = (BlobId(hasher.finalize()), hasher.count());
+        if self.contains(id).await? {
+            match self.verify(id).await {
+                Ok(_) => return Ok((id, bytes)),
+                Err(error) => tracing::warn!(%error, blob = %id, "a stored blob is replaced"),
+            }
+        }
+        let mut upload = self.objects.put_multipart(&id.path()).await?;
+        let mut written = 0;
+        while written < bytes {
+            let part = read(written).await?;
+            written += part.len() as u64;
+            let is_changed = part.is_empty();
+            let sent = if is_changed { Ok(()) } else { upload.put_part(PutPayload::from(part)).await };
+            if is_changed || sent.is_err() {
+                // What cannot be taken back is left to the collector.
+                let _ = upload.abort().await;
+                sent?;
+                return Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")));
+            }
+        }
+        upload.complete().await?;
+        Ok((id, bytes))
+    }
+
     async fn write(&self, id: BlobId, payload: PutPayload, mode: PutMode) -> object_store::Result<()> {
         let options = PutOptions { mode, ..PutOptions::default() };
         self.objects.put_opts(&id.path(), payload, options).await.map(drop)
@@ -105,6 +159,23 @@ impl BlobStore {
             return Err(StoreError::BlobDamaged(id));
         }
         Ok(content)
+    }
+
+    /// Reads a whole blob into an empty file.
+    ///
+    /// # Errors
+    /// As [`get`](Self::get), and when the file cannot be written.
+    pub async fn get_into(&self, id: BlobId, mut file: File) -> Result<File> {
+        let mut content = self.objects.get(&id.path()).await?.into_stream();
+        let mut hasher = blake3::Hasher::new();
+        while let Some(bytes) = content.try_next().await? {
+            hasher.update(&bytes);
+            file.write_all(&bytes).map_err(StoreError::LocalFile)?;
+        }
+        if hasher.finalize() != id.0 {
+            return Err(StoreError::BlobDamaged(id));
+        }
+        Ok(file)
     }
 
     /// Reads a range of a blob's bytes, cut off at its end. Only what was verified is handed out, as in [`get`](Self::get): the
@@ -204,6 +275,20 @@ impl BlobStore {
         }
         Ok(())
     }
+}
+
+/// A part of a file, shorter at its end.
+fn read_part(file: &File, from: u64) -> std::io::Result<Vec<u8>> {
+    let mut part = vec![0; PART];
+    let mut length = 0;
+    while length < PART {
+        match file.read_at(&mut part[length..], from + length as u64)? {
+            0 => break,
+            read => length += read,
+        }
+    }
+    part.truncate(length);
+    Ok(part)
 }
 
 /// A part of some bytes; what lies beyond their end is left out.

@@ -37,6 +37,9 @@ pub enum StoreError {
         /// What the system said.
         source: io::Error,
     },
+    /// A file outside the store, which is to be stored or fetched into, cannot be read or written.
+    #[error("a local file: {0}")]
+    LocalFile(#[source] io::Error),
     /// A stored value is not what this program writes.
     #[error("the database holds an unexpected value: {0}")]
     Corrupt(String),

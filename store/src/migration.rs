@@ -4,7 +4,10 @@ use sqlx::SqlStr;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 
 /// The migrations: version and description, which are the file's name, and its text.
-const FILES: &[(i64, &str, &str)] = &[(1, "schema", include_str!("../../migrations/sqlite/0001_schema.sql"))];
+const FILES: &[(i64, &str, &str)] = &[
+    (1, "schema", include_str!("../../migrations/sqlite/0001_schema.sql")),
+    (2, "worker note", include_str!("../../migrations/sqlite/0002_worker_note.sql")),
+];
 
 /// All migrations, to be run on a database: those that it has not had are applied, in the order of their versions. A database
 /// that has had one of another text, or one that is not here, is refused.

@@ -275,6 +275,15 @@ impl Store {
         self.leave(sql::queue::KEEP_CHECKPOINT, lease, &blob.to_string()).await
     }
 
+    /// Notes what is known of the worker of a lease, for those who look for the reason when it is heard of no more: a sentence's part
+    /// after "it is known that". False if the lease was lost.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn note_worker(&self, lease: &Lease, note: &str) -> Result<bool> {
+        self.leave(sql::queue::NOTE_WORKER, lease, note).await
+    }
+
     /// Gives work back after it brought its worker down in a way that the worker survived, such as a panic: that counts
     /// as a death of the worker, and after three the work is given up. False if the lease was lost.
     ///
@@ -349,10 +358,10 @@ impl Store {
         if too_long > 0 {
             tracing::warn!(leases = too_long, "the clock was set back; leases are counted from now");
         }
-        let expired: Vec<(String, i64, Option<String>)> =
+        let expired: Vec<(String, i64, Option<String>, Option<String>)> =
             sqlx::query_as(sql::queue::END_LEASES).bind(CRASH_LIMIT).fetch_all(&self.pool).await?;
-        for (state, crashes, owner) in &expired {
-            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, "lease ran out");
+        for (state, crashes, owner, note) in &expired {
+            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
         }
         sqlx::query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.pool).await?;
         Ok(expired.len() as u64)

@@ -102,6 +102,7 @@ statements! {
         KEEP_CHECKPOINT = "keep_checkpoint",
         KEEP_DISAGREEMENT = "keep_disagreement",
         NOTE_DISAGREEMENT = "note_disagreement",
+        NOTE_WORKER = "note_worker",
         OPEN_WORK = "open_work",
         RELEASE = "release",
         RENEW = "renew",

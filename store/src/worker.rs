@@ -53,14 +53,15 @@ impl Store {
     }
 
     /// Takes the word of who watches a worker's process that it is gone: its leases end now, and the next claim sees them as run
-    /// out. Returns how many there were.
+    /// out, with what is known of its end (as [`note_worker`](Self::note_worker) has it). Returns how many there were.
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn bury_worker(&self, host: &str, process: i64) -> Result<u64> {
+    pub async fn bury_worker(&self, host: &str, process: i64, note: Option<&str>) -> Result<u64> {
         let ended = sqlx::query(sql::worker::END_LEASES)
             .bind(host)
             .bind(process)
+            .bind(note)
             .execute(&self.pool)
             .await?
             .rows_affected();

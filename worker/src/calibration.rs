@@ -55,7 +55,7 @@ fn time_of(scenario: &Scenario) -> Result<RunTime, ComputeError> {
                 time.steps = records.effort.steps;
                 time.steps_cpu_time = time.steps_cpu_time.min(watch.elapsed().1);
             }
-            Outcome::Cancelled | Outcome::Suspended(_) => return Err(ComputeError::Cancelled),
+            Outcome::Cancelled | Outcome::Suspended(..) => return Err(ComputeError::Cancelled),
         }
     }
     Ok(time)

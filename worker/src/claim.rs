@@ -1,33 +1,37 @@
 //! The worker's loop: claim, simulate, store, again.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use drillsweep_api::{FailureClass, PointError, compose};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::transient::Checkpoint;
+use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
     BlobId, Claim, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError, WorkerRecord,
 };
-use drillsweep_table::parquet::TableError;
 use jiff::Timestamp;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 use tracing::Instrument as _;
 
+use crate::artifact::EncodedArtifact;
 use crate::calibration::calibrate;
-use crate::compute::{
-    Computation, ComputeError, Computed, EncodedArtifact, compute_from, simulated_time_total,
-};
+use crate::compute::{Computation, ComputeError, compute_from, simulated_time_total};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
+use crate::memory::Memory;
 use crate::provenance::WorkerProvenance;
+use crate::spool::{Suspended, SuspendedError};
 
 /// How a worker works.
 #[derive(Debug, Clone)]
 pub struct WorkerConfig {
     /// Where the store lies.
     pub store: StoreConfig,
+    /// Directory for temporary files, which hold what a running point records.
+    pub scratch: PathBuf,
     /// How long a point stays with a silent worker.
     pub lease: Duration,
     /// How long an idle worker waits before it looks for work again.
@@ -38,19 +42,24 @@ pub struct WorkerConfig {
     pub max_runtime: Option<Duration>,
     /// Longest that one attempt at a point may take; one that takes longer fails, and a retry goes on from there.
     pub point_timeout: Option<Duration>,
+    /// Simulated seconds per second at most: a point that is held back can be watched, stopped and taken over as it runs, however fast the
+    /// machine is.
+    pub pace: Option<f64>,
 }
 
 impl WorkerConfig {
-    /// The usual worker on a store.
+    /// The usual worker on a store, with its temporary files where the system has them.
     pub fn new(mut store: StoreConfig) -> Self {
         store.role = Role::Worker;
         Self {
             store,
+            scratch: std::env::temp_dir(),
             lease: Duration::from_secs(60),
             poll_interval: Duration::from_millis(500),
             drain: false,
             max_runtime: None,
             point_timeout: None,
+            pace: None,
         }
     }
 }
@@ -143,8 +152,9 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
                     tracing::info_span!("point", key = &key[..12], fencing_token = claim.lease.fencing_token);
                 let claim_ms = asked.elapsed().as_secs_f64() * 1e3;
                 span.in_scope(|| tracing::info!(claim_ms, "point claimed"));
-                let timeout = config.point_timeout;
-                work_on(&store, &heartbeat, &record, claim, timeout, &mut stop).instrument(span).await;
+                let worker =
+                    Worker { config: &config, store: &store, heartbeat: &heartbeat, record: &record };
+                worker.work_on(claim, &mut stop).instrument(span).await;
             }
             Ok(None) if config.drain => break,
             Ok(None) => idle(config.poll_interval, &mut stop).await,
@@ -189,95 +199,132 @@ async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
     }
 }
 
-async fn work_on(
-    store: &Store,
-    heartbeat: &Heartbeat,
-    worker: &WorkerRecord,
-    claim: Claim,
-    timeout: Option<Duration>,
-    stop: &mut watch::Receiver<bool>,
-) {
-    let lease = claim.lease;
-    let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
-        Ok(scenario) => scenario,
-        Err(problem) => {
-            let error = ComputeError::Invalid(problem.to_string());
-            let ended = Ended::Computed(Err(error));
-            end(store, &lease, ended, StopReason::None, Halt::No).await;
-            return;
-        }
-    };
-    let control = Arc::new(Control::new());
-    let verdict = Arc::new(Verdict::default());
-    heartbeat.watch(Some(Watched {
-        lease: lease.clone(),
-        control: control.clone(),
-        duration: simulated_time_total(&scenario),
-        verdict: verdict.clone(),
-    }));
-    let watched = control.clone();
-    let started = Timestamp::now();
-    let checkpoint = read_checkpoint(store, claim.checkpoint).await;
-    let span = tracing::info_span!("compute");
-    let mut computing =
-        tokio::task::spawn_blocking(move || span.in_scope(|| compute_from(&scenario, &watched, checkpoint)));
-    let timeout = timeout.map(|time| (time, tokio::time::Instant::now() + time));
-    let overdue = async {
-        match timeout {
-            Some((time, at)) => {
-                tokio::time::sleep_until(at).await;
-                time
-            }
-            None => std::future::pending().await,
-        }
-    };
-    tokio::pin!(overdue);
-    let mut halt = Halt::No;
-    let joined = loop {
-        tokio::select! {
-            joined = &mut computing => break joined,
-            Ok(_) = stop.wait_for(|stop| *stop), if halt == Halt::No => {
-                halt = Halt::Stop;
-                control.suspend();
-            }
-            time = &mut overdue, if halt == Halt::No => {
-                halt = Halt::Timeout(time);
-                control.suspend();
-            }
-        }
-    };
-    let ended = match joined {
-        Ok(Ok(Computation::Finished(mut computed))) => {
-            computed.provenance.worker = Some(WorkerProvenance {
-                host: worker.host.clone(),
-                worker: worker.id.clone(),
-                fencing_token: lease.fencing_token,
-                started,
-                ended: Timestamp::now(),
-            });
-            Ended::Computed(Ok(Computation::Finished(computed)))
-        }
-        Ok(result) => Ended::Computed(result),
-        Err(error) => Ended::Panicked(panic_text(error)),
-    };
-    end(store, &lease, ended, verdict.get(), halt).instrument(tracing::info_span!("store")).await;
-    heartbeat.watch(None);
+/// What the loop works with.
+struct Worker<'a> {
+    config: &'a WorkerConfig,
+    store: &'a Store,
+    heartbeat: &'a Heartbeat,
+    record: &'a WorkerRecord,
 }
 
-/// The checkpoint that an earlier worker left. Without it the point starts from its beginning, which costs time and nothing else.
-async fn read_checkpoint(store: &Store, blob: Option<BlobId>) -> Option<Checkpoint> {
-    let bytes = store.blobs().get(blob?).await;
-    let bytes = bytes.inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be read")).ok()?;
-    Checkpoint::from_bytes(&bytes)
-        .inspect_err(|error| tracing::warn!(%error, "a checkpoint cannot be used"))
+impl Worker<'_> {
+    async fn work_on(&self, claim: Claim, stop: &mut watch::Receiver<bool>) {
+        let Self { config, store, heartbeat, record } = self;
+        let lease = claim.lease;
+        let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
+            Ok(scenario) => scenario,
+            Err(problem) => {
+                let error = ComputeError::Invalid(problem.to_string());
+                let ended = Ended::Computed(Err(error));
+                end(store, &lease, ended, StopReason::None, Halt::No).await;
+                return;
+            }
+        };
+        if let Some(error) = too_large(&scenario) {
+            end(store, &lease, Ended::Computed(Err(error)), StopReason::None, Halt::No).await;
+            return;
+        }
+        let control = Arc::new(config.pace.map_or_else(Control::new, paced));
+        let verdict = Arc::new(Verdict::default());
+        heartbeat.watch(Some(Watched {
+            lease: lease.clone(),
+            control: control.clone(),
+            duration: simulated_time_total(&scenario),
+            verdict: verdict.clone(),
+        }));
+        let watched = control.clone();
+        let started = Timestamp::now();
+        let scratch = config.scratch.clone();
+        let suspended = read_suspended(store, claim.checkpoint, &scratch).await;
+        let span = tracing::info_span!("compute");
+        let mut computing = tokio::task::spawn_blocking(move || {
+            span.in_scope(|| compute_from(&scenario, &watched, suspended, &scratch))
+        });
+        let timeout = config.point_timeout.map(|time| (time, tokio::time::Instant::now() + time));
+        let overdue = async {
+            match timeout {
+                Some((time, at)) => {
+                    tokio::time::sleep_until(at).await;
+                    time
+                }
+                None => std::future::pending().await,
+            }
+        };
+        tokio::pin!(overdue);
+        let mut halt = Halt::No;
+        let joined = loop {
+            tokio::select! {
+                joined = &mut computing => break joined,
+                Ok(_) = stop.wait_for(|stop| *stop), if halt == Halt::No => {
+                    halt = Halt::Stop;
+                    control.suspend();
+                }
+                time = &mut overdue, if halt == Halt::No => {
+                    halt = Halt::Timeout(time);
+                    control.suspend();
+                }
+            }
+        };
+        let ended = match joined {
+            Ok(Ok(Computation::Finished(mut computed))) => {
+                computed.provenance.worker = Some(WorkerProvenance {
+                    host: record.host.clone(),
+                    worker: record.id.clone(),
+                    fencing_token: lease.fencing_token,
+                    started,
+                    ended: Timestamp::now(),
+                });
+                Ended::Computed(Ok(Computation::Finished(computed)))
+            }
+            Ok(result) => Ended::Computed(result),
+            Err(error) => Ended::Panicked(panic_text(error)),
+        };
+        end(store, &lease, ended, verdict.get(), halt).instrument(tracing::info_span!("store")).await;
+        heartbeat.watch(None);
+    }
+}
+
+/// A control whose runs make so many simulated seconds per second at most.
+fn paced(pace: f64) -> Control {
+    /// How soon a run that is held back notices that it is to stop.
+    const LOOK: Duration = Duration::from_millis(10);
+    let started = Instant::now();
+    Control::observed_by(move |control, time| {
+        let due = started + Duration::from_secs_f64(time / pace);
+        while !control.is_cancelled() && !control.is_suspended() && Instant::now() < due {
+            std::thread::sleep(LOOK.min(due.saturating_duration_since(Instant::now())));
+        }
+    })
+}
+
+/// Refuses a point that takes more memory than this worker may have; another may have more.
+fn too_large(scenario: &Scenario) -> Option<ComputeError> {
+    let runs_at_once = if scenario.cost_study.is_some() { rayon::current_num_threads() } else { 1 };
+    let needed = Footprint::of(scenario).ok()?.memory_bytes * runs_at_once as u64;
+    let memory = Memory::now()?;
+    (needed > memory.limit.saturating_sub(memory.resident))
+        .then_some(ComputeError::TooLarge { needed, limit: memory.limit })
+}
+
+/// What an earlier worker has done of a point. Without it the point starts from its beginning, which costs time and nothing else.
+async fn read_suspended(store: &Store, blob: Option<BlobId>, scratch: &Path) -> Option<Suspended> {
+    let blob = blob?;
+    let read = async {
+        let file = tempfile::tempfile_in(scratch).map_err(SuspendedError::from)?;
+        Ok::<_, KeepError>(Suspended::from_file(store.blobs().get_into(blob, file).await?)?)
+    };
+    read.await
+        .inspect_err(
+            |error| tracing::warn!(%error, "a suspended run cannot be used; the point starts from its beginning"),
+        )
         .ok()
 }
 
 /// Writes how a point ended. The store being out of reach is tried again until the lease must be gone.
-async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, halt: Halt) {
+async fn end(store: &Store, lease: &Lease, mut ended: Ended, reason: StopReason, halt: Halt) {
     const TRIES: u32 = 5;
     for tries in 0..TRIES {
-        match write_end(store, lease, &ended, reason, halt).await {
+        match write_end(store, lease, &mut ended, reason, halt).await {
             Ok(true) => return,
             Ok(false) => {
                 tracing::warn!("lease lost, result dropped");
@@ -295,35 +342,37 @@ async fn end(store: &Store, lease: &Lease, ended: Ended, reason: StopReason, hal
 async fn write_end(
     store: &Store,
     lease: &Lease,
-    ended: &Ended,
+    ended: &mut Ended,
     reason: StopReason,
     halt: Halt,
 ) -> drillsweep_store::Result<bool> {
     match ended {
-        Ended::Computed(Ok(Computation::Finished(computed))) => match upload(store, computed).await {
-            Ok(artifacts) => {
-                let summary = Value::Object(computed.summary_row()).to_string();
-                let provenance = json!(computed.provenance).to_string();
-                let result = NewResult {
-                    summary_json: &summary,
-                    provenance_json: &provenance,
-                    artifacts: &artifacts,
-                    // A study of what accuracy costs measures times.
-                    is_repeatable: computed.study.is_none(),
-                };
-                store.finish_done(lease, &result).await
+        Ended::Computed(Ok(Computation::Finished(computed))) => {
+            match upload(store, &computed.artifacts).await {
+                Ok(artifacts) => {
+                    let summary = Value::Object(computed.summary_row()).to_string();
+                    let provenance = json!(computed.provenance).to_string();
+                    let result = NewResult {
+                        summary_json: &summary,
+                        provenance_json: &provenance,
+                        artifacts: &artifacts,
+                        // A study of what accuracy costs measures times.
+                        is_repeatable: computed.study.is_none(),
+                    };
+                    store.finish_done(lease, &result).await
+                }
+                Err(error) => {
+                    tracing::warn!(%error, "artifacts cannot be written");
+                    let error = PointError::new(FailureClass::Infrastructure, error.to_string());
+                    store.retry_later(lease, &text_of(&error)).await
+                }
             }
-            Err(error) => {
-                tracing::warn!(%error, "artifacts cannot be written");
-                let error = PointError::new(FailureClass::Infrastructure, error.to_string());
-                store.retry_later(lease, &text_of(&error)).await
-            }
-        },
-        Ended::Computed(Ok(Computation::Suspended(checkpoint))) => {
-            halted(store, lease, Some(checkpoint), reason, halt).await
+        }
+        Ended::Computed(Ok(Computation::Suspended(suspended))) => {
+            halted(store, lease, Some(suspended), reason, halt).await
         }
         Ended::Computed(Err(error)) if error.is_of_this_worker() => {
-            tracing::error!(%error, "this worker cannot read the point's scenario");
+            tracing::error!(%error, "this worker cannot compute the point");
             store.retry_later(lease, &text_of(&error.to_point_error())).await
         }
         Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
@@ -348,7 +397,7 @@ fn text_of(error: &PointError) -> String {
 async fn halted(
     store: &Store,
     lease: &Lease,
-    checkpoint: Option<&Checkpoint>,
+    suspended: Option<&mut Suspended>,
     reason: StopReason,
     halt: Halt,
 ) -> drillsweep_store::Result<bool> {
@@ -360,13 +409,13 @@ async fn halted(
         }
         (StopReason::None, Halt::Timeout(time)) => {
             let reason = format!("it exceeded the worker's time limit of {} s", time.as_secs_f64());
-            if let Some(blob) = write_checkpoint(store, checkpoint).await {
+            if let Some(blob) = write_suspended(store, suspended).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
             store.finish_failed(lease, &text_of(&PointError::new(FailureClass::Timeout, reason))).await
         }
         (StopReason::None, Halt::Stop | Halt::No) => {
-            if let Some(blob) = write_checkpoint(store, checkpoint).await {
+            if let Some(blob) = write_suspended(store, suspended).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
             store.release(lease).await
@@ -374,44 +423,46 @@ async fn halted(
     }
 }
 
-/// Writes a checkpoint as a blob, before any row refers to it; none where it cannot be written.
-async fn write_checkpoint(store: &Store, checkpoint: Option<&Checkpoint>) -> Option<BlobId> {
-    let bytes = checkpoint?.to_bytes();
-    store
-        .blobs()
-        .put(bytes)
+/// Writes a suspended run as a blob, before any row refers to it; none where it cannot be written.
+async fn write_suspended(store: &Store, suspended: Option<&mut Suspended>) -> Option<BlobId> {
+    let suspended = suspended?;
+    let write = async {
+        let file = suspended.to_file().map_err(SuspendedError::from)?;
+        Ok::<_, KeepError>(store.blobs().put_file(file).await?.0)
+    };
+    write
         .await
         .inspect_err(
-            |error| tracing::warn!(%error, "a checkpoint cannot be written; the point will start from its beginning"),
+            |error| tracing::warn!(%error, "a suspended run cannot be written; the point will start from its beginning"),
         )
         .ok()
 }
 
-/// Why the tables of a result cannot be kept.
+/// Why a suspended run cannot be kept or taken up.
 #[derive(Debug, thiserror::Error)]
-enum UploadError {
-    /// A table cannot be encoded.
+enum KeepError {
+    /// By its file.
     #[error(transparent)]
-    Table(#[from] TableError),
-    /// Or not be written.
+    File(#[from] SuspendedError),
+    /// By the store.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
 
 /// Writes the tables as blobs, before any row refers to them.
-async fn upload(store: &Store, computed: &Computed) -> Result<Vec<NewArtifact>, UploadError> {
-    let mut artifacts = Vec::new();
-    for EncodedArtifact { name, media_type, row_count, bytes } in computed.encode()? {
-        let size = bytes.len() as i64;
-        artifacts.push(NewArtifact {
-            name: name.to_owned(),
-            media_type: media_type.to_owned(),
-            blob: store.blobs().put(bytes).await?,
-            bytes: size,
-            row_count: row_count as i64,
+async fn upload(store: &Store, artifacts: &[EncodedArtifact]) -> Result<Vec<NewArtifact>, StoreError> {
+    let mut stored = Vec::new();
+    for EncodedArtifact { name, media_type, row_count, file } in artifacts {
+        let (blob, bytes) = store.blobs().put_file(file).await?;
+        stored.push(NewArtifact {
+            name: (*name).to_owned(),
+            media_type: (*media_type).to_owned(),
+            blob,
+            bytes: bytes as i64,
+            row_count: *row_count as i64,
         });
     }
-    Ok(artifacts)
+    Ok(stored)
 }
 
 fn panic_text(error: tokio::task::JoinError) -> String {

@@ -1,5 +1,6 @@
 //! One point from its scenario to its encoded tables: no queue, no database, no network.
 
+use std::path::Path;
 use std::time::Instant;
 
 use drillsweep_api::{FailureClass, PointError};
@@ -15,21 +16,21 @@ use drillsweep_sim::study::ensemble::{distances, parting_time};
 use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{Checkpoint, Outcome, Transient, TransientError};
-use drillsweep_table::Table;
-use drillsweep_table::parquet::{self, TableError};
+use drillsweep_sim::transient::{Histories, NodeHistory, Outcome, Transient, TransientError, recorded_nodes};
 use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
+use crate::artifact::{ArtifactError, EncodedArtifact};
 use crate::cost::{cost_study, study_time};
 use crate::provenance::{Provenance, RunProvenance};
+use crate::spool::{Spool, Suspended};
 use crate::tables::{point_tables, summary_row};
 
 /// A finished point.
 #[derive(Debug)]
 pub struct Computed {
-    /// The tables, by name.
-    pub tables: Vec<(&'static str, Table)>,
+    /// Its tables as Parquet, and the study as JSON.
+    pub artifacts: Vec<EncodedArtifact>,
     /// The equilibrium in scalars.
     pub statics: StaticsSummary,
     /// The run in time in scalars; absent where the scenario has none.
@@ -58,32 +59,8 @@ pub enum Computation {
     /// To its end.
     Finished(Box<Computed>),
     /// It was suspended, and goes on from here to the same bits.
-    Suspended(Box<Checkpoint>),
+    Suspended(Box<Suspended>),
 }
-
-/// A table or report as it is stored.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EncodedArtifact {
-    /// Its name within the result.
-    pub name: &'static str,
-    /// Its media type.
-    pub media_type: &'static str,
-    /// Number of rows.
-    pub row_count: usize,
-    /// Its content.
-    pub bytes: Vec<u8>,
-}
-
-impl EncodedArtifact {
-    /// Name of the file that it is kept as.
-    pub fn file_name(&self) -> String {
-        let extension = if self.media_type == JSON { "json" } else { "parquet" };
-        format!("{}.{extension}", self.name)
-    }
-}
-
-const JSON: &str = "application/json";
-const PARQUET: &str = "application/vnd.apache.parquet";
 
 /// Why a point has no result.
 #[derive(Debug, thiserror::Error)]
@@ -111,15 +88,32 @@ pub enum ComputeError {
     /// A cost study has no reference to compare with.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// What is recorded cannot be written or read back.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// It takes more memory than this worker may have.
+    #[error("it takes about {:.1} GB of memory, and its worker may have {:.1} GB", *.needed as f64 / 1e9, *.limit as f64 / 1e9)]
+    TooLarge {
+        /// What it takes \[bytes\].
+        needed: u64,
+        /// What the worker may have \[bytes\].
+        limit: u64,
+    },
     /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,
 }
 
 impl ComputeError {
-    /// Whether another worker, of a newer version or with a database that has been mended, may get a result.
+    /// Whether another worker, of a newer version, with a database that has been mended, with room on its disk or with more memory, may get a result.
     pub(crate) fn is_of_this_worker(&self) -> bool {
-        matches!(self, ComputeError::Invalid(_))
+        matches!(
+            self,
+            ComputeError::Invalid(_)
+                | ComputeError::Artifact(_)
+                | ComputeError::TooLarge { .. }
+                | ComputeError::Transient(TransientError::Histories(_))
+        )
     }
 
     /// The error as the service shows it: class, reason, and time and node where there are any.
@@ -190,27 +184,6 @@ impl Computed {
         }
         row.0
     }
-
-    /// The tables as Parquet, and the study as JSON.
-    ///
-    /// # Errors
-    /// When a table cannot be encoded.
-    pub fn encode(&self) -> Result<Vec<EncodedArtifact>, TableError> {
-        let mut artifacts = Vec::new();
-        for (name, table) in &self.tables {
-            let bytes = parquet::write(table)?;
-            artifacts.push(EncodedArtifact { name, media_type: PARQUET, row_count: table.rows(), bytes });
-        }
-        if let Some(study) = &self.study {
-            artifacts.push(EncodedArtifact {
-                name: "cost",
-                media_type: JSON,
-                row_count: study.rows(),
-                bytes: json!(study).to_string().into_bytes(),
-            });
-        }
-        Ok(artifacts)
-    }
 }
 
 /// Simulated time of all runs of a point \[s\]: of its ensemble, or of its cost study.
@@ -221,27 +194,29 @@ pub fn simulated_time_total(scenario: &Scenario) -> f64 {
     }
 }
 
-/// Simulates one point; `control` watches and stops it. A point that is suspended counts as cancelled.
+/// Simulates one point; `control` watches and stops it. A point that is suspended counts as cancelled. What it records lies in the
+/// system's directory for temporary files until the result is dropped.
 ///
 /// # Errors
-/// When the scenario is not valid, there is no equilibrium, the run diverges, or it is cancelled.
+/// When the scenario is not valid, there is no equilibrium, the run diverges, it cannot write what it records, or it is cancelled.
 pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, ComputeError> {
-    match compute_from(scenario, control, None)? {
+    match compute_from(scenario, control, None, &std::env::temp_dir())? {
         Computation::Finished(computed) => Ok(*computed),
         Computation::Suspended(_) => Err(ComputeError::Cancelled),
     }
 }
 
-/// Simulates one point from its start or from a checkpoint of the same point. A checkpoint that does not fit is passed
-/// over: the point begins again. The other members of an ensemble and the runs of a cost study have no checkpoints; a
-/// point that is suspended in one of them counts as cancelled.
+/// Simulates one point from its start, or from where the same point was suspended; temporary files are made in the directory
+/// `scratch`. What does not fit the point is passed over: it begins again. The other members of an ensemble and the runs of a
+/// cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
 ///
 /// # Errors
 /// As [`compute`].
 pub fn compute_from(
     scenario: &Scenario,
     control: &Control,
-    checkpoint: Option<Checkpoint>,
+    suspended: Option<Suspended>,
+    scratch: &Path,
 ) -> Result<Computation, ComputeError> {
     scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let started = Stopwatch::start();
@@ -251,39 +226,22 @@ pub fn compute_from(
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();
-    let judge = || stability(&model, &equilibrium).ok();
-    let failed = |error| match error {
-        error @ TransientError::Diverged { .. } => {
-            ComputeError::Run { error, stability: judge().map(Box::new) }
-        }
-        error => ComputeError::Transient(error),
-    };
-    let run = |member| match Transient::member(&model, &equilibrium, member)
-        .and_then(|run| run.run(&control.part()))
-        .map_err(failed)?
-    {
-        Outcome::Finished(records) => Ok(*records),
-        Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
-    };
+    let runs = Runs { model: &model, equilibrium: &equilibrium, control, scratch };
     let study = scenario.cost_study.is_some().then(|| cost_study(scenario, control)).transpose()?;
-    let runs = study.is_none() && model.effects.transient;
     let mut is_resumed = false;
-    let records = if runs {
-        let resumed = checkpoint.and_then(|checkpoint| {
-            Transient::resume(&model, &equilibrium, &checkpoint)
-                .inspect_err(
-                    |error| tracing::warn!(%error, "a checkpoint cannot be used; the point starts from its beginning"),
-                )
-                .ok()
-        });
+    let records = if study.is_none() && model.effects.transient {
+        let resumed = suspended.and_then(|suspended| runs.resumed(suspended));
         is_resumed = resumed.is_some();
-        let transient = match resumed {
-            Some(transient) => transient,
-            None => Transient::new(&model, &equilibrium).map_err(failed)?,
+        let ended = match resumed {
+            Some((transient, spool)) => runs.run(transient, spool)?,
+            None => runs.member(0)?,
         };
-        match transient.run(&control.part()).map_err(failed)? {
+        match ended {
             Outcome::Finished(records) => Some(*records),
-            Outcome::Suspended(checkpoint) => return Ok(Computation::Suspended(checkpoint)),
+            Outcome::Suspended(checkpoint, spool) => {
+                let suspended = Suspended { checkpoint: *checkpoint, spool };
+                return Ok(Computation::Suspended(Box::new(suspended)));
+            }
             Outcome::Cancelled => return Err(ComputeError::Cancelled),
         }
     } else {
@@ -293,21 +251,23 @@ pub fn compute_from(
     let mut ensemble = Vec::new();
     let mut histories_part_at: Option<f64> = None;
     if let Some(first) = &records {
+        let window = scenario.orbit_window();
+        let samples = sample_range(window.from, window.to, first.rate_hz, first.histories.samples());
         for member in 1..scenario.ensemble {
-            let other = run(member)?;
+            let Outcome::Finished(other) = runs.member(member)? else { return Err(ComputeError::Cancelled) };
             let parted = parting_time(&first.histories, &other.histories, first.rate_hz);
+            let parted = parted.map_err(ArtifactError::from)?;
             histories_part_at = histories_part_at.into_iter().chain(parted).reduce(f64::min);
-            let window = scenario.orbit_window();
-            let samples = first.histories.first().map_or(0, |history| history.u.len());
-            let samples = sample_range(window.from, window.to, first.rate_hz, samples);
             ensemble.push(OtherMember {
-                summary: TransientSummary::new(&model, &other),
-                distances: distances(&first.histories, &other.histories, &samples),
+                summary: TransientSummary::new(&model, &other).map_err(ArtifactError::from)?,
+                distances: distances(&first.histories, &other.histories, &samples)
+                    .map_err(ArtifactError::from)?,
             });
         }
     }
-    let transient = records.as_ref().map(|records| TransientSummary::new(&model, records));
-    let stability = if scenario.recording.stability { judge() } else { None };
+    let summary = |records| TransientSummary::new(&model, records).map_err(ArtifactError::from);
+    let transient = records.as_ref().map(summary).transpose()?;
+    let stability = if scenario.recording.stability { runs.stability() } else { None };
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let errors = transient.as_ref().map(|transient| {
@@ -333,9 +293,12 @@ pub fn compute_from(
         warnings: warnings.clone(),
         worker: None,
     };
-    let tables = point_tables(&model, &equilibrium, records.as_ref());
+    let mut artifacts = point_tables(&model, &equilibrium, records.as_ref(), scratch)?;
+    if let Some(study) = &study {
+        artifacts.push(EncodedArtifact::report("cost", &json!(study), study.rows(), scratch)?);
+    }
     let computed = Computed {
-        tables,
+        artifacts,
         statics,
         transient,
         ensemble,
@@ -348,6 +311,65 @@ pub fn compute_from(
         provenance,
     };
     Ok(Computation::Finished(Box::new(computed)))
+}
+
+/// The runs in time of a point.
+struct Runs<'a> {
+    model: &'a Model,
+    equilibrium: &'a Equilibrium,
+    control: &'a Control,
+    scratch: &'a Path,
+}
+
+impl<'a> Runs<'a> {
+    /// A member of the ensemble, from its start.
+    fn member(&self, member: u32) -> Result<Outcome<Spool>, ComputeError> {
+        let transient = Transient::member(self.model, self.equilibrium, member);
+        let spool = Spool::new(self.scratch).map_err(ArtifactError::from)?;
+        self.run(transient.map_err(|error| self.failed(error))?, spool)
+    }
+
+    /// A run that goes on where it was suspended, with its samples; none where they do not fit.
+    fn resumed(&self, Suspended { checkpoint, spool }: Suspended) -> Option<(Transient<'a>, Spool)> {
+        let transient = Transient::resume(self.model, self.equilibrium, &checkpoint)
+            .inspect_err(
+                |error| tracing::warn!(%error, "a checkpoint cannot be used; the point starts from its beginning"),
+            )
+            .ok()?;
+        let nodes = recorded_nodes(self.model);
+        let has_samples =
+            nodes.is_empty() || (spool.nodes() == nodes && spool.samples() as u64 == transient.recorded());
+        if !has_samples {
+            tracing::warn!(
+                "a checkpoint has other samples than its run; the point starts from its beginning"
+            );
+        }
+        has_samples.then_some((transient, spool))
+    }
+
+    fn run(&self, transient: Transient<'_>, mut spool: Spool) -> Result<Outcome<Spool>, ComputeError> {
+        let mut keep = |block: &[NodeHistory]| spool.append(block).map_err(|error| error.to_string());
+        let ended = transient.run_into(&self.control.part(), &mut keep);
+        Ok(match ended.map_err(|error| self.failed(error))? {
+            Outcome::Finished(records) => Outcome::Finished(Box::new(records.with_histories(spool))),
+            Outcome::Cancelled => Outcome::Cancelled,
+            Outcome::Suspended(checkpoint, ()) => Outcome::Suspended(checkpoint, spool),
+        })
+    }
+
+    /// The error of a run, beside it whether the scene itself is unstable.
+    fn failed(&self, error: TransientError) -> ComputeError {
+        match error {
+            error @ TransientError::Diverged { .. } => {
+                ComputeError::Run { error, stability: self.stability().map(Box::new) }
+            }
+            error => ComputeError::Transient(error),
+        }
+    }
+
+    fn stability(&self) -> Option<Stability> {
+        stability(self.model, self.equilibrium).ok()
+    }
 }
 
 /// Wall and processor time of the calling thread.
@@ -375,11 +397,19 @@ fn thread_cpu_time() -> f64 {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::os::unix::fs::FileExt;
 
     use drillsweep_sim::scenario::{Effect, Outputs, Switch, TimeWindow, preset};
     use drillsweep_table::quantity::{Name, tables};
+    use drillsweep_table::{Table, parquet};
 
     use super::*;
+
+    fn read(artifact: &EncodedArtifact) -> Table {
+        let mut bytes = vec![0; artifact.file.metadata().unwrap().len() as usize];
+        artifact.file.read_exact_at(&mut bytes, 0).unwrap();
+        parquet::read(bytes.into(), None, None).unwrap()
+    }
 
     fn failure(scenario: &Scenario) -> Value {
         let ended = compute(scenario, &Control::new());
@@ -455,8 +485,8 @@ mod tests {
             compute(&scenario, &Control::new()).expect("runs")
         };
         let (full, spectra) = (computed(Outputs::Full), computed(Outputs::Spectra));
-        let names: BTreeSet<&str> =
-            full.tables.iter().chain(&spectra.tables).map(|(name, _)| *name).collect();
+        let artifacts = || full.artifacts.iter().chain(&spectra.artifacts);
+        let names: BTreeSet<&str> = artifacts().map(|artifact| artifact.name).collect();
         let stored = [
             &tables::PROFILE,
             &tables::STATICS,
@@ -466,8 +496,11 @@ mod tests {
             &tables::ENERGY,
         ];
         assert_eq!(names, stored.iter().map(|layout| layout.name).collect());
-        for (name, table) in full.tables.iter().chain(&spectra.tables) {
-            let layout = stored.iter().find(|layout| layout.name == *name).unwrap();
+        for artifact in artifacts() {
+            let name = artifact.name;
+            let layout = stored.iter().find(|layout| layout.name == name).unwrap();
+            let table = read(artifact);
+            assert_eq!(table.rows(), artifact.row_count);
             let columns = table.columns.keys().map(|column| Name::parse(column).expect(column));
             let (by_node, once): (Vec<_>, Vec<_>) = columns.partition(|name| name.node.is_some());
             assert!(once.iter().map(|name| name.quantity).eq(layout.columns.iter().copied()), "{name}");

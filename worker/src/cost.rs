@@ -63,6 +63,6 @@ fn run(planned: &PlannedRow, member: u32, control: &Control) -> Result<(Measure,
             let (_, cpu_time) = watch.elapsed();
             Ok((Measure::new(&model, &equilibrium, &records, member), cpu_time))
         }
-        Outcome::Cancelled | Outcome::Suspended(_) => Err(ComputeError::Cancelled),
+        Outcome::Cancelled | Outcome::Suspended(..) => Err(ComputeError::Cancelled),
     }
 }

@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 use drillsweep_sim::control::Control;
 use drillsweep_store::{Lease, Renewal, Store, StoreConfig, WorkerRecord};
 
+use crate::memory::Memory;
+
 /// Renewals per lease: two may fail before it runs out.
 const RENEWALS_PER_LEASE: u32 = 3;
 
@@ -158,6 +160,9 @@ async fn renew(
     let Some(point) = point else { return Ok(()) };
     let progress = if point.duration > 0.0 { point.control.simulated_time() / point.duration } else { 0.0 };
     let progress = progress.clamp(0.0, 1.0);
+    if let Some(note) = Memory::now().and_then(Memory::note) {
+        store.note_worker(&point.lease, &note).await?;
+    }
     let reason = match store.renew(&point.lease, lease_ms, progress).await? {
         Renewal::Held => return Ok(()),
         Renewal::CancelRequested => StopReason::Cancelled,

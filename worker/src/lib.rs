@@ -5,19 +5,21 @@
 //! runtime does input and output only; [`compute`] is plain code on a thread that may be cancelled through the
 //! simulation's own control handle.
 
+mod artifact;
 mod calibration;
 mod claim;
 mod compute;
 mod cost;
 mod lease;
+mod memory;
 mod provenance;
+mod spool;
 mod tables;
 
+pub use artifact::{ArtifactError, EncodedArtifact};
 pub use calibration::calibrate;
 pub use claim::{WorkerConfig, WorkerError, host_name, run};
-pub use compute::{
-    Computation, ComputeError, Computed, EncodedArtifact, compute, compute_from, simulated_time_total,
-};
+pub use compute::{Computation, ComputeError, Computed, compute, compute_from, simulated_time_total};
 pub use cost::{cost_study, study_cpu_time, study_time};
 pub use provenance::{Provenance, RunProvenance, WorkerProvenance};
-pub use tables::point_tables;
+pub use spool::{Spool, Suspended, SuspendedError};

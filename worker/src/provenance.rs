@@ -109,7 +109,7 @@ const ERROR_ESTIMATE_OF: &str = "root mean square error of a lateral displacemen
 
 impl RunProvenance {
     /// That of a finished run, which may have been resumed, with its time by the clock and its processor time \[s\].
-    pub(crate) fn new(records: &Records, resumed: bool, (wall_time, cpu_time): (f64, f64)) -> Self {
+    pub(crate) fn new<H>(records: &Records<H>, resumed: bool, (wall_time, cpu_time): (f64, f64)) -> Self {
         let effort = &records.effort;
         let TimeStepping { integrator, step, tolerance, contact_sweeps, .. } = effort.stepping;
         Self {

@@ -1,46 +1,55 @@
 //! What a point's result becomes: tables for the object store, and one flat row for the sweep's table.
 
+use std::ops::Range;
+use std::path::Path;
+
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{OrbitOutputs, Outputs};
-use drillsweep_sim::signal::{Window, full_spectrum, sample_range};
+use drillsweep_sim::scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
+use drillsweep_sim::signal::{FullSpectrum, Window, full_spectrum, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::spread;
 use drillsweep_sim::study::errors::OtherMember;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{EnergyRow, NodeHistory, Records};
+use drillsweep_sim::transient::{EnergyRow, Histories, Records, Series};
 use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{self, Variant, tables};
+use drillsweep_table::quantity::tables::{self, Layout};
+use drillsweep_table::quantity::{self, Variant};
 use drillsweep_table::{Column, Quantity, Table};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-/// The tables of a point that its scenario wants kept, by name. Nodes and elements are numbered from 1 at the top.
-pub fn point_tables(
+use crate::artifact::{ArtifactError, EncodedArtifact};
+use crate::spool::Spool;
+
+/// Bytes of samples that are in memory at once while a table of them is written.
+const PIECE_BYTES: usize = 8 << 20;
+
+/// The tables of a point that its scenario wants kept. Nodes and elements are numbered from 1 at the top.
+pub(crate) fn point_tables(
     model: &Model,
     equilibrium: &Equilibrium,
-    records: Option<&Records>,
-) -> Vec<(&'static str, Table)> {
+    records: Option<&Records<Spool>>,
+    scratch: &Path,
+) -> Result<Vec<EncodedArtifact>, ArtifactError> {
     let outputs = &model.scenario.recording.outputs;
     if *outputs == Outputs::Summary {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let mut tables = vec![
-        (tables::PROFILE.name, profile(model, equilibrium)),
-        (tables::STATICS.name, statics(model, equilibrium)),
+    let small = |layout: &Layout, table: &Table| EncodedArtifact::table(layout.name, table, scratch);
+    let mut artifacts = vec![
+        small(&tables::PROFILE, &profile(model, equilibrium))?,
+        small(&tables::STATICS, &statics(model, equilibrium))?,
     ];
-    if let Some(records) = records {
-        match outputs {
-            Outputs::Full => {
-                tables.push((tables::HISTORY.name, history(model, records, &OrbitOutputs::default())))
-            }
-            Outputs::Orbits(part) => tables.push((tables::HISTORY.name, history(model, records, part))),
-            Outputs::Spectra => tables.push((tables::SPECTRA.name, spectra(model, records))),
-            Outputs::Summary => {}
-        }
-        tables.push((tables::CONTACTS.name, contacts(model, records)));
-        tables.push((tables::ENERGY.name, energy(records)));
+    let Some(records) = records else { return Ok(artifacts) };
+    match outputs {
+        Outputs::Full => artifacts.push(history(model, records, &OrbitOutputs::default(), scratch)?),
+        Outputs::Orbits(part) => artifacts.push(history(model, records, part, scratch)?),
+        Outputs::Spectra => artifacts.push(spectra(model, records, scratch)?),
+        Outputs::Summary => {}
     }
-    tables
+    artifacts.push(small(&tables::CONTACTS, &contacts(model, records))?);
+    artifacts.push(small(&tables::ENERGY, &energy(records))?);
+    Ok(artifacts)
 }
 
 /// Scalars under flat names.
@@ -198,71 +207,100 @@ fn statics(model: &Model, equilibrium: &Equilibrium) -> Table {
     table
 }
 
-fn history(model: &Model, records: &Records, part: &OrbitOutputs) -> Table {
+/// Some of the samples of some of the recorded nodes, in single precision; everything was computed in double.
+fn history(
+    model: &Model,
+    records: &Records<Spool>,
+    part: &OrbitOutputs,
+    scratch: &Path,
+) -> Result<EncodedArtifact, ArtifactError> {
+    const SERIES: [(Series, &Quantity); 8] = [
+        (Series::U, &U),
+        (Series::V, &V),
+        (Series::W, &W),
+        (Series::ThetaZ, &THETA_Z),
+        (Series::URate, &U_RATE),
+        (Series::VRate, &V_RATE),
+        (Series::WRate, &W_RATE),
+        (Series::ThetaZRate, &THETA_Z_RATE),
+    ];
     let OrbitOutputs { nodes, window, decimation } = part;
-    let samples = records.histories.first().map_or(0, |history| history.u.len());
-    let kept = match window {
-        Some(window) => sample_range(window.from, window.to, records.rate_hz, samples),
-        None => 0..samples,
+    let histories = &records.histories;
+    let is_kept = |node: usize| {
+        let is_it = |&choice: &NodeChoice| model.mesh.chosen_node(choice) == Some(node);
+        nodes.as_ref().is_none_or(|nodes| nodes.iter().any(is_it))
     };
-    let kept: Vec<usize> = kept.step_by(*decimation as usize).collect();
-    let is_kept = |history: &&NodeHistory| {
-        nodes.as_ref().is_none_or(|nodes| {
-            nodes.iter().any(|&choice| model.mesh.chosen_node(choice) == Some(history.node))
-        })
-    };
-    let mut table = Table::default();
-    numbers(&mut table, &TIME, kept.iter().map(|&k| k as f64 / records.rate_hz));
-    for history in records.histories.iter().filter(is_kept) {
-        let NodeHistory { node, u, v, w, theta_z, u_rate, v_rate, w_rate, theta_z_rate } = history;
-        let series = [
-            (&U, u),
-            (&V, v),
-            (&W, w),
-            (&THETA_Z, theta_z),
-            (&U_RATE, u_rate),
-            (&V_RATE, v_rate),
-            (&W_RATE, w_rate),
-            (&THETA_Z_RATE, theta_z_rate),
-        ];
-        for (quantity, values) in series {
-            // Samples are kept in single precision; everything was computed in double.
-            let samples = Column::Single(kept.iter().map(|&k| values[k] as f32).collect());
-            table.push(quantity.at_node(node + 1), samples);
+    let kept_nodes: Vec<_> =
+        histories.nodes().into_iter().enumerate().filter(|(_, node)| is_kept(*node)).collect();
+    let piece = |samples: Range<usize>| {
+        let every = *decimation as usize;
+        let mut table = Table::default();
+        numbers(&mut table, &TIME, samples.clone().step_by(every).map(|k| k as f64 / records.rate_hz));
+        for &(index, node) in &kept_nodes {
+            for (series, quantity) in SERIES {
+                let values = histories.read(index, series, samples.clone())?;
+                let values = values.iter().step_by(every).map(|&value| value as f32).collect();
+                table.push(quantity.at_node(node + 1), Column::Single(values));
+            }
         }
-    }
-    table
+        Ok(table)
+    };
+    let all = match window {
+        Some(window) => sample_range(window.from, window.to, records.rate_hz, histories.samples()),
+        None => 0..histories.samples(),
+    };
+    let width = size_of::<f64>() * SERIES.len() * kept_nodes.len().max(1);
+    let every = *decimation as usize;
+    let length = (PIECE_BYTES / width).next_multiple_of(every).max(every);
+    let pieces = all.clone().step_by(length).map(|from| piece(from..(from + length).min(all.end)));
+    EncodedArtifact::pieces(tables::HISTORY.name, &piece(0..0)?, scratch, pieces)
 }
 
 /// A row a frequency, for each recorded node and spectrum window in turn; an amplitude for each weighting of the samples.
-fn spectra(model: &Model, records: &Records) -> Table {
-    let (mut node, mut from, mut to) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut frequency, mut rectangular, mut hann) = (Vec::new(), Vec::new(), Vec::new());
-    for history in &records.histories {
-        for window in &model.scenario.spectrum_windows() {
-            let kept = sample_range(window.from, window.to, records.rate_hz, history.u.len());
-            let (u, v) = (&history.u[kept.clone()], &history.v[kept]);
-            let of = |weighting| full_spectrum(u, v, records.rate_hz, weighting);
-            let spectrum = of(Window::Rectangular);
-            node.extend(spectrum.frequency_hz.iter().map(|_| history.node as i64 + 1));
-            from.extend(spectrum.frequency_hz.iter().map(|_| window.from));
-            to.extend(spectrum.frequency_hz.iter().map(|_| window.to));
-            frequency.extend(spectrum.frequency_hz);
-            rectangular.extend(spectrum.amplitude.into_iter().map(|amplitude| amplitude as f32));
-            hann.extend(of(Window::Hann).amplitude.into_iter().map(|amplitude| amplitude as f32));
-        }
-    }
+fn spectra(
+    model: &Model,
+    records: &Records<Spool>,
+    scratch: &Path,
+) -> Result<EncodedArtifact, ArtifactError> {
+    let histories = &records.histories;
+    let windows = model.scenario.spectrum_windows();
+    let piece = |index: usize, node: usize, window: &TimeWindow| {
+        let kept = sample_range(window.from, window.to, records.rate_hz, histories.samples());
+        let u = histories.read(index, Series::U, kept.clone())?;
+        let v = histories.read(index, Series::V, kept)?;
+        let of = |weighting| full_spectrum(&u, &v, records.rate_hz, weighting);
+        let FullSpectrum { frequency_hz, amplitude, .. } = of(Window::Rectangular);
+        Ok(spectrum_rows(node, window, frequency_hz, [amplitude, of(Window::Hann).amplitude]))
+    };
+    let nodes = histories.nodes().into_iter().enumerate();
+    let pieces = nodes.flat_map(|(index, node)| {
+        let piece = &piece;
+        windows.iter().map(move |window| piece(index, node, window))
+    });
+    let layout = spectrum_rows(0, &TimeWindow { from: 0.0, to: 0.0 }, Vec::new(), Default::default());
+    EncodedArtifact::pieces(tables::SPECTRA.name, &layout, scratch, pieces)
+}
+
+/// The spectrum of one node over one window: frequencies \[Hz\], and amplitudes \[m\] without a window's weights and with Hann's.
+fn spectrum_rows(
+    node: usize,
+    window: &TimeWindow,
+    frequency_hz: Vec<f64>,
+    [rectangular, hann]: [Vec<f64>; 2],
+) -> Table {
+    let rows = frequency_hz.len();
+    let single = |values: Vec<f64>| Column::Single(values.into_iter().map(|value| value as f32).collect());
     let mut table = Table::default();
-    integers(&mut table, &NODE, node.into_iter());
-    numbers(&mut table, &FROM, from.into_iter());
-    numbers(&mut table, &TO, to.into_iter());
-    numbers(&mut table, &FREQUENCY, frequency.into_iter());
-    table.push(&AMPLITUDE_RECTANGULAR, Column::Single(rectangular));
-    table.push(&AMPLITUDE_HANN, Column::Single(hann));
+    integers(&mut table, &NODE, std::iter::repeat_n(node as i64 + 1, rows));
+    numbers(&mut table, &FROM, std::iter::repeat_n(window.from, rows));
+    numbers(&mut table, &TO, std::iter::repeat_n(window.to, rows));
+    numbers(&mut table, &FREQUENCY, frequency_hz.into_iter());
+    table.push(&AMPLITUDE_RECTANGULAR, single(rectangular));
+    table.push(&AMPLITUDE_HANN, single(hann));
     table
 }
 
-fn contacts(model: &Model, records: &Records) -> Table {
+fn contacts<H>(model: &Model, records: &Records<H>) -> Table {
     let (nodes, contacts) = (&model.mesh.nodes, &records.contacts);
     let mut table = Table::default();
     integers(&mut table, &NODE, (1..=nodes.len()).map(|number| number as i64));
@@ -277,7 +315,7 @@ fn contacts(model: &Model, records: &Records) -> Table {
     table
 }
 
-fn energy(records: &Records) -> Table {
+fn energy<H>(records: &Records<H>) -> Table {
     let mut table = Table::default();
     for column in EnergyRow::COLUMNS {
         table.push(column, Column::Number(records.energy.iter().map(|row| row[column]).collect()));

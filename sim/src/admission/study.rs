@@ -2,12 +2,13 @@
 
 use super::report::Report;
 use super::time::{LARGEST_ENSEMBLE, check_accuracy, is_whole};
-use crate::scenario::{
-    Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping, USUAL_MESH_FACTORS, USUAL_STEPS,
-};
+use crate::scenario::{Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping};
 
 /// Runs of one cost study at most.
 const MOST_RUNS: usize = 256;
+
+/// Samples of all nodes and lines that a study compares at most: 2 GiB of lateral motion.
+const MOST_KEPT_SAMPLES: f64 = (1_u64 << 26) as f64;
 
 /// Fewest samples of a run whose windows are parts of its duration: a sixth of them still has a spectrum.
 const FEWEST_SAMPLES_OF_A_RUN: f64 = 10.0 * FEWEST_SAMPLES;
@@ -53,15 +54,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         );
     }
     check_reference(report, scenario, study);
-    let mut rows = study.presets.len() + study.mesh_factors.len();
-    if study.total.is_some() && study.mesh_factors.is_empty() {
-        rows += USUAL_MESH_FACTORS.len();
-    }
-    if study.methods.is_none() {
-        rows += USUAL_STEPS.iter().map(|(_, steps)| steps.len()).sum::<usize>();
-    }
     for (i, method) in study.methods.iter().flatten().enumerate() {
-        rows += method.steps.len();
         for (j, stepping) in method.steppings().enumerate() {
             let mut found = Report::default();
             check_accuracy(&mut found, &with_stepping(scenario, stepping));
@@ -82,12 +75,24 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         "no step",
         "must name at least one method with one step where presets and mesh_factors are empty",
     );
-    let runs = rows.saturating_add(2).saturating_mul(study.members as usize);
+    let lines = study.most_lines();
+    let runs = lines.saturating_mul(study.members as usize);
     report.require(
         runs <= MOST_RUNS,
         "cost_study",
         format!("{runs} runs"),
         format!("must have at most {MOST_RUNS} runs, those of the reference and all members included"),
+    );
+    let samples = study.duration.unwrap_or(scenario.duration) * rate;
+    let kept = (lines * scenario.recording.nodes.len()) as f64 * samples;
+    report.require(
+        !kept.is_finite() || kept <= MOST_KEPT_SAMPLES,
+        "cost_study",
+        format!("{} nodes of {lines} lines, {samples} samples each", scenario.recording.nodes.len()),
+        format!(
+            "must keep at most {MOST_KEPT_SAMPLES} samples in all, since lines are compared in memory: record fewer nodes, or give \
+             cost_study.duration or recording.rate_hz a smaller value"
+        ),
     );
     for (i, &factor) in study.mesh_factors.iter().enumerate() {
         report.number(
@@ -203,6 +208,6 @@ mod tests {
         assert_eq!(warnings(of(20)), []);
         problem("cost_study.members", of(0));
         let many = CostStudy { members: 64, mesh_factors: vec![2.0; 3], ..CostStudy::default() };
-        assert!(problem("cost_study", with(many)).got.contains("896 runs"));
+        assert!(problem("cost_study", with(many)).got.contains("832 runs"));
     }
 }

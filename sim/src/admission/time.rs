@@ -11,8 +11,14 @@ use crate::string::StringMesh;
 /// Two times that differ by less than this part of them are the same.
 const SAME_TIME: f64 = 1e-9;
 
-/// Samples of one run that are kept at most.
-const MOST_SAMPLES: f64 = 1e7;
+/// Samples of a node at most: half an hour at 1 kHz. Its orbit and full spectrum over the whole run are computed in memory.
+const MOST_SAMPLES: f64 = 2e6;
+
+/// Samples of all recorded nodes at most: 2 GiB of history.
+const MOST_SAMPLES_OF_NODES: f64 = (1_u64 << 26) as f64;
+
+/// Spectrum windows at most.
+const MOST_WINDOWS: usize = 100;
 
 /// Generalized-alpha's largest spectral radius at infinity that two contact sweeps are known to be safe with
 /// (docs/model/motion.md, Generalized-alpha).
@@ -42,7 +48,14 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         study::check(report, scenario, study);
     }
     check_samples(report, scenario);
-    for (i, window) in recording.spectrum_windows.iter().flatten().enumerate() {
+    let windows = recording.spectrum_windows.as_ref().map_or(0, Vec::len);
+    report.require(
+        windows <= MOST_WINDOWS,
+        "recording.spectrum_windows",
+        format!("{windows} windows"),
+        format!("must be at most {MOST_WINDOWS}: the service computes further ones from the history"),
+    );
+    for (i, window) in recording.spectrum_windows.iter().flatten().take(MOST_WINDOWS).enumerate() {
         check_window(report, scenario, window, &format!("recording.spectrum_windows[{i}]"));
     }
     if let Some(window) = &recording.orbit_window {
@@ -219,7 +232,31 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         samples <= MOST_SAMPLES,
         "recording.rate_hz",
         rate,
-        format!("{duration} s at this rate are more than {MOST_SAMPLES} samples"),
+        format!(
+            "must be at most {}: {duration} s may have {MOST_SAMPLES} samples, which orbits and spectra are computed from in memory",
+            MOST_SAMPLES / duration
+        ),
+    );
+    let nodes = scenario.recording.nodes.len() as f64;
+    report.require(
+        samples > MOST_SAMPLES || nodes * samples <= MOST_SAMPLES_OF_NODES,
+        "recording.nodes",
+        format!("{nodes} nodes"),
+        format!(
+            "must be at most {} for {duration} s at {rate} Hz: together they may have {MOST_SAMPLES_OF_NODES} samples, 2 GiB of history",
+            (MOST_SAMPLES_OF_NODES / samples).floor()
+        ),
+    );
+    let of_windows = |window: &TimeWindow| (window.to - window.from).max(0.0) * rate;
+    let in_windows: f64 = scenario.spectrum_windows().iter().take(MOST_WINDOWS).map(of_windows).sum();
+    report.require(
+        scenario.recording.outputs != Outputs::Spectra || nodes * in_windows <= MOST_SAMPLES_OF_NODES,
+        "recording.spectrum_windows",
+        format!("{in_windows} samples in all"),
+        format!(
+            "must have at most {} samples together, for outputs = \"spectra\" of {nodes} nodes",
+            (MOST_SAMPLES_OF_NODES / nodes).floor()
+        ),
     );
 }
 
@@ -328,7 +365,33 @@ mod tests {
             s.accuracy = Accuracy::Explicit(explicit(Integrator::Rk4, 1e-6));
             s.recording.rate_hz = 1e6;
         });
-        assert!(found.message.contains("10000000 samples"), "{found}");
+        assert!(found.message.contains("2000000 samples"), "{found}");
+        // An hour is affordable, at half the usual rate.
+        problem("recording.rate_hz", |s| s.duration = 3600.0);
+        let hour = |s: &mut Scenario| (s.duration, s.recording.rate_hz) = (3600.0, 500.0);
+        assert_eq!(warnings(hour), []);
+        let found = problem("recording.nodes", |s| {
+            hour(s);
+            s.recording.nodes = (2..60).map(NodeChoice::Node).collect();
+        });
+        assert!(found.message.contains("at most 37 for 3600 s"), "{found}");
+    }
+
+    #[test]
+    fn windows_are_as_many_as_a_result_has_room_for() {
+        let windows = |count: usize| {
+            let window = |k: usize| TimeWindow { from: 0.01 * k as f64, to: 50.0 };
+            Some((0..count).map(window).collect::<Vec<_>>())
+        };
+        assert_eq!(warnings(|s| s.recording.spectrum_windows = windows(100)), []);
+        let found = problem("recording.spectrum_windows", |s| s.recording.spectrum_windows = windows(101));
+        assert!(found.message.contains("at most 100"), "{found}");
+        let found = problem("recording.spectrum_windows", |s| {
+            s.recording.spectrum_windows = windows(100);
+            s.recording.nodes = (2..20).map(NodeChoice::Node).collect();
+            s.recording.outputs = Outputs::Spectra;
+        });
+        assert!(found.message.contains("3728270 samples together"), "{found}");
     }
 
     #[test]

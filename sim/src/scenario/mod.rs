@@ -23,8 +23,8 @@ pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
+pub(crate) use study::USUAL_STEPS;
 pub use study::{CostStudy, MethodSteps, StudyReference};
-pub(crate) use study::{USUAL_MESH_FACTORS, USUAL_STEPS};
 
 use serde::{Deserialize, Serialize};
 
@@ -477,7 +477,8 @@ pub struct RayleighDamping {
 #[serde(deny_unknown_fields)]
 pub struct Recording {
     /// Recording rate \[Hz\], above 0; usual 100 to 2000. Frequencies above half of it fold back into the spectra, and below 250 Hz
-    /// there is no `high_frequency_rms`; higher rates cost storage, at most 1e7 samples a run. Steps that adapt do not depend on
+    /// there is no `high_frequency_rms`; higher rates cost storage: a run may have 2e6 samples of a node, and 6.7e7
+    /// of all recorded nodes together. Steps that adapt do not depend on
     /// it; a fixed step must divide the recording interval (of `esdirk4` it may also be that times a power of two).
     pub rate_hz: f64,
     /// Nodes whose histories are kept, each once; usual 1 to 10. Orbits, spectra and statistics exist for these only, and each

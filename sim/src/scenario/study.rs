@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{AccuracyPreset, Integrator, TimeStepping};
+use super::{AccuracyPreset, Effect, Integrator, TimeStepping};
 
 /// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
 /// different kind both reach.
@@ -52,7 +52,7 @@ pub(crate) const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
 
 /// Factors on the mesh's target element lengths that are compared for a whole error where a study names none: two meshes would tell
 /// no order of convergence.
-pub(crate) const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
+const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// The reference of a study: two methods of different kind. What both reach is the reference; a statistic in which they differ
 /// by more than is allowed has none.
@@ -111,6 +111,16 @@ impl MethodSteps {
 }
 
 impl CostStudy {
+    /// Lines of the study at most, those of the reference among them.
+    pub(crate) fn most_lines(&self) -> usize {
+        let steps = match &self.methods {
+            Some(methods) => methods.iter().map(|method| method.steps.len()).sum::<usize>(),
+            None => USUAL_STEPS.iter().map(|(_, steps)| steps.len()).sum(),
+        };
+        // The reference is two lines, of a study of effects also.
+        2 + if self.effects { Effect::ALL.len() } else { self.presets.len() + self.meshes().len() + steps }
+    }
+
     /// Factors of the meshes that are compared, the scenario's own among them, from coarse to fine; empty where none are.
     pub fn meshes(&self) -> Vec<f64> {
         let mut factors = match self.total {

@@ -116,7 +116,7 @@ fn measure(
     let run = Transient::member(&model, equilibrium, member).and_then(|transient| transient.run(control));
     match run.map_err(|error| error.to_string())? {
         Outcome::Finished(records) => Ok(Some(Measure::new(&model, equilibrium, &records, member))),
-        Outcome::Cancelled | Outcome::Suspended(_) => Ok(None),
+        Outcome::Cancelled | Outcome::Suspended(..) => Ok(None),
     }
 }
 

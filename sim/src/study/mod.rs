@@ -4,6 +4,7 @@ pub mod cost;
 pub mod ensemble;
 pub mod errors;
 pub mod finer;
+pub mod footprint;
 pub mod mesh_estimate;
 pub mod plan;
 pub mod soak;

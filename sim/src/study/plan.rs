@@ -11,6 +11,7 @@ use crate::scenario::{
     Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping,
 };
 use crate::statics::Equilibrium;
+use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
 use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
 
@@ -32,6 +33,8 @@ pub struct Plan {
     pub degrees_of_freedom: usize,
     /// Simulated time of all runs of the point together \[s\], without a cost study; 0 where there is no run in time.
     pub simulated_time: f64,
+    /// Memory and storage.
+    pub footprint: Footprint,
     /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
     /// is not known.
     pub statics_cpu_time: Option<f64>,
@@ -168,6 +171,7 @@ impl Plan {
             nodes,
             degrees_of_freedom: if in_time { degrees_of_freedom } else { 0 },
             simulated_time,
+            footprint: Footprint::of_model(&model),
             statics_cpu_time,
             accuracies: accuracies.into_iter().map(planned).collect(),
             study,

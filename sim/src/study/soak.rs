@@ -83,7 +83,8 @@ pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Opti
     }
     let own = Measure::new(&model, &equilibrium, &records, 0);
     let torsion = UndampedTorsion::about(&model, &equilibrium);
-    let told = TimeError::new(&TransientSummary::new(&model, &records), &[], torsion.as_ref());
+    let Ok(summary) = TransientSummary::new(&model, &records);
+    let told = TimeError::new(&summary, &[], torsion.as_ref());
     let verdict = finer::ask(&own, &model, &equilibrium, control);
     (end, Some(Refined { verdict, told }))
 }
@@ -103,7 +104,7 @@ fn simulate(scenario: &Scenario, control: &Control) -> Result<(Model, Equilibriu
     let ended = Transient::new(&model, &equilibrium).and_then(|transient| transient.run(control));
     match ended {
         Ok(Outcome::Finished(records)) => Ok((model, equilibrium, records)),
-        Ok(Outcome::Cancelled | Outcome::Suspended(_)) => Err(SceneEnd::Cancelled),
+        Ok(Outcome::Cancelled | Outcome::Suspended(..)) => Err(SceneEnd::Cancelled),
         Err(error) => Err(failed(transient_cause(&error), error.to_string())),
     }
 }
@@ -159,6 +160,7 @@ fn transient_cause(error: &TransientError) -> &'static str {
         TransientError::Singular(_) => "singular step matrix",
         TransientError::StepBeyondStability { .. } => "rk4 step beyond its limit",
         TransientError::ContactTooStiff { .. } => "contact too stiff for the step",
+        TransientError::Histories(_) => "samples not kept",
         TransientError::Diverged { reason, .. } => match reason {
             DivergenceReason::NotFinite => "not finite",
             DivergenceReason::OutsideHole { .. } => "far outside the hole",

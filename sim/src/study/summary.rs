@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::scenario::TimeWindow;
 use crate::signal::{FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
-use crate::transient::{ErrorEstimate, Records};
+use crate::transient::{ErrorEstimate, Histories, Records, Series};
 
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
@@ -138,19 +138,26 @@ impl StaticsSummary {
 }
 
 impl TransientSummary {
-    /// Sums up a finished run.
-    pub fn new(model: &Model, records: &Records) -> Self {
+    /// Sums up a finished run, node by node: no more of its histories is in memory than two series of one node over a window.
+    ///
+    /// # Errors
+    /// When the histories cannot be read.
+    pub fn new<H: Histories>(model: &Model, records: &Records<H>) -> Result<Self, H::Error> {
         let scenario = &model.scenario;
         let orbit_window = scenario.orbit_window();
         let mut orbits = Vec::new();
         let mut spectra = Vec::new();
-        for history in &records.histories {
-            let (node, measured_depth) = (history.node + 1, model.mesh.nodes[history.node].measured_depth);
-            let cut =
-                |window: TimeWindow| sample_range(window.from, window.to, records.rate_hz, history.u.len());
-            let samples = cut(orbit_window);
-            let (u, v) = (&history.u[samples.clone()], &history.v[samples]);
-            if let Some(orbit) = orbit_statistics(u, v) {
+        let histories = &records.histories;
+        let samples = histories.samples();
+        for (index, node) in histories.nodes().into_iter().enumerate() {
+            let (node, measured_depth) = (node + 1, model.mesh.nodes[node].measured_depth);
+            let motion = |window: TimeWindow| {
+                let samples = sample_range(window.from, window.to, records.rate_hz, samples);
+                let u = histories.read(index, Series::U, samples.clone())?;
+                Ok((u, histories.read(index, Series::V, samples)?))
+            };
+            let (u, v) = motion(orbit_window)?;
+            if let Some(orbit) = orbit_statistics(&u, &v) {
                 orbits.push(OrbitSummary {
                     node,
                     measured_depth,
@@ -160,14 +167,14 @@ impl TransientSummary {
                     largest_radius: orbit.largest_radius,
                     orbit_radius_rms: orbit.orbit_radius_rms,
                     radius_deviation: orbit.radius_deviation,
-                    high_frequency_rms: high_frequency_rms(u, v, records.rate_hz),
+                    high_frequency_rms: high_frequency_rms(&u, &v, records.rate_hz),
                 });
             }
             for window in scenario.spectrum_windows() {
-                let samples = cut(window);
-                let (u, v) = (&history.u[samples.clone()], &history.v[samples]);
-                let band =
-                    |shape| full_spectrum(u, v, records.rate_hz, shape).restricted_to(&(-BAND_HZ..=BAND_HZ));
+                let (u, v) = motion(window)?;
+                let band = |shape| {
+                    full_spectrum(&u, &v, records.rate_hz, shape).restricted_to(&(-BAND_HZ..=BAND_HZ))
+                };
                 let spectrum = band(Window::Hann);
                 let search = PeakSearch { count: LINES, min_separation_hz: 0.5, exclude_mean: true };
                 let lines = spectrum.peaks(&search).into_iter().map(|peak| LineSummary {
@@ -186,8 +193,7 @@ impl TransientSummary {
             }
         }
         let last = records.energy.last().copied().unwrap_or_default();
-        let contact_work = last.of(&contact::WORK);
-        Self {
+        Ok(Self {
             orbits,
             spectra,
             resolved_hz: records.effort.resolved_hz,
@@ -202,10 +208,17 @@ impl TransientSummary {
             energy_residual: last.residual,
             energy_residual_of_bound: (records.energy_bound > 0.0)
                 .then(|| last.residual.abs() / records.energy_bound),
-            energy_residual_ratio: (contact_work.abs() > records.energy_rounding)
-                .then(|| last.residual.abs() / contact_work.abs()),
-        }
+            energy_residual_ratio: energy_residual_ratio(records),
+        })
     }
+}
+
+/// Energy left over at the end relative to the net work of the contacts; absent where that is less than what rounding may
+/// leave, as at rest.
+pub(crate) fn energy_residual_ratio<H>(records: &Records<H>) -> Option<f64> {
+    let last = records.energy.last().copied().unwrap_or_default();
+    let contact_work = last.of(&contact::WORK).abs();
+    (contact_work > records.energy_rounding).then(|| last.residual.abs() / contact_work)
 }
 
 /// Root of the summed squares of the amplitudes beyond [`HIGH_FREQUENCY_HZ`] (Parseval).

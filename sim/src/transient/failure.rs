@@ -29,6 +29,9 @@ pub enum TransientError {
         /// The node with the stiffest contact for its mass, from 1.
         node: usize,
     },
+    /// The samples cannot be kept, or those of a suspended run are not there.
+    #[error("the recorded samples cannot be kept: {0}")]
+    Histories(String),
     /// The motion left every bound.
     #[error("diverged at t = {time:.6} s, node {node} (depth {measured_depth:.2} m): {reason}")]
     Diverged {
@@ -77,7 +80,7 @@ impl TransientError {
     pub fn node(&self) -> Option<usize> {
         match self {
             Self::Singular(block) => Some(block.row + 1),
-            Self::StepBeyondStability { .. } => None,
+            Self::StepBeyondStability { .. } | Self::Histories(_) => None,
             Self::ContactTooStiff { node, .. } | Self::Diverged { node, .. } => Some(*node),
         }
     }

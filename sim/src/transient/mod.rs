@@ -6,6 +6,7 @@
 
 mod adaptive;
 mod checkpoint;
+mod contact_statistics;
 mod dense;
 mod disturbance;
 mod energy;
@@ -16,20 +17,23 @@ mod forces;
 mod forms;
 mod generalized_alpha;
 mod grid;
+mod histories;
 mod implicit;
-mod records;
 mod rk4;
 mod run;
 mod stability;
 
 pub(crate) use adaptive::SMALLEST_MOTION;
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use contact_statistics::ContactStatistics;
 pub use disturbance::{DISTURBANCE, disturbance};
 pub use energy::EnergyRow;
 pub use error::ErrorEstimate;
 pub use failure::{DivergenceReason, TransientError};
+pub use histories::{Histories, NodeHistory, Series};
 pub use implicit::SweepMonitor;
-pub use records::{ContactStatistics, NodeHistory};
+pub use run::Keep;
+pub(crate) use run::{BLOCK_BYTES, LEDGER_RATE_HZ};
 
 use serde::{Deserialize, Serialize};
 
@@ -52,13 +56,13 @@ enum Solved<'m> {
     Four(Box<Run<'m, 4>>),
 }
 
-/// What a finished run leaves.
+/// What a finished run leaves, with its [`Histories`].
 #[derive(Debug, Clone, PartialEq)]
-pub struct Records {
+pub struct Records<H = Vec<NodeHistory>> {
     /// Recording rate \[Hz\].
     pub rate_hz: f64,
     /// Histories of the recorded nodes.
-    pub histories: Vec<NodeHistory>,
+    pub histories: H,
     /// Contact statistics of every node.
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
@@ -97,13 +101,22 @@ pub struct TransientEffort {
 
 /// How a call to [`Transient::run`] ended.
 #[derive(Debug)]
-pub enum Outcome {
+pub enum Outcome<H = Vec<NodeHistory>> {
     /// The run is complete.
-    Finished(Box<Records>),
+    Finished(Box<Records<H>>),
     /// It was cancelled.
     Cancelled,
-    /// It was suspended, and goes on from here.
-    Suspended(Box<Checkpoint>),
+    /// It was suspended, and goes on from here; with the samples so far.
+    Suspended(Box<Checkpoint>, H),
+}
+
+impl Records<()> {
+    /// The same with the histories that were kept elsewhere.
+    pub fn with_histories<H>(self, histories: H) -> Records<H> {
+        let Self { rate_hz, histories: (), contacts, energy, energy_bound, energy_rounding, error, effort } =
+            self;
+        Records { rate_hz, histories, contacts, energy, energy_bound, energy_rounding, error, effort }
+    }
 }
 
 impl<'m> Transient<'m> {
@@ -165,15 +178,84 @@ impl<'m> Transient<'m> {
         }
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it.
+    /// Samples of each recorded node that a resumed run has recorded already; 0 at the start.
+    pub fn recorded(&self) -> u64 {
+        match &self.0 {
+            Solved::Six(run) => run.recorded(),
+            Solved::Five(run) => run.recorded(),
+            Solved::Four(run) => run.recorded(),
+        }
+    }
+
+    /// Samples of each recorded node that the whole run records.
+    fn samples(&self) -> u64 {
+        match &self.0 {
+            Solved::Six(run) => run.samples(),
+            Solved::Five(run) => run.samples(),
+            Solved::Four(run) => run.samples(),
+        }
+    }
+
+    /// Runs to the end of the scenario's duration, or until `control` stops it, with the histories in memory.
     ///
     /// # Errors
     /// When the motion diverges.
     pub fn run(self, control: &Control) -> Result<Outcome, TransientError> {
+        self.run_on(control, Vec::new())
+    }
+
+    /// The same for a resumed run, with the histories that it had when it was suspended.
+    ///
+    /// # Errors
+    /// When the motion diverges, or these are not its histories.
+    pub fn run_on(
+        self,
+        control: &Control,
+        mut histories: Vec<NodeHistory>,
+    ) -> Result<Outcome, TransientError> {
+        let recorded = self.recorded() as usize;
+        let nodes = self.nodes();
+        if recorded == 0 {
+            let samples = self.samples() as usize;
+            histories = nodes.iter().map(|&node| NodeHistory::with_capacity(node, samples)).collect();
+        }
+        if histories.nodes() != nodes || (!nodes.is_empty() && histories.samples() != recorded) {
+            let detail = format!("a run suspended after {recorded} samples is resumed with others");
+            return Err(TransientError::Histories(detail));
+        }
+        let mut keep = |block: &[NodeHistory]| {
+            for (history, block) in histories.iter_mut().zip(block) {
+                history.append(block);
+            }
+            Ok(())
+        };
+        Ok(match self.run_into(control, &mut keep)? {
+            Outcome::Finished(records) => Outcome::Finished(Box::new(records.with_histories(histories))),
+            Outcome::Cancelled => Outcome::Cancelled,
+            Outcome::Suspended(checkpoint, ()) => Outcome::Suspended(checkpoint, histories),
+        })
+    }
+
+    /// Runs to the end of the scenario's duration, or until `control` stops it; samples are handed over to `keep` block by
+    /// block, so that the run's memory does not grow with its duration. Before it ends in any way but by an error or a
+    /// cancel, all of them are.
+    ///
+    /// # Errors
+    /// When the motion diverges or a block cannot be kept.
+    pub fn run_into(self, control: &Control, keep: &mut Keep<'_>) -> Result<Outcome<()>, TransientError> {
         match self.0 {
-            Solved::Six(run) => run.run(control),
-            Solved::Five(run) => run.run(control),
-            Solved::Four(run) => run.run(control),
+            Solved::Six(run) => run.run(control, keep),
+            Solved::Five(run) => run.run(control, keep),
+            Solved::Four(run) => run.run(control, keep),
+        }
+    }
+
+    /// The recorded nodes, from 0 at the top.
+    fn nodes(&self) -> Vec<usize> {
+        match &self.0 {
+            Solved::Six(run) => recorded_nodes(run.model()),
+            Solved::Five(run) => recorded_nodes(run.model()),
+            Solved::Four(run) => recorded_nodes(run.model()),
         }
     }
 }

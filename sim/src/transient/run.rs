@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::adaptive::{self, Tolerances};
 use super::checkpoint::{self, Checkpoint, CheckpointError};
+use super::contact_statistics::ContactStatistics;
 use super::dense;
 use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
@@ -14,8 +15,8 @@ use super::failure::{DivergenceReason, TransientError};
 use super::forces::{ContactForces, Forces};
 use super::generalized_alpha::{self, GeneralizedAlpha};
 use super::grid::Grid;
+use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
-use super::records::{ContactStatistics, NodeHistory};
 use super::rk4::{self, Rk4};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
@@ -32,7 +33,13 @@ const HALVINGS: u32 = 7;
 
 /// Rows of the energy ledger per second of simulated time: several a turn of a drillstring, and few beside the steps, of which there are
 /// 125 a second at least.
-const LEDGER_RATE_HZ: f64 = 10.0;
+pub(crate) const LEDGER_RATE_HZ: f64 = 10.0;
+
+/// Bytes of samples that are handed over in one block.
+pub(crate) const BLOCK_BYTES: u64 = 8 << 20;
+
+/// Samples of a block at most.
+const BLOCK_SAMPLES: u64 = 8192;
 
 /// Part of RK4's stability limit up to which it lengthens its steps by itself: the limit is found by a Rayleigh quotient, which comes from
 /// below and so makes steps too long, if only by 1e-5 in the base case, and modes near half their critical damping are stable up to
@@ -71,10 +78,17 @@ pub(super) struct Run<'m, const D: usize> {
     /// Recording intervals that count for the contacts' impulse.
     orbit_samples: Range<u64>,
     subdivisions: u32,
+    /// Samples of a block; a step may add some more.
+    block_samples: u64,
     /// Node that moved fastest at the last sample, from 0.
     fastest: usize,
+    /// Samples of the recorded nodes that were not handed over yet.
+    block: Vec<NodeHistory>,
     progress: Progress<D>,
 }
+
+/// Takes a block of samples of the recorded nodes, which follow those of the block before; says why it cannot be kept.
+pub type Keep<'a> = dyn FnMut(&[NodeHistory]) -> Result<(), String> + 'a;
 
 /// What a run starts from.
 pub(super) struct Start<'a> {
@@ -103,7 +117,6 @@ pub(super) struct Progress<const D: usize> {
     /// The shortest and the longest step made \[s\].
     pub(super) step_range: [f64; 2],
     pub(super) steps: u64,
-    pub(super) histories: Vec<NodeHistory>,
     pub(super) contacts: Vec<ContactStatistics>,
     pub(super) energy: Vec<EnergyRow>,
 }
@@ -196,6 +209,10 @@ impl<'m, const D: usize> Run<'m, D> {
                 Stepper::Rk4(Box::new(Rk4::new(&system, largest, stepping.tolerance, hole_radius)?))
             }
         };
+        // A step may end beyond the block.
+        let of_a_step = (1_u64 << grid.top()).div_ceil(grid.at_sample(1));
+        let block_samples = block_samples(model);
+        let block_capacity = (block_samples + of_a_step).min(samples);
         let mut run = Self {
             progress: Progress {
                 ticks: 0,
@@ -209,10 +226,6 @@ impl<'m, const D: usize> Run<'m, D> {
                 unresolved: 0,
                 step_range: [f64::INFINITY, 0.0],
                 steps: 0,
-                histories: recorded_nodes(model)
-                    .into_iter()
-                    .map(|node| NodeHistory::with_capacity(node, samples as usize))
-                    .collect(),
                 contacts: vec![ContactStatistics::default(); model.node_count()],
                 energy: Vec::with_capacity(ledger_rows(samples, ledger_every)),
             },
@@ -230,7 +243,12 @@ impl<'m, const D: usize> Run<'m, D> {
             ledger_every,
             orbit_samples: orbit_samples(scenario, samples),
             subdivisions,
+            block_samples,
             fastest: 0,
+            block: recorded_nodes(model)
+                .into_iter()
+                .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
+                .collect(),
         };
         run.start()?;
         Ok(run)
@@ -241,16 +259,34 @@ impl<'m, const D: usize> Run<'m, D> {
         self.ledger.set_work(self.progress.work);
         self.touch();
         let progress = &mut self.progress;
-        for history in &mut progress.histories {
-            history.reserve((self.samples - progress.ticks / self.grid.at_sample(1)) as usize);
-        }
         progress
             .energy
             .reserve(ledger_rows(self.samples - progress.ticks / self.grid.at_sample(1), self.ledger_every));
         Ok(())
     }
 
-    pub(super) fn run(mut self, control: &Control) -> Result<Outcome, TransientError> {
+    /// Samples of each recorded node that were recorded so far.
+    pub(super) fn recorded(&self) -> u64 {
+        match self.progress.ticks {
+            0 => 0,
+            ticks => (ticks / self.grid.at_sample(1) + 1).min(self.samples),
+        }
+    }
+
+    pub(super) fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// Samples of a whole run.
+    pub(super) fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    pub(super) fn run(
+        mut self,
+        control: &Control,
+        keep: &mut Keep<'_>,
+    ) -> Result<Outcome<()>, TransientError> {
         let (row, end) = (self.grid.at_sample(self.ledger_every), self.grid.at_sample(self.samples));
         self.record_start();
         while self.progress.ticks < end {
@@ -258,24 +294,30 @@ impl<'m, const D: usize> Run<'m, D> {
                 return Ok(Outcome::Cancelled);
             }
             if self.progress.ticks.is_multiple_of(row) {
+                control.reach(self.time());
                 // The ledger adds up between its rows: a run is suspended at one of them.
                 if control.is_suspended() {
+                    self.hand_over(keep)?;
                     self.progress.work = self.ledger.work();
                     let checkpoint = Checkpoint::new(&self.model.scenario, &self.progress);
-                    return Ok(Outcome::Suspended(Box::new(checkpoint)));
+                    return Ok(Outcome::Suspended(Box::new(checkpoint), ()));
                 }
                 self.book()?;
             }
             let next_row = (self.progress.ticks / row + 1) * row;
             self.advance(next_row.min(end))?;
+            if self.block.first().is_some_and(|first| first.u.len() as u64 >= self.block_samples) {
+                self.hand_over(keep)?;
+            }
             control.report(self.time());
         }
         let energy_bound = self.book()?;
+        self.hand_over(keep)?;
         let scenario = &self.model.scenario;
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
             rate_hz: scenario.recording.rate_hz,
-            histories: self.progress.histories,
+            histories: (),
             contacts: self.progress.contacts,
             energy: self.progress.energy,
             energy_bound,
@@ -292,6 +334,15 @@ impl<'m, const D: usize> Run<'m, D> {
                 sweeps: self.progress.monitor,
             },
         })))
+    }
+
+    /// Hands the samples of the block over.
+    fn hand_over(&mut self, keep: &mut Keep<'_>) -> Result<(), TransientError> {
+        if self.block.first().is_some_and(|first| !first.u.is_empty()) {
+            keep(&self.block).map_err(TransientError::Histories)?;
+        }
+        self.block.iter_mut().for_each(NodeHistory::clear);
+        Ok(())
     }
 
     /// Simulated time reached \[s\].
@@ -356,8 +407,8 @@ impl<'m, const D: usize> Run<'m, D> {
     /// Records the first sample.
     fn record_start(&mut self) {
         if self.progress.ticks == 0 {
-            let Progress { histories, state, .. } = &mut self.progress;
-            for history in histories {
+            let state = &self.progress.state;
+            for history in &mut self.block {
                 push(
                     history,
                     self.system.freedoms,
@@ -371,11 +422,11 @@ impl<'m, const D: usize> Run<'m, D> {
 
     /// Records the samples of the step that led from `start` ticks to the present.
     fn record_step(&mut self, start: u64) {
-        let Progress { histories, state, ticks, .. } = &mut self.progress;
+        let Progress { state, ticks, .. } = &self.progress;
         let per_sample = self.grid.at_sample(1);
         for sample in start / per_sample + 1..=(*ticks / per_sample).min(self.samples - 1) {
             let at = self.grid.at_sample(sample);
-            for history in histories.iter_mut() {
+            for history in &mut self.block {
                 let node = history.node;
                 let end =
                     [&state.displacement, &state.velocity, &state.acceleration].map(|field| field.node(node));
@@ -537,6 +588,12 @@ fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
     let window = scenario.orbit_window();
     let range = sample_range(window.from, window.to, scenario.recording.rate_hz, samples as usize);
     range.start as u64..range.end as u64
+}
+
+/// Samples of a block of the model's recorded nodes.
+fn block_samples(model: &Model) -> u64 {
+    let bytes = (recorded_nodes(model).len() * Series::ALL.len() * size_of::<f64>()) as u64;
+    (BLOCK_BYTES / bytes.max(1)).clamp(1, BLOCK_SAMPLES)
 }
 
 /// Rows of the ledger over so many samples, the one at the end included.

@@ -164,7 +164,7 @@ impl WholeRun {
             }
         });
         let read = read.collect();
-        let summary = TransientSummary::new(&model, &records);
+        let Ok(summary) = TransientSummary::new(&model, &records);
         Self { read, summary, torsion: UndampedTorsion::about(&model, &equilibrium), records }
     }
 
@@ -185,9 +185,9 @@ impl WholeRun {
         let samples = window(&self.records);
         let others: Vec<_> = others
             .iter()
-            .map(|other| OtherMember {
-                summary: other.summary.clone(),
-                distances: distances(&self.records.histories, &other.records.histories, &samples),
+            .map(|other| {
+                let Ok(distances) = distances(&self.records.histories, &other.records.histories, &samples);
+                OtherMember { summary: other.summary.clone(), distances }
             })
             .collect();
         let mesh = MeshEstimate::Unknown { reason: String::new() };

@@ -1,5 +1,7 @@
 //! Blobs: named by their content, written once.
 
+use std::io::{Read as _, Seek as _, Write as _};
+
 use drillsweep_store::{BlobId, StoreError};
 
 use crate::bench::{Engine, object_name};
@@ -107,4 +109,33 @@ pub(crate) async fn no_range_of_a_damaged_blob_is_handed_out<E: Engine>() {
     }
     engine.write_object(&name, &content[..999_999]);
     assert!(store.blobs().get_range(id, 999_990..1_000_000).await.unwrap_err().is_damage());
+}
+
+pub(crate) async fn a_file_is_the_blob_of_its_bytes<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    // None, less than a part of an upload, exactly one, and some more.
+    for length in [0, 1_000, 8 << 20, (16 << 20) + 5] {
+        let content: Vec<u8> =
+            (0..length).map(|k: usize| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&content).unwrap();
+        let (id, bytes) = store.blobs().put_file(&file).await.unwrap();
+        assert_eq!(bytes, length as u64);
+        let stored = engine.objects();
+        assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
+        assert_eq!(store.blobs().put_file(&file).await.unwrap().0, id);
+        assert_eq!(engine.objects(), stored, "what is there is not written again");
+
+        // What is damaged is replaced, and not handed out before.
+        engine.write_object(&object_name(&id.to_string()), b"damaged");
+        let fetched = store.blobs().get_into(id, tempfile::tempfile().unwrap()).await;
+        assert!(fetched.unwrap_err().is_damage());
+        store.blobs().put_file(&file).await.unwrap();
+        let mut fetched = store.blobs().get_into(id, tempfile::tempfile().unwrap()).await.unwrap();
+        let mut read = Vec::new();
+        fetched.rewind().unwrap();
+        fetched.read_to_end(&mut read).unwrap();
+        assert!(read == content, "{length} bytes");
+    }
 }

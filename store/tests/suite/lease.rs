@@ -45,9 +45,9 @@ pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E:
     let lost = claim(&store, "dead").await;
     let kept = claim(&store, "alive").await;
     // A process of the same number elsewhere is another one.
-    assert_eq!(store.bury_worker("elsewhere", 7).await.unwrap(), 0);
+    assert_eq!(store.bury_worker("elsewhere", 7, None).await.unwrap(), 0);
     assert_eq!(claim_or_none(&store, "heir").await, None);
-    assert_eq!(store.bury_worker("rig", 7).await.unwrap(), 1);
+    assert_eq!(store.bury_worker("rig", 7, None).await.unwrap(), 1);
 
     let heir = claim(&engine.after(1).await, "heir").await;
     assert_eq!((heir.lease.key, heir.lease.fencing_token), (lost.lease.key, 2));
@@ -147,6 +147,41 @@ pub(crate) async fn a_point_whose_workers_die_three_times_is_dead<E: Engine>() {
     claim(&end, "doomed").await;
     let after_one_more = engine.after(8 * LEASE_MS).await;
     assert!(finish(&after_one_more, &claim(&after_one_more, "w").await).await);
+}
+
+pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    store.register_worker(&WorkerRecord { process: 7, ..worker("watched") }).await.unwrap();
+    let reason = async |store: &drillsweep_store::Store| point_record(store, "s", 1).await.error_json;
+    let first = claim(&store, "silent").await;
+    assert!(store.note_worker(&first.lease, "it was full").await.unwrap());
+    let second_life = engine.after(2 * LEASE_MS).await;
+    claim(&second_life, "another").await;
+    assert!(!second_life.note_worker(&first.lease, "late").await.unwrap(), "its lease is lost");
+    let third_life = engine.after(4 * LEASE_MS).await;
+    claim(&third_life, "watched").await;
+    assert_eq!(third_life.bury_worker("rig", 7, Some("signal 9 ended it")).await.unwrap(), 1);
+    let end = engine.after(4 * LEASE_MS + 1).await;
+    end.reap_expired().await.unwrap();
+    assert_eq!(
+        reason(&end).await.as_deref(),
+        Some(
+            r#"{"class":"crash","reason":"3 workers went silent while they simulated it; of the last one it is known that signal 9 ended it"}"#
+        )
+    );
+    // What was known of an earlier one is forgotten with the next claim.
+    assert_eq!(end.retry_sweep("s").await.unwrap(), Some(1));
+    for death in 0..3 {
+        let lease = claim(&engine.after((6 + 2 * death) * LEASE_MS).await, "w").await.lease;
+        if death == 1 {
+            assert!(engine.after(8 * LEASE_MS).await.note_worker(&lease, "it was full").await.unwrap());
+        }
+    }
+    let end = engine.after(12 * LEASE_MS).await;
+    end.reap_expired().await.unwrap();
+    assert!(!reason(&end).await.unwrap().contains("known"));
 }
 
 pub(crate) async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token<E: Engine>() {

@@ -14,6 +14,7 @@ macro_rules! conformance {
                 the_same_content_is_stored_once_and_never_rewritten,
                 a_range_is_cut_from_the_content,
                 what_is_damaged_is_replaced_when_it_is_written_again,
+                a_file_is_the_blob_of_its_bytes,
                 no_range_of_a_damaged_blob_is_handed_out,
             }
             cancel {
@@ -81,6 +82,7 @@ macro_rules! conformance {
                 the_same_worker_cannot_write_under_its_earlier_claim,
                 a_renewal_extends_the_lease_and_carries_the_progress,
                 a_point_whose_workers_die_three_times_is_dead,
+                what_is_known_of_the_last_worker_is_told,
                 a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token,
                 an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_again_and_is_given_up_at_the_fifth,
                 points_that_failed_together_do_not_come_back_together,

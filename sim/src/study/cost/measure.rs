@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::scenario::{TimeStepping, TimeWindow};
 use crate::signal::{FullSpectrum, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
-use crate::study::summary::TransientSummary;
+use crate::study::summary::energy_residual_ratio;
 use crate::transient::{NodeHistory, Records};
 
 /// Histories are kept of so many members: one to compare, and one to part from it.
@@ -86,7 +86,7 @@ impl Measure {
             histories: kept.iter().map(lateral).collect(),
             nodes: records.histories.iter().map(node).collect(),
             contact_force: impulse * records.rate_hz / counted.max(1) as f64,
-            energy: TransientSummary::new(model, records).energy_residual_ratio,
+            energy: energy_residual_ratio(records),
             error_estimate: records.error.relative,
             hole_radius: 0.5 * scenario.well.hole_diameter,
             position: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),

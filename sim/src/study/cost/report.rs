@@ -182,7 +182,11 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
     let of_methods = parts.iter().skip(1).filter_map(|part| Some((first, part.first()?)));
     let of_twins = twins.filter_map(|twin| Some((first, twin.first()?)));
     let times = of_members.chain(of_methods).chain(of_twins);
-    times.filter_map(|(a, b)| parting_time(&a.histories, &b.histories, a.rate_hz)).reduce(f64::min)
+    let parted = |(a, b): (&&Measure, &&Measure)| {
+        let Ok(parted) = parting_time(&a.histories, &b.histories, a.rate_hz);
+        parted
+    };
+    times.filter_map(parted).reduce(f64::min)
 }
 
 /// The run of RK4 whose fixed step is nearest to the usual one.

@@ -3,7 +3,7 @@
 -- Gives: work item, fencing token, base, changes, checkpoint; nothing if no work is ready.
 UPDATE work SET
     state = 'leased', fencing_token = fencing_token + 1, attempts = attempts + 1, progress = 0,
-    lease_owner = ?1, lease_until = (SELECT now FROM clock) + ?2, lease_ms = ?2, changed = (SELECT now FROM clock)
+    worker_note = NULL, lease_owner = ?1, lease_until = (SELECT now FROM clock) + ?2, lease_ms = ?2, changed = (SELECT now FROM clock)
 WHERE key = (
     SELECT key FROM work
     WHERE state = 'queued' AND held = 0 AND physics_version = ?3

@@ -1,7 +1,7 @@
 -- Takes work back whose lease has run out: a death of the worker, and the last that the work is given makes it dead. A
 -- result from before stays, and the work is done then.
 -- ?1 deaths that make it dead.
--- Gives: new state, deaths, worker.
+-- Gives: new state, deaths, worker, what is known of it.
 UPDATE work SET
     crash_count = crash_count + 1, progress = 0, lease_until = NULL, changed = (SELECT now FROM clock),
     state = CASE WHEN cancel_requested = 0 AND crash_count + 1 < ?1 THEN 'queued'
@@ -10,7 +10,8 @@ UPDATE work SET
                  ELSE 'dead' END,
     error = CASE WHEN cancel_requested = 0 AND crash_count + 1 >= ?1
                  THEN json_object('class', 'crash', 'reason',
-                      printf('%d workers went silent while they simulated it', crash_count + 1))
+                      printf('%d workers went silent while they simulated it', crash_count + 1)
+                          || coalesce('; of the last one it is known that ' || worker_note, ''))
                  ELSE error END
 WHERE state = 'leased' AND lease_until < (SELECT now FROM clock)
-RETURNING state, crash_count, lease_owner
+RETURNING state, crash_count, lease_owner, worker_note

@@ -1,0 +1,135 @@
+//! What a scenario takes of memory and storage, without running it.
+
+use serde::Serialize;
+
+use crate::model::{Model, ModelError};
+use crate::scenario::{CostStudy, Outputs, Scenario, TimeWindow};
+use crate::signal::sample_range;
+use crate::transient::{BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, Series, recorded_nodes};
+
+/// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
+const PER_NODE: u64 = 40_000;
+
+/// Bytes of a sample of a window while its spectrum is computed: the motion, its transform in and out, the weights, the amplitudes
+/// and their frequencies, and what is stored of them.
+const PER_WINDOW_SAMPLE: u64 = 160;
+
+/// Bytes of what a table's rows are gathered in before they are written: a row group, and what it is written by.
+const LARGEST_ROW_GROUP: u64 = 48 << 20;
+
+/// Bytes of a table's description for each column of each row group.
+const PER_COLUMN_CHUNK: u64 = 1_500;
+
+/// Rows of a row group at most.
+const ROW_GROUP: u64 = 10_000;
+
+/// Memory and storage of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Footprint {
+    /// Memory that the point takes at most, about \[bytes\], of a cost study for each core that its worker uses; the worker's program
+    /// itself takes some 30 MB more.
+    pub memory_bytes: u64,
+    /// Its tables before they are compressed \[bytes\]; stored they usually take half of that, and a string at rest nearly nothing.
+    pub table_bytes: u64,
+}
+
+impl Footprint {
+    /// Of a scenario.
+    ///
+    /// # Errors
+    /// When it has no model.
+    pub fn of(scenario: &Scenario) -> Result<Self, ModelError> {
+        Ok(Self::of_model(&Model::new(scenario)?))
+    }
+
+    pub(super) fn of_model(model: &Model) -> Self {
+        let recorded = Recorded::of(model);
+        let study = model.scenario.cost_study.as_ref().map_or(0, |study| recorded.study_bytes(study));
+        Self {
+            memory_bytes: PER_NODE * model.node_count() as u64 + recorded.memory() + study,
+            table_bytes: table_bytes(model, &recorded),
+        }
+    }
+}
+
+/// What of a run grows with its duration.
+struct Recorded {
+    nodes: u64,
+    samples: u64,
+    /// Samples of the longest window.
+    longest_window: u64,
+    /// Samples of all spectrum windows together.
+    spectrum_samples: u64,
+    ledger_rows: u64,
+}
+
+impl Recorded {
+    fn of(model: &Model) -> Self {
+        let scenario = &model.scenario;
+        if !model.effects.transient {
+            return Self { nodes: 0, samples: 0, longest_window: 0, spectrum_samples: 0, ledger_rows: 0 };
+        }
+        let rate = scenario.recording.rate_hz;
+        let samples = (scenario.duration * rate).round();
+        let length =
+            |window: &TimeWindow| sample_range(window.from, window.to, rate, samples as usize).len() as u64;
+        let spectra = scenario.spectrum_windows();
+        let orbit = length(&scenario.orbit_window());
+        Self {
+            nodes: recorded_nodes(model).len() as u64,
+            samples: samples as u64,
+            longest_window: spectra.iter().map(length).fold(orbit, u64::max),
+            spectrum_samples: spectra.iter().map(length).sum(),
+            ledger_rows: (scenario.duration * LEDGER_RATE_HZ) as u64 + 2,
+        }
+    }
+
+    /// Bytes of memory at most.
+    fn memory(&self) -> u64 {
+        let sample = (self.nodes * Series::ALL.len() as u64) * size_of::<f64>() as u64;
+        let block = (BLOCK_BYTES + sample).min(self.samples * sample);
+        let row_group = LARGEST_ROW_GROUP.min(self.samples * sample);
+        let columns = 1 + self.nodes * Series::ALL.len() as u64;
+        let row_groups = (self.samples / ROW_GROUP).max(self.samples * sample / (2 * LARGEST_ROW_GROUP)) + 1;
+        let window = if self.nodes > 0 { PER_WINDOW_SAMPLE * self.longest_window } else { 0 };
+        // The rows are there once as they are made and once as columns.
+        let ledger = 2 * self.ledger_rows * size_of::<EnergyRow>() as u64;
+        2 * block + window.max(row_group + columns * row_groups * PER_COLUMN_CHUNK) + ledger
+    }
+
+    /// Bytes that the runs of a cost study take beside that: the one under way, and the lateral motion of what is kept.
+    fn study_bytes(&self, study: &CostStudy) -> u64 {
+        let double = size_of::<f64>() as u64;
+        let whole = self.nodes * self.samples * Series::ALL.len() as u64 * double;
+        let kept = self.nodes * self.samples * 2 * double * u64::from(study.members.min(2));
+        whole + study.most_lines() as u64 * kept
+    }
+}
+
+/// Bytes of all tables that the scenario keeps.
+fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
+    /// Columns of numbers of the profile, by element; of equilibrium and contacts, by node.
+    const OF_ELEMENTS: usize = 24;
+    const OF_NODES: usize = 23;
+    let double = size_of::<f64>();
+    let small = (model.elements.len() * OF_ELEMENTS + model.node_count() * OF_NODES) * double;
+    let ledger = recorded.ledger_rows * size_of::<EnergyRow>() as u64;
+    let history = |nodes: u64, samples: u64| samples * (8 + nodes * Series::ALL.len() as u64 * 4);
+    let Recorded { nodes, samples, .. } = *recorded;
+    let of_motion = match &model.scenario.recording.outputs {
+        Outputs::Summary => return 0,
+        // Node, window and frequency, and two amplitudes in single precision.
+        Outputs::Spectra => nodes * recorded.spectrum_samples * 40,
+        Outputs::Full => history(nodes, samples),
+        Outputs::Orbits(part) => {
+            let kept = part.window.map_or(samples, |window| {
+                let rate = model.scenario.recording.rate_hz;
+                sample_range(window.from, window.to, rate, samples as usize).len() as u64
+            });
+            let nodes = part.nodes.as_ref().map_or(nodes, |nodes| nodes.len() as u64);
+            history(nodes, kept.div_ceil(u64::from(part.decimation)))
+        }
+    };
+    small as u64 + ledger + of_motion
+}

@@ -1,0 +1,46 @@
+//! The memory of a worker belongs to the string and the windows, not to the duration.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use allocation_counter::measure;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::scenario::{NodeChoice, Scenario, TimeWindow, preset};
+use drillsweep_sim::study::footprint::Footprint;
+use drillsweep_worker::compute;
+
+/// The base case with many recorded nodes, at a draft's steps, for so long \[s\].
+fn scene(nodes: u32, duration: f64) -> Scenario {
+    let mut scenario = preset("paper-200m-damped").unwrap();
+    scenario.duration = duration;
+    scenario.recording.nodes = (2..nodes + 2).map(NodeChoice::Node).collect();
+    let window = TimeWindow { from: 0.0, to: 1.0 };
+    scenario.recording.orbit_window = Some(window);
+    scenario.recording.spectrum_windows = Some(vec![window]);
+    scenario
+}
+
+/// The most bytes that a point takes at once.
+fn peak(scenario: &Scenario) -> u64 {
+    measure(|| drop(compute(scenario, &Control::new()).unwrap())).bytes_max
+}
+
+#[test]
+fn the_memory_of_a_point_does_not_grow_with_its_duration() {
+    // Beyond a row group of 10 s. What 11 s more record are 28 MB in double precision; the energy ledger's rows, ten a second, and
+    // what a Parquet file's footer says of a row group do grow.
+    let [shorter, longer] = [11.0, 22.0].map(|duration| peak(&scene(40, duration)));
+    let recorded = 40 * 11_000 * 64;
+    assert!(longer < shorter + recorded / 20, "{shorter} and {longer} bytes");
+}
+
+#[test]
+fn the_plan_tells_what_memory_a_point_takes_at_most() {
+    let spectra = |mut scenario: Scenario| {
+        scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: 0.0, to: scenario.duration }]);
+        scenario
+    };
+    for scenario in [scene(3, 4.0), scene(100, 2.0), spectra(scene(2, 20.0))] {
+        let (told, taken) = (Footprint::of(&scenario).unwrap().memory_bytes, peak(&scenario));
+        assert!((taken..4 * taken).contains(&told), "{told} bytes told, {taken} taken");
+    }
+}

@@ -129,9 +129,10 @@ fn checked(command: &mut Command) -> (u64, Vec<Value>) {
     (report["results"].as_u64().unwrap(), report["problems"].as_array().unwrap().clone())
 }
 
-/// A worker whose points are known, so that it can be killed at one of them.
-fn known_worker(data: &Path) -> Logged {
-    Logged::start(&mut command(data, &["worker", "--lease-seconds", "2"]))
+/// A worker whose points are known, so that it can be killed at one of them; they last, however fast the machine is: it
+/// simulates `pace` seconds per second at most.
+fn known_worker(data: &Path, pace: &str) -> Logged {
+    Logged::start(&mut command(data, &["worker", "--lease-seconds", "2", "--pace", pace]))
 }
 
 /// The wall clock of processes, to be set while they run.
@@ -179,7 +180,8 @@ impl Clock {
     }
 
     fn worker(&self, data: &Path) -> Logged {
-        Logged::start(&mut self.rules(command(data, &["worker", "--lease-seconds", "3"])))
+        let worker = ["worker", "--lease-seconds", "3", "--pace", "10"];
+        Logged::start(&mut self.rules(command(data, &worker)))
     }
 }
 
@@ -191,7 +193,8 @@ fn last_claim(log: &str) -> Option<u64> {
 
 #[test]
 fn storm_of_kills_loses_nothing_and_changes_no_number() {
-    // Long enough that those who are spared between two kills do not finish most of it.
+    // Half a second a point at least: those who are spared between two kills do not finish most of it.
+    const PACE: &str = "18";
     let request = request(9.0, 4, 4);
     let (calm, stormy) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let undisturbed =
@@ -202,7 +205,7 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
 
     let (mut server, address) = serve(stormy.path(), None);
     let sweep = submit(&address, &request);
-    let mut workers = [known_worker(stormy.path()), known_worker(stormy.path())];
+    let mut workers = [known_worker(stormy.path(), PACE), known_worker(stormy.path(), PACE)];
     let mut repeated = Vec::new();
     for kill in 0..WORKER_KILLS {
         let doomed = &mut workers[kill % 2];
@@ -211,7 +214,7 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
         // At different stages of the work.
         std::thread::sleep(Duration::from_millis(37 * kill as u64 % 300));
         doomed.wait_for(|log| last_claim(log).filter(|token| *token <= 2));
-        std::mem::replace(doomed, known_worker(stormy.path())).kill();
+        std::mem::replace(doomed, known_worker(stormy.path(), PACE)).kill();
         if (kill + 1) % (WORKER_KILLS / SERVER_KILLS) == 0 {
             // Killed while it takes a submission, which is then sent again under the same key.
             let key = format!("storm-{kill}");
@@ -303,7 +306,7 @@ fn worker_that_slept_past_its_lease_changes_nothing_when_it_wakes() {
     let data = tempfile::tempdir().unwrap();
     let (_server, address) = serve(data.path(), None);
     let sweep = submit(&address, &request(6.0, 1, 1));
-    let sleeper = known_worker(data.path());
+    let sleeper = known_worker(data.path(), "1");
     sleeper.wait_for(last_claim);
     sleeper.process.signal(Signal::STOP);
     let _heir = worker(data.path());
@@ -429,14 +432,19 @@ fn token_goes_by_the_clock_and_opens_nothing_when_it_has_expired() {
 #[test]
 fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     let data = tempfile::tempdir().unwrap();
-    // A worker may have 1.5 GB; ten million samples of three nodes need 1.9 GB at once, and the allocation aborts.
+    // A worker may have 1.5 GB; a study keeps its runs in memory, and two million samples of ten nodes need 1.3 GB at once in
+    // each of two: the allocation aborts.
     let limited = r#"ulimit -v 1500000; exec "$0" "$@""#;
     let up = ["up", "--workers", "2", "--lease-seconds", "2", "--listen", "127.0.0.1:0"];
     let mut command = Command::new("sh");
     command.args(["-c", limited, BINARY]).args(up).arg("--data").arg(data.path());
     let up = Logged::start(&mut command);
     let address = up.address();
-    let poison = submit(&address, &request(10_000.0, 1, 1));
+    let mut deadly = request(2_000.0, 1, 1);
+    deadly["set"]["recording.nodes"] = (2..12).map(|node| json!({"node": node})).collect();
+    let rk4 = json!({"integrator": "rk4", "steps": [5e-5]});
+    deadly["set"]["cost_study"] = json!({"presets": [], "methods": [rk4]});
+    let poison = submit(&address, &deadly);
     let harmless = submit(&address, &request(0.5, 2, 2));
 
     let ended = wait(&address, &poison, completed);
@@ -444,6 +452,8 @@ fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     let point = &points(&address, &poison)[0];
     assert_eq!((&point["error"]["class"], &point["attempts"]), (&json!("crash"), &json!(3)), "{point}");
     assert!(up.log.lock().unwrap().contains("memory allocation"), "the workers died of something else");
+    // SIGABRT.
+    assert!(point["error"]["reason"].as_str().unwrap().contains("signal 6 ended it"), "{point}");
     assert_eq!(wait(&address, &harmless, completed)["counts"]["succeeded"], 4);
     let after = submit(&address, &request(0.5, 1, 3));
     assert_eq!(wait(&address, &after, completed)["counts"]["succeeded"], 3);
@@ -460,7 +470,7 @@ fn heartbeat_comes_within_five_seconds_while_all_cores_are_busy() {
     let sweep = submit(&address, &request(600.0, 2, 1));
     // Renewed every 2.5 s: a lease of 7.5 s runs out when a heartbeat is late by 5 s. The third worker finds nothing
     // to do and takes over whatever runs out.
-    let arguments = ["worker", "--lease-seconds", "7.5"];
+    let arguments = ["worker", "--lease-seconds", "7.5", "--pace", "1"];
     let workers: Vec<_> = (0..3).map(|_| Logged::start(&mut command(data.path(), &arguments))).collect();
     let cores = std::thread::available_parallelism().unwrap().get();
     let _burners: Vec<_> = (0..2 * cores).map(|_| burn()).collect();

@@ -76,6 +76,13 @@ fn worker(data: &Path) -> Process {
     process
 }
 
+/// A worker that simulates a second per second at most: its points last, however fast the machine is.
+fn slow_worker(data: &Path) -> Process {
+    let (process, log) = start(data, &["worker", "--lease-seconds", "2", "--pace", "1"]);
+    drain(log);
+    process
+}
+
 fn drain(mut log: BufReader<std::process::ChildStderr>) {
     std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
 }
@@ -309,7 +316,7 @@ fn killed_workers_points_are_taken_over_when_their_leases_end() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
     let id = submit(&server, 4.0, &json!({}));
-    let doomed = worker(data.path());
+    let doomed = slow_worker(data.path());
     wait(&server, &id, |sweep| sweep["counts"]["running"] == 1 && sweep["progress"].as_f64().unwrap() > 0.0);
     doomed.kill();
     let _heir = worker(data.path());
@@ -325,7 +332,11 @@ fn killed_workers_points_are_taken_over_when_their_leases_end() {
 fn points_of_a_killed_child_are_taken_over_without_waiting_for_its_lease() {
     let data = tempfile::tempdir().unwrap();
     // No lease of an hour ends while the test has patience.
-    let (_up, server) = listen(data.path(), &["up", "--workers", "1", "--lease-seconds", "3600"]);
+    let (_server, server) = listen(data.path(), &["serve"]);
+    let slow = ["up", "--workers", "1", "--lease-seconds", "3600", "--listen", "127.0.0.1:0"];
+    let mut up = Command::new(BINARY);
+    up.args(slow).arg("--data").arg(data.path()).env("DRILLSWEEP_PACE", "1").stderr(Stdio::null());
+    let _up = Process(up.spawn().unwrap());
     let id = submit(&server, 20.0, &json!({}));
     wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
     let workers = get(&format!("{server}/v1/workers"));
@@ -358,7 +369,7 @@ fn stopped_worker_gives_its_point_back_untried() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
     let id = submit(&server, 60.0, &json!({}));
-    let mut stopping = worker(data.path());
+    let mut stopping = slow_worker(data.path());
     wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
     stopping.signal(Signal::TERM);
     assert!(stopping.0.wait().unwrap().success(), "a stopped worker ends in order");
@@ -375,12 +386,12 @@ fn suspended_point_goes_on_elsewhere_to_the_same_bits() {
     let (_server, server) = listen(data.path(), &["serve"]);
     let run = |server: &str| -> String {
         let set =
-            json!({ "duration": 100.0, "recording.spectrum_windows": [], "recording.orbit_window": null });
+            json!({ "duration": 6.0, "recording.spectrum_windows": [], "recording.orbit_window": null });
         let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
         run["id"].as_str().unwrap().to_owned()
     };
     let id = run(&server);
-    let mut first = worker(data.path());
+    let mut first = slow_worker(data.path());
     wait(&server, &id, |sweep| sweep["progress"].as_f64().unwrap() > 0.0);
     first.signal(Signal::TERM);
     assert!(first.0.wait().unwrap().success(), "a stopped worker ends in order");
@@ -427,8 +438,8 @@ fn suspended_point_goes_on_elsewhere_to_the_same_bits() {
 fn worker_ends_when_its_time_is_over_and_gives_its_point_back() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
-    let id = submit(&server, 600.0, &json!({}));
-    let (mut worker, log) = start(data.path(), &["worker", "--max-runtime", "2s"]);
+    let id = submit(&server, 60.0, &json!({}));
+    let (mut worker, log) = start(data.path(), &["worker", "--max-runtime", "2s", "--pace", "1"]);
     drain(log);
     assert!(worker.0.wait().unwrap().success());
     let sweep = get(&format!("{server}/v1/sweeps/{id}"));
@@ -440,10 +451,11 @@ fn worker_ends_when_its_time_is_over_and_gives_its_point_back() {
 fn point_that_takes_too_long_fails_and_its_retry_goes_on_from_there() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
-    let set = json!({ "duration": 600.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
+    let set = json!({ "duration": 60.0, "recording.spectrum_windows": [], "recording.orbit_window": null, "accuracy": "draft" });
     let run = post(&format!("{server}/v1/runs"), &json!({ "preset": "paper-200m", "set": set }));
     let id = run["id"].as_str().unwrap().to_owned();
-    let (mut worker, log) = start(data.path(), &["worker", "--point-timeout", "2s", "--drain"]);
+    let (mut worker, log) =
+        start(data.path(), &["worker", "--point-timeout", "2s", "--pace", "1", "--drain"]);
     drain(log);
     assert!(worker.0.wait().unwrap().success());
     let point = get(&format!("{server}/v1/sweeps/{id}/points/1"));
@@ -457,7 +469,7 @@ fn cancelled_sweep_stops_its_running_point() {
     let data = tempfile::tempdir().unwrap();
     let (_server, server) = listen(data.path(), &["serve"]);
     let id = submit(&server, 60.0, &json!({}));
-    let _worker = worker(data.path());
+    let _worker = slow_worker(data.path());
     wait(&server, &id, |sweep| sweep["counts"]["running"] == 1);
     post(&format!("{server}/v1/sweeps/{id}/cancel"), &json!({}));
     let sweep = wait(&server, &id, |sweep| sweep["counts"]["cancelled"] == 2);

@@ -12,12 +12,13 @@ use drillsweep_sim::transient::Transient;
 const DURATION: f64 = 0.05;
 
 /// What can be switched off without the string buckling.
-const SWITCHED: [Effect; 15] = [
+const SWITCHED: [Effect; 16] = [
     Effect::FluidAddedMass,
     Effect::FluidDamping,
     Effect::FluidCoriolis,
     Effect::FlowStiffness,
     Effect::MudDrag,
+    Effect::Gravity,
     Effect::Buoyancy,
     Effect::Friction,
     Effect::FrictionTorque,

@@ -129,6 +129,19 @@ fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
 }
 
 #[test]
+fn the_ledger_closes_without_gravity() {
+    let mut scenario = base(0.3, METHODS[1]);
+    let (heavy, _) = run(&scenario);
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    let (weightless, _) = run(&scenario);
+    for (name, records) in [("with", heavy), ("without", weightless)] {
+        let last = records.energy.last().unwrap();
+        assert!(last.turned_over() > 0.0, "{name}: nothing moves");
+        assert!(last.residual.abs() < 0.02 * last.turned_over(), "{name}: {last:?}");
+    }
+}
+
+#[test]
 fn sliding_dissipates_at_all_times_only_where_friction_also_turns_the_string() {
     // Friction drives a rotor backwards along its wall.
     let dissipated = |torque: Switch| {

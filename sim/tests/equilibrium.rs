@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use drillsweep_sim::beam::BeamSection;
 use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::scenario::{
-    Effect, Gauge, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
+    Effect, Gauge, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
 
@@ -103,4 +103,56 @@ fn a_string_that_nothing_stretches_finds_the_wall() {
     let weight = beam.density * beam.area * GRAVITY * 100.0;
     let carried: f64 = equilibrium.normal_force.iter().sum();
     assert!(carried > 0.9 * weight && carried < weight, "{carried} N of {weight} N; the pin has the rest");
+}
+
+#[test]
+fn without_gravity_a_horizontal_string_does_not_sag() {
+    let mut scenario = horizontal(40.0, [0.127, 0.108], 0.5);
+    let beam = section(&scenario);
+    let buckles = beam.bending_stiffness() * (0.5 * PI / 40.0).powi(2);
+    scenario.operation.weight_on_bit = -0.5 * buckles;
+    let rests = |scenario: &Scenario| {
+        Equilibrium::find(&Model::new(scenario).expect("valid")).expect("rests below Euler's load")
+    };
+    let sag = |equilibrium: &Equilibrium| {
+        equilibrium.displacement.iter().map(|[u, v, ..]| u.hypot(*v)).fold(0.0, f64::max)
+    };
+    let with_weight = rests(&scenario);
+    assert!(sag(&with_weight) > 0.04, "it lies on the wall: {} m", sag(&with_weight));
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    let without = rests(&scenario);
+    // Directions of chords are right to 1e-16.
+    assert!(sag(&without) < 1e-16 * 40.0, "{} m", sag(&without));
+    assert!(without.normal_force.iter().all(|force| *force == 0.0), "nothing touches");
+}
+
+#[test]
+fn without_gravity_axial_force_and_pressures_are_the_same_all_along_a_vertical_string() {
+    let mut scenario = horizontal(200.0, [0.127, 0.108], 2.0);
+    let mud = preset("paper-200m").expect("shipped preset").mud.expect("has mud");
+    scenario.mud = Some(Mud { flow_rate: 0.0, back_pressure: 2e6, bit_pressure_drop: 0.0, ..mud });
+    for station in &mut scenario.well.survey {
+        station.inclination_deg = 0.0;
+    }
+    scenario.operation.weight_on_bit = -1e3;
+    let rests = |scenario: &Scenario| {
+        Equilibrium::find(&Model::new(scenario).expect("valid")).expect("rests below its buckling load")
+    };
+    let beam = section(&scenario);
+    let buoyed = beam.density * beam.area + mud.density * (beam.bore_area() - beam.displaced_area());
+    let top = |equilibrium: &Equilibrium| equilibrium.tension[0];
+    let with_weight = rests(&scenario);
+    // At the middle of the first element of 2 m.
+    let expected = buoyed * GRAVITY * 199.0 - 1e3;
+    assert!((top(&with_weight) / expected - 1.0).abs() < 1e-6, "{} N for {expected} N", top(&with_weight));
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    let without = rests(&scenario);
+    // T = E S w' is a difference of displacements with 1e-11 m of error over 2 m.
+    let rounding = 1e-11 / 2.0 * beam.axial_stiffness();
+    for (element, tension) in without.tension.iter().enumerate() {
+        assert!((tension + 1e3).abs() < rounding, "element {element}: {tension} N");
+    }
+    let pressures = without.pressures.expect("there is mud");
+    assert!(pressures.annulus.iter().chain(&pressures.bore).all(|pressure| *pressure == 2e6));
+    assert!(*with_weight.pressures.expect("there is mud").annulus.last().expect("the bit") > 4e6);
 }

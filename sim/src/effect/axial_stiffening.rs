@@ -5,8 +5,12 @@ use super::{Call, ElementAtRest, RestTerms, Room, Scene};
 
 pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
 
-fn called_for(_: &Scene<'_>) -> Call {
-    yes("weight and weight on bit load the string")
+fn called_for(scene: &Scene<'_>) -> Call {
+    if scene.active.gravity {
+        yes("weight and weight on bit load the string")
+    } else {
+        yes("weight on bit, drag and the wall load the string")
+    }
 }
 
 fn at_rest(element: &ElementAtRest<'_>, terms: &mut RestTerms) {

@@ -1,9 +1,14 @@
 //! Weight of the mud in the bore less the buoyancy of the mud outside: without it the string weighs what its steel weighs.
 
-use super::scene::has_mud;
-use super::{ElementAtRest, RestTerms, Room};
+use super::scene::{has_mud, no};
+use super::{Call, ElementAtRest, RestTerms, Room, Scene};
 
-pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(has_mud) };
+pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    let mud = has_mud(scene);
+    if mud.active && !scene.active.gravity { no("without gravity mud has no weight") } else { mud }
+}
 
 fn at_rest(element: &ElementAtRest<'_>, terms: &mut RestTerms) {
     let Some((mud, _)) = element.mud else { return };

@@ -30,7 +30,7 @@ impl Scenario {
     /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
     /// aggressive rule neglects what is small.
     pub fn decide_effects(&self) -> Vec<EffectDecision> {
-        // Friction torque is decided before torsion, which depends on it.
+        // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
         let mut active = ActiveEffects::ALL;
         let decide = |&effect: &Effect| {
             let switch = self.effects.switch(effect);
@@ -111,6 +111,7 @@ mod tests {
         assert_eq!(left_out(|s| s.mud = None), fluid);
         let still = |s: &mut Scenario| s.mud.as_mut().unwrap().flow_rate = 0.0;
         assert_eq!(left_out(still), ["fluid_coriolis", "flow_stiffness", "mud_drag"]);
+        assert_eq!(left_out(|s| s.effects.gravity = Switch::Off), ["gravity", "buoyancy"]);
         assert_eq!(left_out(|s| s.operation.rotation_speed_rpm = 0.0), ["unbalance", "gyroscopic"]);
         assert_eq!(left_out(|s| s.string.unbalance.clear()), ["unbalance"]);
         assert_eq!(left_out(|s| s.damping.mass_proportional = 0.0), ["structural_damping"]);

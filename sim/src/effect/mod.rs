@@ -18,6 +18,7 @@ mod fluid_coriolis;
 mod fluid_damping;
 pub(crate) mod friction;
 pub(crate) mod friction_torque;
+pub(crate) mod gravity;
 mod gyroscopic;
 pub(crate) mod mud_drag;
 mod scene;
@@ -31,6 +32,7 @@ mod well_bending;
 
 pub use account::{Account, Booked, NodalWork, Side};
 pub use decide::EffectDecision;
+pub use gravity::GRAVITY;
 pub use scene::{Call, Scene};
 pub use terms::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
 pub use unbalance::UnbalanceForce;
@@ -118,6 +120,7 @@ pub(crate) const fn room(effect: Effect) -> Room {
         Effect::FluidCoriolis => fluid_coriolis::ROOM,
         Effect::FlowStiffness => flow_stiffness::ROOM,
         Effect::MudDrag => mud_drag::ROOM,
+        Effect::Gravity => gravity::ROOM,
         Effect::Buoyancy => buoyancy::ROOM,
         Effect::Contact => contact::ROOM,
         Effect::Friction => friction::ROOM,

@@ -3,13 +3,10 @@
 use nalgebra::Vector3;
 
 use crate::beam::{BeamElement, BeamSection, Chord, ElementMatrix, ElementVector};
-use crate::effect::{ElementAtRest, RestTerms, room};
+use crate::effect::{ElementAtRest, RestTerms, gravity, room};
 use crate::mud::{FlowGeometry, FlowMomentum};
 use crate::scenario::{ActiveEffects, Effect, Mud};
 use crate::well::NodeFrame;
-
-/// Gravity \[m/s2\], the value behind the buoyed weights of the hydraulic tables.
-pub const GRAVITY: f64 = 9.81;
 
 /// The matrices and loads of one element that do not change during the search for the equilibrium.
 #[derive(Debug, Clone)]
@@ -83,7 +80,8 @@ impl StringElement {
         for &effect in Effect::ALL.iter().filter(|&&effect| input.effects.is_active(effect)) {
             room(effect).add_at_rest(&element, &mut terms);
         }
-        let weight = chord.components(&Vector3::new(0.0, 0.0, terms.mass_per_length * GRAVITY));
+        let acceleration = gravity::acceleration(input.effects.gravity);
+        let weight = chord.components(&Vector3::new(0.0, 0.0, terms.mass_per_length * acceleration));
         let distributed = std::array::from_fn(|axis| weight[axis] + terms.distributed[axis]);
         let load = beam.distributed_load(distributed) + terms.nodal;
         let to_nodes = |matrix: ElementMatrix| chord.matrix_to_nodes(&matrix);

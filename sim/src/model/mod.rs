@@ -5,7 +5,8 @@
 
 mod element;
 
-pub use element::{ElementInput, GRAVITY, StringElement};
+pub use crate::effect::GRAVITY;
+pub use element::{ElementInput, StringElement};
 
 use std::f64::consts::PI;
 

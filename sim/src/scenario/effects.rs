@@ -117,6 +117,10 @@ effects! {
     flow_stiffness / FlowStiffness,
     /// Axial drag of the annular flow on the string; without it tension is too high by the drag below.
     mud_drag / MudDrag,
+    /// Gravity, 9.81 m/s2 downwards. Without it, as a horizontal bench hardly bends a short string or theory leaves weight out,
+    /// neither string nor mud has weight: there is no buoyancy, and no hydrostatic part of the mud's pressures. The low side stays
+    /// where gravity would put it.
+    gravity / Gravity,
     /// Weight of the mud in the bore less the buoyancy of the mud outside; without it the string weighs as in air.
     buoyancy / Buoyancy,
     /// Normal contact with the borehole; without it a string under weight on bit usually buckles, and no equilibrium is found.

@@ -12,10 +12,10 @@ pub use newton::NewtonSettings;
 pub use overload::Overload;
 
 use crate::contact::{StaticContactForce, Wall, static_contact};
-use crate::effect::mud_drag;
+use crate::effect::{gravity, mud_drag};
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::SingularBlock;
-use crate::model::{GRAVITY, Model, NodalVector, element_values};
+use crate::model::{Model, NodalVector, element_values};
 use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
 use crate::scenario::{ContactLaw, Mud};
 
@@ -346,7 +346,7 @@ fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pre
             bore_friction_gradient: flow.bore_friction_gradient,
         })
         .collect();
-    pressures(mud, GRAVITY, &true_vertical_depth, &steps)
+    pressures(mud, gravity::acceleration(model.effects.gravity), &true_vertical_depth, &steps)
 }
 
 fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {

@@ -395,7 +395,8 @@ fn draw_accuracy(draw: &mut Draw) -> (TimeStepping, f64) {
 fn draw_effects(draw: &mut Draw) -> Effects {
     let mut effects = Effects::default();
     let some_off = draw.chance(0.5);
-    for &effect in Effect::ALL {
+    // Weight is what makes scenes hard: it is in all of them.
+    for &effect in Effect::ALL.iter().filter(|&&effect| effect != Effect::Gravity) {
         let off = draw.chance(0.1) && some_off;
         if off && effect != Effect::Transient {
             effects.set(effect, Switch::Off);

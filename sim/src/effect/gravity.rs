@@ -1,0 +1,18 @@
+//! Gravity: without it neither the string nor the mud weighs anything.
+
+use super::scene::yes;
+use super::{Call, Room, Scene};
+
+pub(super) const ROOM: Room = Room::new(called_for);
+
+/// Gravity \[m/s2\], the value behind the buoyed weights of the hydraulic tables.
+pub const GRAVITY: f64 = 9.81;
+
+fn called_for(_: &Scene<'_>) -> Call {
+    yes("the string has weight")
+}
+
+/// The acceleration \[m/s2\] that makes weight and hydrostatic pressure.
+pub(crate) fn acceleration(is_active: bool) -> f64 {
+    if is_active { GRAVITY } else { 0.0 }
+}

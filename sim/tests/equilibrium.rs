@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use drillsweep_sim::beam::BeamSection;
 use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::scenario::{
-    Effect, Gauge, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
+    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
 
@@ -24,6 +24,7 @@ fn horizontal(length: f64, diameters: [f64; 2], element: f64) -> Scenario {
         outer_diameter,
         inner_diameter,
         tool_joint: None,
+        material: None,
     }];
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();
@@ -155,4 +156,67 @@ fn without_gravity_axial_force_and_pressures_are_the_same_all_along_a_vertical_s
     let pressures = without.pressures.expect("there is mud");
     assert!(pressures.annulus.iter().chain(&pressures.bore).all(|pressure| *pressure == 2e6));
     assert!(*with_weight.pressures.expect("there is mud").annulus.last().expect("the bit") > 4e6);
+}
+
+const ALUMINIUM: Material = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+
+/// Steel of the first length, then aluminium of the second \[m\], in a horizontal hole without a wall; with the beams of both.
+fn steel_and_aluminium(lengths: [f64; 2]) -> (Scenario, [BeamSection; 2]) {
+    let diameters = [0.127, 0.07];
+    let mut scenario = horizontal(lengths[0] + lengths[1], diameters, 0.5);
+    scenario.effects.set(Effect::Contact, Switch::Off);
+    scenario.operation.weight_on_bit = 0.0;
+    let steel = scenario.string.sections[0];
+    let [upper, lower] = lengths.map(|length| Section { length, ..steel });
+    scenario.string.sections = vec![upper, Section { material: Some(ALUMINIUM), ..lower }];
+    let beams = [scenario.string.material, ALUMINIUM]
+        .map(|material| BeamSection::pipe(diameters[0], diameters[1], &material));
+    (scenario, beams)
+}
+
+#[test]
+fn a_cantilever_of_two_materials_sags_as_beam_theory_says() {
+    let [a, b] = [7.0, 11.0];
+    let (scenario, beams) = steel_and_aluminium([a, b]);
+    let [p, q] = beams.map(|beam| beam.density * beam.area * GRAVITY);
+    // Deflection of the end: int M (L - x) / E I + V / (G S_r), with moment M and shear force V of what hangs beyond x.
+    let bending = [
+        q * b * (a.powi(3) / 3.0 + 0.75 * b * a * a + 0.5 * b * b * a)
+            + 0.5 * p * (a.powi(4) / 4.0 + b * a.powi(3) / 3.0),
+        q * b.powi(4) / 8.0,
+    ];
+    let shear = [q * b * a + 0.5 * p * a * a, 0.5 * q * b * b];
+    let expected: f64 = beams
+        .iter()
+        .zip(bending)
+        .zip(shear)
+        .map(|((beam, bending), shear)| {
+            bending / beam.bending_stiffness() + shear / (beam.shear_modulus * beam.shear_area)
+        })
+        .sum();
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("hangs");
+    let [u, v, ..] = *equilibrium.displacement.last().expect("the bit");
+    let sag = u.hypot(v);
+    // Elements are exact at their nodes; rounding is multiplied by the condition (L / h)^4.
+    assert!((sag / expected - 1.0).abs() < 1e-8, "{sag} m for {expected} m");
+}
+
+#[test]
+fn a_bar_of_two_materials_shortens_and_twists_by_what_both_give() {
+    let lengths = [7.0, 11.0];
+    let (mut scenario, beams) = steel_and_aluminium(lengths);
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    let (force, torque) = (-2e3, -400.0);
+    (scenario.operation.weight_on_bit, scenario.operation.torque_on_bit) = (force, torque);
+    let by = |stiffness: fn(&BeamSection) -> f64| -> f64 {
+        lengths.iter().zip(&beams).map(|(length, beam)| length / stiffness(beam)).sum()
+    };
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("is loaded below its buckling loads");
+    let [_, _, w, _, _, twist] = *equilibrium.displacement.last().expect("the bit");
+    let shortening = force * by(BeamSection::axial_stiffness);
+    let expected = torque * by(BeamSection::torsional_stiffness);
+    assert!((w / shortening - 1.0).abs() < 1e-9, "{w} m for {shortening} m");
+    assert!((twist / expected - 1.0).abs() < 1e-9, "{twist} for {expected}");
 }

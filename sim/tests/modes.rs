@@ -417,6 +417,62 @@ fn what_grows_is_found_on_a_mesh_of_thousands() {
     assert!((fine.growth_rate / coarse.growth_rate - 1.0).abs() < 0.05, "{fine:?} against {coarse:?}");
 }
 
+#[test]
+fn a_rod_of_two_materials_has_the_modes_of_a_stepped_rod() {
+    // Held above and free below: Z_1 cos(w L_1 / c_1) cos(w L_2 / c_2) = Z_2 sin(w L_1 / c_1) sin(w L_2 / c_2) with the wave speeds
+    // c^2 = E / rho (torsional G / rho) and the impedances Z = S rho c (I_p rho c); S and I_p are the same here.
+    let mut scenario = base();
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+    }
+    let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+    let (steel, collar) = (scenario.string.material, scenario.string.sections[2]);
+    let section = |length, material| Section { length, count: 1, material, ..collar };
+    scenario.string.sections = vec![section(90.0, None), section(110.0, Some(aluminium))];
+    scenario.string.unbalance.clear();
+    scenario.operation.weight_on_bit = -1e4;
+    (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+    let found = modes_to(&scenario, 40.0);
+    let shear = |material: &Material| material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
+    let young = |material: &Material| material.youngs_modulus;
+    let kinds: [(ModeKind, &dyn Fn(&Material) -> f64); 2] =
+        [(ModeKind::Axial, &young), (ModeKind::Torsional, &shear)];
+    for (kind, modulus) in kinds {
+        let [upper, lower] = [(90.0, steel), (110.0, aluminium)].map(|(length, material)| {
+            let speed = (modulus(&material) / material.density).sqrt();
+            (length / speed, material.density * speed)
+        });
+        let balance = |hz: f64| {
+            let [(s1, c1), (s2, c2)] = [upper, lower].map(|(time, _)| (TAU * hz * time).sin_cos());
+            upper.1 * c1 * c2 - lower.1 * s1 * s2
+        };
+        let expected = roots(balance, 40.0);
+        let frequencies: Vec<f64> =
+            found.iter().filter(|mode| mode.kind == kind).map(|mode| mode.frequency_hz).collect();
+        assert!(expected.len() >= 3, "{kind:?}: {expected:?}");
+        assert_eq!(frequencies.len(), expected.len(), "{kind:?}: {frequencies:?} against {expected:?}");
+        for (found, expected) in frequencies.iter().zip(&expected) {
+            // Linear elements are (k h)^2 / 24 too stiff, 1e-4 at 40 Hz.
+            assert!((found / expected - 1.0).abs() < 2e-4, "{kind:?}: {found} against {expected}");
+        }
+    }
+}
+
+/// The zeros of a function of the frequency \[Hz\] that changes slowly within a hundredth of a hertz.
+fn roots(function: impl Fn(f64) -> f64, to_hz: f64) -> Vec<f64> {
+    let at = |i: u32| 0.01 * (f64::from(i) + 0.5);
+    let changes = (0..(100.0 * to_hz) as u32).filter(|&i| function(at(i)) * function(at(i + 1)) < 0.0);
+    let bisected = changes.map(|i| {
+        let (mut low, mut high) = (at(i), at(i + 1));
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if function(low) * function(middle) <= 0.0 { high = middle } else { low = middle }
+        }
+        low
+    });
+    bisected.filter(|hz| *hz < to_hz).collect()
+}
+
 /// Nodes by themselves on springs, all with one frequency.
 fn equal_oscillators(nodes: usize) -> Pencil {
     let zero = BlockTridiagonal::zeros(nodes);

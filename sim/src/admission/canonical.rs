@@ -3,15 +3,15 @@
 use serde::Serialize;
 
 use crate::scenario::{
-    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Mesh, MeshName, Mud, Operation,
-    RayleighDamping, Recording, ScaledMesh, Scenario, TimeStepping, Well,
+    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud, Operation,
+    RayleighDamping, Recording, ScaledMesh, Scenario, Section, TimeStepping, ToolJoint, UnbalanceMass, Well,
 };
 
 /// What decides the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
 #[derive(Serialize)]
 struct Canonical {
     well: Well,
-    string: DrillString,
+    string: CanonicalString,
     mud: Option<Mud>,
     operation: Operation,
     contact: ContactLaw,
@@ -23,6 +23,29 @@ struct Canonical {
     effects: ActiveEffects,
     ensemble: u32,
     cost_study: Option<CostStudy>,
+}
+
+/// A string of which every section and tool joint has its material written out.
+#[derive(Serialize)]
+struct CanonicalString {
+    sections: Vec<Section>,
+    gauges: Vec<Gauge>,
+    unbalance: Vec<UnbalanceMass>,
+}
+
+impl CanonicalString {
+    fn new(string: DrillString) -> Self {
+        let written_out = |section: &Section| Section {
+            material: Some(string.body_material(section)),
+            tool_joint: section
+                .tool_joint
+                .map(|joint| ToolJoint { material: Some(string.joint_material(section, &joint)), ..joint }),
+            ..*section
+        };
+        let sections = string.sections.iter().map(written_out).collect();
+        let DrillString { material: _, sections: _, gauges, unbalance } = string;
+        Self { sections, gauges, unbalance }
+    }
 }
 
 /// A mesh whose encoding distinguishes its forms.
@@ -37,7 +60,7 @@ impl Scenario {
     /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-    /// as integrator and step, with what a length of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every
+    /// as integrator and step, with the material of every section and tool joint, with what a length of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every
     /// effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the encoding, so
     /// keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
@@ -61,7 +84,7 @@ impl Scenario {
         } = self.without_negative_zeros().with_windows_written_out();
         let canonical = Canonical {
             well,
-            string,
+            string: CanonicalString::new(string),
             mud,
             operation,
             contact: contact.written_out(),
@@ -105,7 +128,7 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::scenario::{Accuracy, AccuracyPreset, Effect, Switch, preset};
+    use crate::scenario::{Accuracy, AccuracyPreset, Effect, Material, Switch, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
@@ -133,6 +156,22 @@ mod tests {
             .and_then(|scenario| scenario.with("contact.damping_per_length", Value::from(2e4)));
         assert_eq!(written.unwrap().canonical_bytes(), by_length.canonical_bytes());
         assert_ne!(by_length.canonical_bytes(), bytes);
+    }
+
+    #[test]
+    fn a_material_counts_where_it_is_used_however_it_is_given() {
+        let bytes = paper().canonical_bytes();
+        let mut other = paper();
+        let steel = other.string.material;
+        for section in &mut other.string.sections {
+            section.material = Some(steel);
+        }
+        // Tool joints follow their section, and nothing is left of the string's own.
+        other.string.material.density = 1.0;
+        assert_eq!(other.canonical_bytes(), bytes);
+        let joint = other.string.sections[1].tool_joint.as_mut().unwrap();
+        joint.material = Some(Material { density: 2800.0, ..steel });
+        assert_ne!(other.canonical_bytes(), bytes);
     }
 
     #[test]

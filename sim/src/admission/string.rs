@@ -1,7 +1,9 @@
 //! Rules of the string and its mesh.
 
 use super::report::Report;
-use crate::scenario::{ElementLengths, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw};
+use crate::scenario::{
+    ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw,
+};
 use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
 
 /// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
@@ -9,7 +11,7 @@ const SAME_DEPTH: f64 = 1e-9;
 
 /// Checks the string; gives its mesh if it can be made.
 pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
-    material(report, scenario);
+    material(report, "string.material", &scenario.string.material);
     for i in 0..scenario.string.sections.len() {
         section(report, scenario, i);
     }
@@ -24,13 +26,12 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMe
     Some(mesh)
 }
 
-fn material(report: &mut Report, scenario: &Scenario) {
-    let material = &scenario.string.material;
-    report.positive(material.youngs_modulus, "string.material.youngs_modulus");
-    report.positive(material.density, "string.material.density");
+fn material(report: &mut Report, path: &str, material: &Material) {
+    report.positive(material.youngs_modulus, format!("{path}.youngs_modulus"));
+    report.positive(material.density, format!("{path}.density"));
     report.number(
         material.poissons_ratio,
-        "string.material.poissons_ratio",
+        format!("{path}.poissons_ratio"),
         |ratio| (0.0..=0.5).contains(&ratio),
         "must be 0 to 0.5",
     );
@@ -44,9 +45,16 @@ fn section(report: &mut Report, scenario: &Scenario, index: usize) {
     let hole = scenario.well.hole_diameter;
     pipe(report, &path, section.outer_diameter, section.inner_diameter, hole);
 
+    if let Some(own) = &section.material {
+        material(report, &format!("{path}.material"), own);
+    }
+
     let Some(joint) = &section.tool_joint else { return };
     let path = format!("{path}.tool_joint");
-    let ToolJoint { length, outer_diameter, inner_diameter } = *joint;
+    let ToolJoint { length, outer_diameter, inner_diameter, material: own } = *joint;
+    if let Some(own) = &own {
+        material(report, &format!("{path}.material"), own);
+    }
     report.positive(length, format!("{path}.length"));
     if section.length > 0.0 {
         report.number(
@@ -245,7 +253,7 @@ fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &Strin
 #[cfg(test)]
 mod tests {
     use super::super::report::testing::{problem, problems, warnings};
-    use crate::scenario::{Gauge, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
+    use crate::scenario::{Gauge, Material, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
 
     #[test]
     fn material_constants_are_physical() {
@@ -254,6 +262,13 @@ mod tests {
         for ratio in [-0.1, 0.51] {
             problem("string.material.poissons_ratio", |s| s.string.material.poissons_ratio = ratio);
         }
+        problem("string.sections[2].material.density", |s| {
+            s.string.sections[2].material = Some(Material { density: 0.0, ..s.string.material });
+        });
+        problem("string.sections[1].tool_joint.material.youngs_modulus", |s| {
+            let own = Material { youngs_modulus: -7e10, ..s.string.material };
+            s.string.sections[1].tool_joint.as_mut().unwrap().material = Some(own);
+        });
     }
 
     #[test]

@@ -98,8 +98,8 @@ pub(super) struct LateralWave {
 impl LateralWave {
     /// That along a section of a scenario's string.
     pub(super) fn along(section: &Section, scenario: &Scenario) -> Self {
-        let material = &scenario.string.material;
-        let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, material);
+        let material = scenario.string.body_material(section);
+        let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);
         let flow_of =
             |mud: &Mud| FlowMomentum::new(mud, &FlowGeometry::past(&beam, scenario.well.hole_diameter));
         let flow = scenario.mud.as_ref().map(flow_of);

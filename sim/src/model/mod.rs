@@ -72,7 +72,7 @@ impl Model {
                     section: BeamSection::pipe(
                         element.outer_diameter,
                         element.inner_diameter,
-                        &scenario.string.material,
+                        &element.material,
                     ),
                     frames: [&frames[i], &frames[i + 1]],
                     curvature: path.curvature(element.top + 0.5 * element.length),

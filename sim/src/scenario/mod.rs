@@ -123,12 +123,12 @@ pub struct SurveyStation {
     pub azimuth_deg: f64,
 }
 
-/// The drillstring: one material, sections from the top, gauges and unbalance masses on them.
+/// The drillstring: its material, sections from the top, gauges and unbalance masses on them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DrillString {
-    /// The steel (or other material) of all sections.
+    /// The steel (or other material) of every section and tool joint that has none of its own.
     pub material: Material,
     /// Sections from the top down, 1 or more, together no longer than the survey.
     pub sections: Vec<Section>,
@@ -142,7 +142,19 @@ pub struct DrillString {
     pub unbalance: Vec<UnbalanceMass>,
 }
 
-/// Linear elastic material.
+impl DrillString {
+    /// What the bodies of a section are made of.
+    pub fn body_material(&self, section: &Section) -> Material {
+        section.material.unwrap_or(self.material)
+    }
+
+    /// What a tool joint of a section is made of.
+    pub fn joint_material(&self, section: &Section, joint: &ToolJoint) -> Material {
+        joint.material.unwrap_or_else(|| self.body_material(section))
+    }
+}
+
+/// Linear elastic material. Values for what strings are made of, with their source, are in docs/model/beam.md, Section.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -181,6 +193,10 @@ pub struct Section {
     /// Tool joints at both ends of each piece; absent means a plain body.
     #[serde(default)]
     pub tool_joint: Option<ToolJoint>,
+    /// What the section is made of, such as aluminium or non-magnetic steel; absent means the string's material. A lighter and
+    /// softer section bends more easily into the hole and presses less on its wall.
+    #[serde(default)]
+    pub material: Option<Material>,
 }
 
 fn one() -> u32 {
@@ -216,6 +232,10 @@ pub struct ToolJoint {
     pub outer_diameter: f64,
     /// Inner diameter \[m\], 0 to below the outer; usual 0.05 to 0.13, at most that of the body.
     pub inner_diameter: f64,
+    /// What the joint is made of; absent means what its section is made of. Aluminium pipe usually has joints of steel, whose weight
+    /// it feels.
+    #[serde(default)]
+    pub material: Option<Material>,
 }
 
 /// A place where the radial clearance is given instead of following from the diameters

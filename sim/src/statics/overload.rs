@@ -160,6 +160,7 @@ mod tests {
             outer_diameter: 0.127,
             inner_diameter: 0.108,
             tool_joint: None,
+            material: None,
         }];
         scenario.string.gauges.clear();
         scenario.string.unbalance.clear();

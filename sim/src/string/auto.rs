@@ -45,7 +45,11 @@ pub(super) fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
     if let Some(joint) = &section.tool_joint {
         return ((section.length - 2.0 * joint.length) / BODY_ELEMENTS, joint.length / JOINT_ELEMENTS);
     }
-    let pipe = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &scenario.string.material);
+    let pipe = BeamSection::pipe(
+        section.outer_diameter,
+        section.inner_diameter,
+        &scenario.string.body_material(section),
+    );
     let spread = (4.0 * pipe.bending_stiffness() / scenario.contact.stiffness_of_a_metre()).powf(0.25);
     let target = spread / ELEMENTS_A_SPREAD;
     (target, target)

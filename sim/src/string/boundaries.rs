@@ -2,9 +2,11 @@
 
 use super::auto;
 use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
-use crate::scenario::{ElementLengths, Mesh, MeshName, ScaledMesh, Scenario, Section, SectionKind};
+use crate::scenario::{
+    DrillString, ElementLengths, Material, Mesh, MeshName, ScaledMesh, Scenario, Section, SectionKind,
+};
 
-/// A stretch of one kind and one cross-section, with nodes forced at both ends.
+/// A stretch of one kind, one cross-section and one material, with nodes forced at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch {
     /// Measured depth of the upper end \[m\].
@@ -14,6 +16,7 @@ pub(super) struct Stretch {
     pub(super) kind: ElementKind,
     pub(super) outer_diameter: f64,
     pub(super) inner_diameter: f64,
+    pub(super) material: Material,
     /// Target element length \[m\].
     pub(super) target: f64,
 }
@@ -41,7 +44,7 @@ pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<Stretch>, MeshError> 
             // A multiple of the length, not a running sum: depths carry no accumulated rounding.
             let top = section_top + f64::from(piece) * section.length;
             let bottom = section_top + f64::from(piece + 1) * section.length;
-            push_piece(&mut stretches, section, targets, top, bottom);
+            push_piece(&mut stretches, &scenario.string, section, targets, [top, bottom]);
         }
         section_top += f64::from(section.count) * section.length;
     }
@@ -75,10 +78,10 @@ fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
 /// One piece of pipe: tool joint, body, tool joint; or the body alone. Targets are those of body and tool joint.
 fn push_piece(
     stretches: &mut Vec<Stretch>,
+    string: &DrillString,
     section: &Section,
     (target, joint_target): (f64, f64),
-    top: f64,
-    bottom: f64,
+    [top, bottom]: [f64; 2],
 ) {
     let kind = match section.kind {
         SectionKind::Drillpipe => ElementKind::DrillpipeBody,
@@ -92,6 +95,7 @@ fn push_piece(
         kind,
         outer_diameter: section.outer_diameter,
         inner_diameter: section.inner_diameter,
+        material: string.body_material(section),
         target,
     };
     let Some(joint) = &section.tool_joint else {
@@ -102,6 +106,7 @@ fn push_piece(
         kind: ElementKind::ToolJoint,
         outer_diameter: joint.outer_diameter,
         inner_diameter: joint.inner_diameter,
+        material: string.joint_material(section, joint),
         target: joint_target,
         ..body
     };

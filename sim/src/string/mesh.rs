@@ -2,7 +2,7 @@
 
 use super::boundaries;
 use crate::contact::ContactNode;
-use crate::scenario::{ContactLaw, NodeChoice, Scenario, WallLaw};
+use crate::scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
 
 /// A string of more elements than this is refused.
 pub const MAX_ELEMENTS: usize = 20_000;
@@ -78,6 +78,8 @@ pub struct MeshElement {
     pub outer_diameter: f64,
     /// Inner diameter of the body D_i \[m\].
     pub inner_diameter: f64,
+    /// What it is made of.
+    pub material: Material,
 }
 
 /// One unbalance mass at a node.
@@ -272,6 +274,7 @@ fn cut(stretches: &[boundaries::Stretch]) -> Result<Vec<MeshElement>, MeshError>
                 kind: stretch.kind,
                 outer_diameter: stretch.outer_diameter,
                 inner_diameter: stretch.inner_diameter,
+                material: stretch.material,
             });
         }
     }
@@ -395,6 +398,27 @@ mod tests {
             let touching: f64 = joints.map(|node| node.damping_share * 1e4 / 1e4).sum();
             assert!((touching - 18.0 * 0.3).abs() < 1e-9, "{touching} m");
         }
+    }
+
+    #[test]
+    fn materials_are_those_of_the_section_or_of_the_string() {
+        let steel = paper().string.material;
+        let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+        let of = |scenario: &Scenario, is: fn(&MeshElement) -> bool| -> Vec<Material> {
+            let mesh = StringMesh::new(scenario).unwrap();
+            let mut found: Vec<Material> =
+                mesh.elements.iter().filter(|e| is(e)).map(|e| e.material).collect();
+            found.dedup();
+            found
+        };
+        let body = |e: &MeshElement| e.kind == ElementKind::DrillpipeBody && e.top > 4.0;
+        let joint = |e: &MeshElement| e.kind == ElementKind::ToolJoint;
+        let mut scenario = paper();
+        scenario.string.sections[1].material = Some(aluminium);
+        assert_eq!((of(&scenario, body), of(&scenario, joint)), (vec![aluminium], vec![aluminium]));
+        scenario.string.sections[1].tool_joint.as_mut().unwrap().material = Some(steel);
+        assert_eq!((of(&scenario, body), of(&scenario, joint)), (vec![aluminium], vec![steel]));
+        assert_eq!(of(&scenario, |e| e.kind == ElementKind::Collar), [steel]);
     }
 
     #[test]

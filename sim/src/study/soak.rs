@@ -246,9 +246,10 @@ fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
                 length: (0.3 * length).min(draw.between(0.15, 0.5)),
                 outer_diameter: outer_diameter + (hole - outer_diameter) * draw.between(0.0, 0.98),
                 inner_diameter: inner_diameter * draw.between(0.6, 1.0),
+                material: None,
             });
             let count = if kind == SectionKind::Drillpipe { 1 + draw.below(4) as u32 } else { 1 };
-            Section { kind, count, length, outer_diameter, inner_diameter, tool_joint }
+            Section { kind, count, length, outer_diameter, inner_diameter, tool_joint, material: None }
         })
         .collect();
     let mut string = DrillString { material, sections, gauges: Vec::new(), unbalance: Vec::new() };

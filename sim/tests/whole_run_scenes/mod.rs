@@ -32,6 +32,7 @@ pub fn reduced() -> Scenario {
         outer_diameter,
         inner_diameter,
         tool_joint: None,
+        material: None,
     };
     let mut scenario = preset("paper-200m").expect("shipped preset");
     scenario.string.sections = vec![

@@ -220,3 +220,30 @@ fn a_bar_of_two_materials_shortens_and_twists_by_what_both_give() {
     assert!((w / shortening - 1.0).abs() < 1e-9, "{w} m for {shortening} m");
     assert!((twist / expected - 1.0).abs() < 1e-9, "{twist} for {expected}");
 }
+
+#[test]
+fn a_pulled_string_carries_its_weight_and_the_pull() {
+    let (length, pull) = (200.0, 2.5e5);
+    let mut scenario = horizontal(length, [0.127, 0.108], 2.0);
+    for station in &mut scenario.well.survey {
+        station.inclination_deg = 0.0;
+    }
+    scenario.operation.weight_on_bit = pull;
+    let beam = section(&scenario);
+    let weight = beam.density * beam.area * GRAVITY;
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("hangs");
+    // Differences of displacements with 1e-11 m of error over 2 m.
+    let rounding = 1e-11 / 2.0 * beam.axial_stiffness();
+    for (element, tension) in model.mesh.elements.iter().zip(&equilibrium.tension) {
+        let below = length - (element.top + 0.5 * element.length);
+        let expected = pull + weight * below;
+        assert!(
+            (tension - expected).abs() < rounding,
+            "{below} m above the bit: {tension} N for {expected} N"
+        );
+    }
+    let [_, _, w, ..] = *equilibrium.displacement.last().expect("the bit");
+    let stretch = (pull * length + 0.5 * weight * length * length) / beam.axial_stiffness();
+    assert!((w / stretch - 1.0).abs() < 1e-9, "{w} m for {stretch} m");
+}

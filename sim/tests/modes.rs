@@ -458,6 +458,66 @@ fn a_rod_of_two_materials_has_the_modes_of_a_stepped_rod() {
     }
 }
 
+/// The determinant of the conditions at the lower end of a weightless cantilever under a pull of constant direction at a frequency \[Hz\], whose
+/// zeros are its frequencies: `y = A (cosh s x - cos t x) + B (sinh s x - s/t sin t x)` with no moment and `E I y^(3) = P y'` there.
+fn pulled_cantilever(section: &BeamSection, length: f64, pull: f64, hz: f64) -> f64 {
+    let half = 0.5 * pull / section.bending_stiffness();
+    let inertia = section.density * section.area * (TAU * hz).powi(2) / section.bending_stiffness();
+    let root = (half * half + inertia).sqrt();
+    let (s, t) = ((root + half).sqrt(), (root - half).sqrt());
+    let ((sinh, cosh), (sin, cos)) = (((s * length).sinh(), (s * length).cosh()), (t * length).sin_cos());
+    let by_a = [s * s * cosh + t * t * cos, s * t * t * sinh - s * s * t * sin];
+    let by_b = [s * s * sinh + s * t * sin, s * t * t * cosh + s.powi(3) * cos];
+    by_a[0] * by_b[1] - by_a[1] * by_b[0]
+}
+
+#[test]
+fn a_pull_raises_lateral_frequencies_as_tensioned_beams_have_them() {
+    let length = 30.0;
+    let mut scenario = base();
+    scenario.mud = None;
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (0.0, 0.0);
+    }
+    scenario.string.sections = vec![Section { length, count: 1, ..scenario.string.sections[0] }];
+    (scenario.string.gauges, scenario.string.unbalance) = (Vec::new(), Vec::new());
+    scenario.mesh.lengths_mut().expect("has target lengths").drillpipe = 0.5;
+    (scenario.operation.rotation_speed_rpm, scenario.operation.torque_on_bit) = (0.0, 0.0);
+    scenario.damping.mass_proportional = 0.0;
+    scenario.effects.set(Effect::Contact, Switch::Off);
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    let material = scenario.string.material;
+    let of = &scenario.string.sections[0];
+    let section = BeamSection::pipe(of.outer_diameter, of.inner_diameter, &material);
+    let mass = section.density * section.area;
+    let shear = section.axial_stiffness() / (section.shear_modulus * section.shear_area);
+    let mut lowest = Vec::new();
+    for pull in [0.0, 2e4, 4e5] {
+        scenario.operation.weight_on_bit = pull;
+        let expected = roots(|hz| pulled_cantilever(&section, length, pull, hz), 5.0);
+        assert!(expected.len() >= 2, "{pull} N: {expected:?}");
+        let found: Vec<Mode> = modes_to(&scenario, 5.0)
+            .into_iter()
+            .filter(|mode| ![ModeKind::Axial, ModeKind::Torsional].contains(&mode.kind))
+            .collect();
+        assert_eq!(found.len(), 2 * expected.len(), "{pull} N: {found:?} against {expected:?}");
+        for (pair, expected) in found.chunks(2).zip(&expected) {
+            for mode in pair {
+                // Shear and rotary inertia lower them by (1 + E / k_S G) (k r)^2 / 2 (Timoshenko 1921), k^2 = w (m / E I)^(1/2) without a pull.
+                let wave = TAU * expected * (mass / section.bending_stiffness()).sqrt();
+                let lower = 0.5 * (1.0 + shear) * wave * section.second_moment / section.area;
+                let ratio = mode.frequency_hz / expected;
+                assert!((1.0 - ratio).abs() < 1.5 * lower + 1e-5, "{pull} N: {mode:?} against {expected} Hz");
+            }
+        }
+        lowest.push(found[0].frequency_hz);
+    }
+    // Under a large pull it is a string held at one end, (P / m)^(1/2) / 4 L, but for its stiffness at the clamp: (E I / P)^(1/2) / L.
+    let as_string = (4e5 / mass).sqrt() / (4.0 * length);
+    let stiffness = (section.bending_stiffness() / 4e5).sqrt() / length;
+    assert!(lowest[2] > as_string && lowest[2] < as_string * (1.0 + 2.0 * stiffness), "{lowest:?}");
+}
+
 /// The zeros of a function of the frequency \[Hz\] that changes slowly within a hundredth of a hertz.
 fn roots(function: impl Fn(f64) -> f64, to_hz: f64) -> Vec<f64> {
     let at = |i: u32| 0.01 * (f64::from(i) + 0.5);

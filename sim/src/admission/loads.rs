@@ -46,12 +46,11 @@ fn check_mud(report: &mut Report, mud: &Mud) {
 
 fn check_operation(report: &mut Report, operation: &Operation) {
     let weight = operation.weight_on_bit;
-    report.number(
-        weight,
+    report.warn(
+        weight > 0.0,
         "operation.weight_on_bit",
-        |weight| weight <= 0.0,
         format!(
-            "weight_on_bit is the axial force at the bit: compression is negative; {} rather than {weight}?",
+            "the bit is pulled with {weight} N (overpull): if it is to be pressed on, compression is negative, {}",
             -weight
         ),
     );
@@ -162,10 +161,10 @@ mod tests {
     }
 
     #[test]
-    fn weight_on_bit_is_compression() {
-        let found = problem("operation.weight_on_bit", |s| s.operation.weight_on_bit = 1e5);
-        assert_eq!(found.got, "100000");
-        assert!(found.message.ends_with("compression is negative; -100000 rather than 100000?"), "{found}");
+    fn a_pulled_bit_is_warned_of_as_a_sign_may_be_lost() {
+        let found = warnings(|s| s.operation.weight_on_bit = 1e5);
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "operation.weight_on_bit"));
+        assert!(found[0].message.ends_with("compression is negative, -100000"), "{found:?}");
         assert_eq!(warnings(|s| s.operation.weight_on_bit = 0.0), []);
     }
 

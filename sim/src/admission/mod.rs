@@ -147,7 +147,7 @@ mod tests {
         scenario.well.survey[2].inclination_deg = 190.0;
         scenario.string.sections[2].inner_diameter = 0.2;
         scenario.mud.as_mut().unwrap().density = -1200.0;
-        scenario.operation.weight_on_bit = 1e5;
+        scenario.operation.torque_on_bit = 5000.0;
         scenario.recording.nodes.push(crate::scenario::NodeChoice::Node(400));
         scenario.duration = f64::NAN;
         let problems = scenario.validate().unwrap_err();
@@ -158,7 +158,7 @@ mod tests {
             [
                 "duration",
                 "mud.density",
-                "operation.weight_on_bit",
+                "operation.torque_on_bit",
                 "recording.nodes[3].node",
                 "string.sections[2].inner_diameter",
                 "well.survey[2].inclination_deg",

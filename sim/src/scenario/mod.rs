@@ -342,9 +342,10 @@ pub struct Operation {
     /// 1000 is warned of. Slow rotation favours stick-slip, since friction falls with speed; the force of the unbalance grows with
     /// the square of the speed. With 0 there is neither unbalance nor damping k.
     pub rotation_speed_rpm: f64,
-    /// Weight on bit \[N\], the axial force in the string at the bit: negative is compression, and it must not be positive; usual
-    /// -2.5e5 to -2e4, 0 off bottom. Beyond the buckling load the string leaves the low side and presses on the wall in a helix;
-    /// far beyond it the search for the equilibrium may fail.
+    /// Weight on bit \[N\], the axial force in the string at the bit: negative is compression, positive a pull (overpull on a bit
+    /// that is stuck or reams back), which is warned of, since a sign may have been lost; usual -2.5e5 to -2e4, 0 off bottom, up to
+    /// 5e5 of pull. Beyond the buckling load the string leaves the low side and presses on the wall in a helix; far beyond it the
+    /// search for the equilibrium may fail. A pull raises lateral frequencies and draws the string to the inside of bends.
     pub weight_on_bit: f64,
     /// Torque on bit \[N m\], of the sign opposite to the rotation's (either where nothing turns): negative opposes clockwise
     /// rotation; usual -2e4 to -1e3, 0 off bottom. It winds the string up and lowers its buckling load; it is constant, so that

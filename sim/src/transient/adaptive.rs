@@ -36,6 +36,11 @@ pub(super) struct StepError {
 /// for steps that resolve nothing.
 pub(crate) const SMALLEST_MOTION: f64 = 1e-4;
 
+/// The smallest motion \[m\] that the steps of a run are asked to resolve, root mean square over its nodes, in a hole of radius `hole_radius` \[m\].
+pub(super) fn smallest_motion(hole_radius: f64) -> f64 {
+    SMALLEST_MOTION * hole_radius
+}
+
 /// The embedded method is of order 3: a local error falls with the fourth power of the step.
 const LOCAL_ORDER: f64 = 4.0;
 
@@ -49,7 +54,7 @@ impl Tolerances {
             displacement: 0.006 * statistics,
             friction: 0.3 * statistics,
             sweep: SweepChange { lateral: 0.06 * statistics, friction: 3.0 * statistics },
-            smallest_motion: SMALLEST_MOTION * hole_radius,
+            smallest_motion: smallest_motion(hole_radius),
         }
     }
 

@@ -279,9 +279,11 @@ impl<const D: usize> Ledger<D> {
         EnergyRow { time, kinetic, stored: structure + wall, accounts, residual: gained - balance }
     }
 
-    /// What a row may leave over \[J\].
-    pub(super) fn bound(&self, row: &EnergyRow) -> f64 {
-        LARGEST_RESIDUAL * row.turned_over() + self.rounding
+    /// What a row may leave over \[J\]. Where the string `hardly_moves`, steps are not asked to resolve how: a method that damps what it does not
+    /// resolve may then take all that is turned over, and no balance leaves more.
+    pub(super) fn bound(&self, row: &EnergyRow, hardly_moves: bool) -> f64 {
+        let share = if hardly_moves { 1.0 } else { LARGEST_RESIDUAL };
+        share * row.turned_over() + self.rounding
     }
 
     /// What rounding may leave of a balance \[J\].

@@ -454,7 +454,9 @@ impl<'m, const D: usize> Run<'m, D> {
         let state = &self.progress.state;
         self.progress.errors.observe_motion(&state.displacement, &self.initial);
         let row = self.ledger.row(time, &state.displacement, &state.velocity);
-        let bound = self.ledger.bound(&row);
+        let smallest_motion = adaptive::smallest_motion(0.5 * self.model.scenario.well.hole_diameter);
+        let hardly_moves = self.progress.errors.motion(self.model.node_count()) < smallest_motion;
+        let bound = self.ledger.bound(&row, hardly_moves);
         self.progress.energy.push(row);
         // Written so that a residual that is not a number fails.
         if row.residual.abs() <= bound {

@@ -8,7 +8,9 @@ use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::modes::{
     InstabilityKind, ModeKind, ModeSearch, Stability, UndampedTorsion, modes, stability,
 };
-use drillsweep_sim::scenario::{Accuracy, Integrator, PRESETS, Scenario, TimeStepping, preset};
+use drillsweep_sim::scenario::{
+    Accuracy, AccuracyPreset, Gauge, Integrator, PRESETS, Scenario, TimeStepping, preset,
+};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::cost::Measure;
 use drillsweep_sim::study::finer::{Verdict, ask};
@@ -172,6 +174,64 @@ fn tight_gauge_holds_its_nodes() {
         assert!(!node.is_gauge || contacts.largest_radius() < 1e-5 + 4e-5, "{contacts:?}");
     }
     methods_agree("hard/tight-gauge", 0.05, 0.02);
+}
+
+/// A scene whose gauges have next to no play in a wall of 1e9 N/m: turning or at rest, with friction or without, with the wall's damping or
+/// without, by a method.
+fn without_play(
+    name: &str,
+    turns: bool,
+    friction: bool,
+    damping: f64,
+    accuracy: Accuracy,
+    duration: f64,
+) -> Scenario {
+    let mut scenario = preset(name).expect("shipped preset");
+    scenario.string.gauges =
+        [123.5, 165.5, 180.0, 200.0].map(|measured_depth| Gauge { measured_depth, clearance: 1e-9 }).to_vec();
+    (scenario.contact.stiffness, scenario.contact.damping) = (1e9, damping);
+    if !friction {
+        (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+    }
+    if !turns {
+        scenario.operation.rotation_speed_rpm = 0.0;
+        scenario.string.unbalance.clear();
+    }
+    (scenario.duration, scenario.accuracy) = (duration, accuracy);
+    (scenario.recording.spectrum_windows, scenario.recording.orbit_window) = (Some(Vec::new()), None);
+    scenario
+}
+
+#[test]
+fn gauges_without_play_are_held_in_any_direction() {
+    // The wall holds such a node sideways as stiffly as outwards: F_n / r is its whole stiffness.
+    let draft = Accuracy::Preset(AccuracyPreset::Draft);
+    let fixed = |integrator, step| Accuracy::Explicit(TimeStepping::fixed(integrator, step));
+    let scenes = [
+        without_play("paper-200m", false, true, 1e4, draft, 0.5),
+        without_play("hard/horizontal", false, false, 0.0, draft, 0.5),
+        without_play("paper-200m-damped", true, true, 1e4, draft, 0.5),
+        without_play("closed/near-horizontal", true, true, 0.0, draft, 0.5),
+        without_play("paper-200m-damped", true, true, 1e4, fixed(Integrator::GeneralizedAlpha, 1e-3), 0.2),
+        without_play("paper-200m-damped", true, false, 0.0, fixed(Integrator::Rk4, 2e-5), 0.1),
+    ];
+    for scenario in scenes {
+        let scene = Scene::of(&scenario);
+        for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
+            // What 50 kN push into 1e9 N/m.
+            assert!(!node.is_gauge || contacts.largest_radius() < 5e-5, "{}: {contacts:?}", scenario.name);
+        }
+        // Contact that does not converge cuts steps, and moves a string that nothing moves.
+        let effort = &scene.records.effort;
+        if scenario.accuracy == draft {
+            let fewest = scenario.duration / effort.step_range[1];
+            assert!((effort.steps as f64) < 1.1 * fewest + 10.0, "{}: {effort:?}", scenario.name);
+        }
+        if scenario.operation.rotation_speed_rpm == 0.0 {
+            let last = scene.last();
+            assert!(last.kinetic < scene.records.energy_rounding, "{}: {last:?}", scenario.name);
+        }
+    }
 }
 
 #[test]

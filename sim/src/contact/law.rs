@@ -80,6 +80,12 @@ impl<L: Lane> ContactParameters<L> {
         self.damping.at(penetration)
     }
 
+    /// Stiffness K_c \[N/m\] far inside the wall, of a node with the whole of the law's.
+    #[inline(always)]
+    pub(super) fn largest_stiffness(&self) -> L {
+        self.stiffness.half_limit + self.stiffness.half_limit
+    }
+
     /// A normal force \[N\] that does not pull where the law has no adhesion.
     #[inline(always)]
     pub(super) fn limited(&self, normal_force: L) -> L {

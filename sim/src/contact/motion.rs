@@ -51,6 +51,8 @@ pub struct Yielding<L> {
     pub surface: L,
     /// Speed by displacement \[1/s\].
     pub speed: L,
+    /// Force along u and v that the motion was found with \[N\].
+    pub force: [L; 2],
     /// Normal force that the motion was found with \[N\].
     pub normal: L,
     /// Friction that the motion was found with \[N\], of the sign of the sliding speed.
@@ -68,8 +70,14 @@ pub fn dynamic_contact<L: Lane>(
     contact_force(law, node, motion, rotation_speed, |normal, _| normal, |sliding_speed, _| sliding_speed)
 }
 
+/// The way along the wall by which a node gives way to its own normal force, over its distance from the axis, from which on the direction of
+/// that force is implicit too. Taken from the sweep before, a direction that is wrong by an angle comes back wrong by that angle times this
+/// ratio; from one on, sweeps diverge.
+const TURNS_WITH_ITS_FORCE: f64 = 0.5;
+
 /// The force of the same law that agrees with the motion which it leads to, as far as the node's own force moves it: in the
-/// normal direction by one step of Newton's method, along the surface by a solution of the whole friction curve. Where the motion
+/// normal direction by one step of Newton's method, along the surface by a solution of the whole friction curve. A node whose clearance is so
+/// small that its own force [turns it about the axis](TURNS_WITH_ITS_FORCE) is first [put where that force leaves it](settle). Where the motion
 /// agrees with the force that it was found with, it is that of [`dynamic_contact`].
 #[inline(always)]
 pub fn implicit_contact<L: Lane>(
@@ -79,7 +87,72 @@ pub fn implicit_contact<L: Lane>(
     rotation_speed: L,
     yielding: &Yielding<L>,
 ) -> ContactForce<L> {
-    let Yielding { lateral, surface, speed, normal: normal_before, friction: friction_before } = *yielding;
+    // Of g |F| and the distance j0 + |F| / K, both times K.
+    let (stiffness, normal) = (law.largest_stiffness() * node.stiffness_share, yielding.normal.abs());
+    let distance = stiffness.mul_add(node.clearance, normal);
+    let turns =
+        (stiffness * yielding.lateral * normal).greater_than(L::splat(TURNS_WITH_ITS_FORCE) * distance);
+    if turns.any() {
+        let (settled, normal) = settle(law, node, motion, yielding, turns);
+        return implicit_force(law, node, &settled, rotation_speed, &Yielding { normal, ..*yielding });
+    }
+    implicit_force(law, node, motion, rotation_speed, yielding)
+}
+
+/// Where nodes that turn with their own force come to rest in it, and the normal force that they do so under; the others as they are.
+///
+/// Without its force F n + F_t t, F along the normal n = x/r and friction F_t along the tangent t, such a node would be at
+/// `y = x + g (F n + F_t t)`. It comes to r along the new normal where `y = (r + g F(r)) n + g F_t t`, which gives both: n by the
+/// direction of y, r by its length, here with the wall's whole stiffness.
+#[inline(always)]
+fn settle<L: Lane>(
+    law: &ContactParameters<L>,
+    node: &ContactNode<L>,
+    motion: &LateralMotion<L>,
+    yielding: &Yielding<L>,
+    turns: L::Mask,
+) -> (LateralMotion<L>, L) {
+    let LateralMotion { u, v, u_rate, v_rate, theta_z_rate } = *motion;
+    let Yielding { lateral, speed, force: [force_u, force_v], friction, .. } = *yielding;
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let (free_u, free_v) = (u - lateral * force_u, v - lateral * force_v);
+    let squared = free_u.mul_add(free_u, free_v * free_v);
+    let somewhere = turns & squared.greater_than(zero);
+    let distance = L::select(somewhere, squared, one).sqrt();
+    // Friction cannot turn the normal beyond the direction that the node is pushed in.
+    let across = lateral * friction * law.tangential_share / distance;
+    let across = across.abs().min(L::splat(MOST_ACROSS)).copysign(across);
+    let along = (one - across * across).sqrt();
+    let (unit_u, unit_v) = (free_u / distance, free_v / distance);
+    let (normal_u, normal_v) =
+        (along.mul_add(unit_u, across * unit_v), along.mul_add(unit_v, -(across * unit_u)));
+    let stiffness = law.largest_stiffness() * node.stiffness_share;
+    let pushed = (along * distance - node.clearance).max(zero) / stiffness.mul_add(lateral, one);
+    let radius = (along * distance).min(node.clearance + pushed);
+    let (settled_u, settled_v) = (normal_u * radius, normal_v * radius);
+    let settled = LateralMotion {
+        u: L::select(somewhere, settled_u, u),
+        v: L::select(somewhere, settled_v, v),
+        u_rate: L::select(somewhere, speed.mul_add(settled_u - u, u_rate), u_rate),
+        v_rate: L::select(somewhere, speed.mul_add(settled_v - v, v_rate), v_rate),
+        theta_z_rate,
+    };
+    (settled, L::select(somewhere, stiffness * pushed, yielding.normal))
+}
+
+/// The largest part of the way across that friction is taken to push a node that [settles](settle).
+const MOST_ACROSS: f64 = 0.9;
+
+#[inline(always)]
+fn implicit_force<L: Lane>(
+    law: &ContactParameters<L>,
+    node: &ContactNode<L>,
+    motion: &LateralMotion<L>,
+    rotation_speed: L,
+    yielding: &Yielding<L>,
+) -> ContactForce<L> {
+    let Yielding { lateral, surface, speed, normal: normal_before, friction: friction_before, .. } =
+        *yielding;
     let normal = |normal: L, penetration: L| {
         let stiffness = law.stiffness(penetration) * node.stiffness_share;
         let slope = (law.damping(penetration) * node.damping_share).mul_add(speed, stiffness) * lateral;

@@ -488,14 +488,59 @@ fn an_implicit_force_agrees_with_the_motion_that_it_leads_to() {
     };
     let mut force = [0.0; 2];
     let mut yielding =
-        Yielding { lateral: compliance, surface: compliance, speed: rate, normal: 0.0, friction: 0.0 };
+        Yielding { lateral: compliance, surface: compliance, speed: rate, force, normal: 0.0, friction: 0.0 };
     for _ in 0..2 {
         let contact = implicit_contact(&parameters, &NODE, &motion(force), 0.0, &yielding);
         force = [contact.force_u, contact.force_v];
-        (yielding.normal, yielding.friction) = (contact.normal, contact.friction);
+        (yielding.force, yielding.normal, yielding.friction) = (force, contact.normal, contact.friction);
     }
     let exact = dynamic_contact(&parameters, &NODE, &motion(force), 0.0);
     assert!(exact.normal > 100.0 && exact.friction > 1.0, "{exact:?}");
     assert!((exact.force_u / force[0] - 1.0).abs() < 1e-6, "{exact:?} against {force:?}");
     assert!((exact.force_v / force[1] - 1.0).abs() < 1e-6, "{exact:?} against {force:?}");
+}
+
+/// The same of a node that its own force turns about the axis: with next to no clearance the wall holds it sideways as stiffly as outwards,
+/// so that a force of the right size in the direction of the last sweep would throw it across.
+#[test]
+fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
+    let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
+    let parameters = parameters(&law);
+    let (compliance, rate) = (2e-8, 4e3);
+    for clearance in [1e-9, 1e-7] {
+        let node = ContactNode { clearance, ..NODE };
+        // Where it would be without the wall, from where its velocity is the rate times what moves it, and how its surface slides.
+        let free = [3e-5, -4e-5];
+        let motion = |force: [f64; 2]| LateralMotion {
+            u: free[0] + compliance * force[0],
+            v: free[1] + compliance * force[1],
+            u_rate: rate * compliance * force[0],
+            v_rate: rate * compliance * force[1],
+            theta_z_rate: 0.0,
+        };
+        let mut force = [-2000.0, 0.0];
+        let mut yielding = Yielding {
+            lateral: compliance,
+            surface: compliance,
+            speed: rate,
+            force,
+            normal: 2000.0,
+            friction: 0.0,
+        };
+        let mut sweep = || {
+            let contact = implicit_contact(&parameters, &node, &motion(force), 12.6, &yielding);
+            force = [contact.force_u, contact.force_v];
+            (yielding.force, yielding.normal, yielding.friction) = (force, contact.normal, contact.friction);
+            force
+        };
+        // Friction turns with the direction, which the next sweep knows: what is left falls by mu a sweep.
+        let swept = [sweep(), sweep(), sweep(), sweep(), sweep(), sweep()];
+        let exact = dynamic_contact(&parameters, &node, &motion(swept[5]), 12.6);
+        let size = exact.force_u.hypot(exact.force_v);
+        let off = |force: [f64; 2]| (force[0] - swept[5][0]).hypot(force[1] - swept[5][1]) / size;
+        assert!(exact.normal > 1000.0, "{exact:?}");
+        let left = (exact.force_u - swept[5][0]).hypot(exact.force_v - swept[5][1]) / size;
+        assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {swept:?}");
+        assert!(off(swept[1]) < 0.1, "two sweeps: {swept:?}");
+    }
 }

@@ -241,6 +241,7 @@ impl<const D: usize> Forces<D> {
                 lateral,
                 surface,
                 speed: Four::splat(speed),
+                force: before.force,
                 normal: before.normal_force,
                 friction: before.friction,
             };

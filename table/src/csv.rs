@@ -1,7 +1,10 @@
 //! Tables as comma-separated values (RFC 4180).
 
 use std::fmt::Write as _;
+use std::io::Write;
 
+use crate::parquet::TableError;
+use crate::source::Source;
 use crate::table::{Column, Table};
 
 /// One line a row, after a line of column names; a missing value is empty. Numbers have the fewest digits that give the same number
@@ -9,9 +12,30 @@ use crate::table::{Column, Table};
 ///
 /// # Errors
 /// When the columns differ in length.
-pub fn write(table: &Table) -> Result<String, ::csv::Error> {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(table.columns.keys())?;
+pub fn write(table: &Table) -> Result<String, TableError> {
+    let mut bytes = Vec::new();
+    write_to(table, &mut bytes)?;
+    String::from_utf8(bytes).map_err(|error| std::io::Error::other(error).into())
+}
+
+/// The same to a sink; it holds one piece of some rows in memory.
+///
+/// # Errors
+/// When a piece cannot be read, the columns differ in length, or the sink fails.
+pub fn write_to(source: &impl Source, sink: impl Write) -> Result<(), TableError> {
+    let mut writer = ::csv::Writer::from_writer(sink);
+    writer.write_record(source.layout().columns.keys()).map_err(failed)?;
+    for piece in source.by_rows() {
+        write_rows(&mut writer, piece?.as_ref()).map_err(failed)?;
+    }
+    Ok(writer.flush()?)
+}
+
+fn failed(error: ::csv::Error) -> TableError {
+    TableError::Sink(error.into())
+}
+
+fn write_rows(writer: &mut ::csv::Writer<impl Write>, table: &Table) -> Result<(), ::csv::Error> {
     let mut number = String::new();
     for row in 0..table.rows() {
         for column in table.columns.values() {
@@ -38,8 +62,7 @@ pub fn write(table: &Table) -> Result<String, ::csv::Error> {
         }
         writer.write_record(None::<&[u8]>)?;
     }
-    let bytes = writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
-    String::from_utf8(bytes).map_err(|error| std::io::Error::other(error).into())
+    Ok(())
 }
 
 fn put(text: &mut String, value: f64) {

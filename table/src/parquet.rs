@@ -5,17 +5,19 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use ::parquet::basic::{Compression, ConvertedType, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
-use ::parquet::column::reader::ColumnReader;
 use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::metadata::KeyValue;
 use ::parquet::file::properties::WriterProperties;
-use ::parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use ::parquet::schema::types::{ColumnPath, Type};
-use bytes::Bytes;
 
+use crate::source::Source;
 use crate::table::{Column, Table};
+
+mod read;
+
+pub use read::{Cut, ReadAt, StoredTable, read};
 
 /// Rows of a row group at most.
 const ROW_GROUP: usize = 10_000;
@@ -32,6 +34,9 @@ pub enum TableError {
     /// The bytes are not what this program writes, or cannot be encoded.
     #[error("parquet: {0}")]
     Parquet(#[from] ParquetError),
+    /// What it is written to does not take it.
+    #[error("the table cannot be written: {0}")]
+    Sink(#[from] std::io::Error),
     /// Columns of different length.
     #[error("column {name:?} has {rows} rows, the first one {expected}")]
     Ragged {
@@ -59,9 +64,21 @@ pub enum TableError {
 /// # Errors
 /// When the columns differ in length.
 pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
-    let mut writer = Writer::new(Vec::new(), table)?;
-    writer.write(table)?;
-    writer.finish()
+    let mut bytes = Vec::new();
+    write_to(table, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// The same to a sink, from pieces of some rows; it holds one of them and a row group in memory.
+///
+/// # Errors
+/// When a piece cannot be read, the columns differ in length, or the sink fails.
+pub fn write_to(source: &impl Source, sink: impl Write + Send) -> Result<(), TableError> {
+    let mut writer = Writer::new(sink, source.layout())?;
+    for piece in source.by_rows() {
+        writer.write(piece?.as_ref())?;
+    }
+    writer.finish().map(drop)
 }
 
 /// Writes a table piece by piece, as [`write()`] writes it in one; it holds one row group in memory, whatever the length of the table.
@@ -225,102 +242,6 @@ fn write_group<W: Write + Send>(
             _ => return Err(TableError::OtherColumns),
         }
         writer.close()?;
-    }
-    Ok(())
-}
-
-/// Names of the columns of a Parquet table, without reading them.
-///
-/// # Errors
-/// When the bytes are not Parquet.
-pub fn column_names(bytes: Bytes) -> Result<Vec<String>, TableError> {
-    let reader = SerializedFileReader::new(bytes)?;
-    let schema = reader.metadata().file_metadata().schema_descr();
-    Ok(schema.columns().iter().map(|column| column.name().to_owned()).collect())
-}
-
-/// Reads a Parquet table: some columns or all, some rows or all. Rows beyond the end are left out. Units are those that were written,
-/// or where none were those of the vocabulary.
-///
-/// # Errors
-/// When the bytes are not a table that [`write()`] writes.
-pub fn read(bytes: Bytes, columns: Option<&[&str]>, rows: Option<Range<usize>>) -> Result<Table, TableError> {
-    let wanted = rows.unwrap_or(0..usize::MAX);
-    let reader = SerializedFileReader::new(bytes)?;
-    let metadata = reader.metadata().file_metadata();
-    let units = metadata.key_value_metadata();
-    let unit = |name: &str| {
-        let key = format!("{UNIT_PREFIX}{name}");
-        units?.iter().find(|entry| entry.key == key)?.value.clone()
-    };
-    let mut table = Table::default();
-    for (index, descriptor) in metadata.schema_descr().columns().iter().enumerate() {
-        let name = descriptor.name();
-        if columns.is_some_and(|columns| !columns.contains(&name)) {
-            continue;
-        }
-        let mut column = match descriptor.physical_type() {
-            PhysicalType::DOUBLE => Column::Number(Vec::new()),
-            PhysicalType::FLOAT => Column::Single(Vec::new()),
-            PhysicalType::INT64 => Column::Integer(Vec::new()),
-            PhysicalType::BYTE_ARRAY => Column::Text(Vec::new()),
-            _ => return Err(TableError::UnknownType(name.to_owned())),
-        };
-        let mut start = 0;
-        for group in 0..reader.num_row_groups() {
-            let group = reader.get_row_group(group)?;
-            let group_rows = group.metadata().num_rows().unsigned_abs() as usize;
-            let from = wanted.start.clamp(start, start + group_rows) - start;
-            let to = wanted.end.clamp(start, start + group_rows) - start;
-            if from < to {
-                read_column(group.as_ref(), index, name, from..to, &mut column)?;
-            }
-            start += group_rows;
-        }
-        table.push(name, column);
-        if let Some(unit) = unit(name) {
-            table.units.insert(name.to_owned(), unit);
-        }
-    }
-    Ok(table)
-}
-
-fn read_column(
-    group: &dyn RowGroupReader,
-    index: usize,
-    name: &str,
-    rows: Range<usize>,
-    column: &mut Column,
-) -> Result<(), TableError> {
-    macro_rules! read {
-        ($reader:expr, $values:expr, $convert:expr) => {{
-            let mut reader = $reader;
-            reader.skip_records(rows.start)?;
-            let mut values = Vec::with_capacity(rows.len());
-            reader.read_records(rows.len(), None, None, &mut values)?;
-            for value in values {
-                $values.push($convert(value)?);
-            }
-        }};
-    }
-    match (group.get_column_reader(index)?, column) {
-        (ColumnReader::DoubleColumnReader(reader), Column::Number(values)) => {
-            read!(reader, values, Ok::<f64, TableError>);
-        }
-        (ColumnReader::FloatColumnReader(reader), Column::Single(values)) => {
-            read!(reader, values, Ok::<f32, TableError>);
-        }
-        (ColumnReader::Int64ColumnReader(reader), Column::Integer(values)) => {
-            read!(reader, values, |value| Ok::<_, TableError>(Some(value)));
-        }
-        (ColumnReader::ByteArrayColumnReader(reader), Column::Text(values)) => {
-            let text = |bytes: ByteArray| match bytes.as_utf8() {
-                Ok(text) => Ok(Some(text.to_owned())),
-                Err(_) => Err(TableError::NotUtf8(name.to_owned())),
-            };
-            read!(reader, values, text);
-        }
-        _ => return Err(TableError::UnknownType(name.to_owned())),
     }
     Ok(())
 }

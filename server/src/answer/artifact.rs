@@ -10,7 +10,7 @@ use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{PHYSICS_VERSION, PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::Hole;
 use drillsweep_store::{Artifact, BlobId, Repair, Store, WorkKey};
-use drillsweep_table::parquet::{self, TableError, column_names};
+use drillsweep_table::parquet::{self, StoredTable, TableError};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, tables};
 use drillsweep_table::{Column, Quantity, Table};
@@ -248,7 +248,7 @@ impl Recording {
 
     /// The recording of one node.
     pub(crate) fn table_of(&self, choice: Choice) -> Result<Table> {
-        let columns = column_names(self.history.clone())?;
+        let columns = self.columns()?;
         let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
         let is_wanted = |name: &&str| {
             Name::parse(name).is_some_and(|name| match name.node {
@@ -262,7 +262,7 @@ impl Recording {
 
     /// The lateral motion of one node.
     pub(crate) fn motion_of(&self, choice: Choice) -> Result<NodeMotion> {
-        let columns = column_names(self.history.clone())?;
+        let columns = self.columns()?;
         let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
         let (u, v) = (U.at_node(node as usize), V.at_node(node as usize));
         let mut table = decode(self.history.clone(), Some(&[TIME.name, &u, &v]))?;
@@ -297,6 +297,11 @@ impl Recording {
             clearance: value(&CLEARANCE, row),
             low_side: value(&LOW_SIDE_ANGLE, row).filter(|_| is_inclined),
         })
+    }
+
+    /// Names of the columns of the history.
+    fn columns(&self) -> Result<Vec<String>> {
+        Ok(StoredTable::open(self.history.clone())?.layout().columns.keys().cloned().collect())
     }
 
     /// The recorded nodes.

@@ -5,7 +5,7 @@ use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
-use drillsweep_table::{Table, csv, npz, parquet};
+use drillsweep_table::{Table, csv, json, npz, parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
@@ -204,14 +204,15 @@ pub(crate) fn respond_or_draw(
             &selected
         }
     };
-    let body = match format {
-        Format::Json => serde_json::to_vec(table).map_err(|error| Error::internal(&error))?,
-        Format::Csv => csv::write(table).map_err(|error| Error::internal(&error))?.into_bytes(),
-        Format::Parquet => parquet::write(table)?,
-        Format::Npz => npz::write(table).map_err(|error| Error::internal(&error))?,
-        Format::Svg => draw(table)?.svg().into_bytes(),
-        Format::Png => draw(table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
-    };
+    let mut body = Vec::new();
+    match format {
+        Format::Json => json::write_to(table, &mut body)?,
+        Format::Csv => csv::write_to(table, &mut body)?,
+        Format::Parquet => parquet::write_to(table, &mut body)?,
+        Format::Npz => npz::write_to(table, &mut body)?,
+        Format::Svg => body = draw(table)?.svg().into_bytes(),
+        Format::Png => body = draw(table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
+    }
     Ok(file(body, format, name))
 }
 

@@ -1,0 +1,377 @@
+//! Reading Parquet tables: only the row groups and columns that are asked for, from wherever the bytes are.
+
+use std::borrow::Cow;
+use std::io;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::parquet::basic::Type as PhysicalType;
+use ::parquet::column::reader::ColumnReader;
+use ::parquet::data_type::ByteArray;
+use ::parquet::errors::ParquetError;
+use ::parquet::file::metadata::ParquetStatisticsPolicy;
+use ::parquet::file::reader::{ChunkReader, FileReader, Length, RowGroupReader, SerializedFileReader};
+use ::parquet::file::serialized_reader::ReadOptionsBuilder;
+use bytes::Bytes;
+
+use super::{ROW_GROUP_BYTES, TableError, UNIT_PREFIX};
+use crate::source::Source;
+use crate::table::{Column, Table};
+
+/// Bytes that are read at once, from a multiple of them on.
+const BLOCK: u64 = 256 << 10;
+
+/// A file of which any part can be read.
+pub trait ReadAt: Send + Sync + 'static {
+    /// Length of the file \[bytes\].
+    fn length(&self) -> u64;
+
+    /// The bytes of a range that lies in the file.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    fn read_at(&self, range: Range<u64>) -> io::Result<Bytes>;
+}
+
+impl ReadAt for Bytes {
+    fn length(&self) -> u64 {
+        self.len() as u64
+    }
+
+    fn read_at(&self, range: Range<u64>) -> io::Result<Bytes> {
+        let place = |at: u64| usize::try_from(at).ok().filter(|at| *at <= self.len());
+        let (start, end) = place(range.start).zip(place(range.end)).ok_or(io::ErrorKind::UnexpectedEof)?;
+        Ok(self.slice(start..end))
+    }
+}
+
+/// A table in a Parquet file that [`write()`](super::write()) or a [`Writer`](super::Writer) has written. Of the file its footer is in
+/// memory, nothing else.
+pub struct StoredTable<R: ReadAt> {
+    reader: SerializedFileReader<Blocks<R>>,
+    layout: Table,
+    /// Where each row group begins, and where the last one ends \[rows\].
+    bounds: Vec<usize>,
+}
+
+impl<R: ReadAt> StoredTable<R> {
+    /// Reads the footer.
+    ///
+    /// # Errors
+    /// When the bytes are not such a table.
+    pub fn open(source: R) -> Result<Self, TableError> {
+        // Nobody asks for statistics, which take more memory than all else in a footer.
+        let options = ReadOptionsBuilder::new()
+            .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
+            .with_encoding_stats_policy(ParquetStatisticsPolicy::SkipAll)
+            .with_size_stats_policy(ParquetStatisticsPolicy::SkipAll)
+            .build();
+        let reader = SerializedFileReader::new_with_options(Blocks::of(source), options)?;
+        let metadata = reader.metadata().file_metadata();
+        let mut layout = Table::default();
+        for descriptor in metadata.schema_descr().columns() {
+            let name = descriptor.name();
+            let column = match descriptor.physical_type() {
+                PhysicalType::DOUBLE => Column::Number(Vec::new()),
+                PhysicalType::FLOAT => Column::Single(Vec::new()),
+                PhysicalType::INT64 => Column::Integer(Vec::new()),
+                PhysicalType::BYTE_ARRAY => Column::Text(Vec::new()),
+                _ => return Err(TableError::UnknownType(name.to_owned())),
+            };
+            layout.push(name, column);
+        }
+        // Units are those that were written, or where none were those of the vocabulary.
+        for entry in metadata.key_value_metadata().into_iter().flatten() {
+            if let (Some(name), Some(unit)) = (entry.key.strip_prefix(UNIT_PREFIX), &entry.value)
+                && layout.columns.contains_key(name)
+            {
+                layout.units.insert(name.to_owned(), unit.clone());
+            }
+        }
+        let mut bounds = vec![0];
+        let mut end = 0;
+        for group in reader.metadata().row_groups() {
+            end += group.num_rows().unsigned_abs() as usize;
+            bounds.push(end);
+        }
+        Ok(Self { reader, layout, bounds })
+    }
+
+    /// The columns with types and units, without a row.
+    pub fn layout(&self) -> &Table {
+        &self.layout
+    }
+
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.bounds.last().copied().unwrap_or_default()
+    }
+
+    /// Some columns of some rows, in the order of the file. Columns that there are not, and rows beyond the end, are left out.
+    ///
+    /// # Errors
+    /// When the bytes cannot be read or are not such a table.
+    pub fn read(&self, columns: &[&str], rows: Range<usize>) -> Result<Table, TableError> {
+        let mut table = self.layout.clone();
+        table.columns.retain(|name, _| columns.contains(&name.as_str()));
+        table.units.retain(|name, _| columns.contains(&name.as_str()));
+        self.fill(&mut table, rows, 1)?;
+        Ok(table)
+    }
+
+    /// The part with the columns, units and attributes of `layout`, which has columns of this table without rows, in any order; of
+    /// `rows` every `stride`-th from the first on.
+    ///
+    /// # Errors
+    /// When a column is none of this table's.
+    pub fn cut(self, layout: Table, rows: Range<usize>, stride: usize) -> Result<Cut<R>, TableError> {
+        for (name, column) in &layout.columns {
+            let own = self.layout.columns.get(name).map(std::mem::discriminant);
+            if own != Some(std::mem::discriminant(column)) || !column.is_empty() {
+                return Err(TableError::OtherColumns);
+            }
+        }
+        let end = rows.end.min(self.rows());
+        Ok(Cut { rows: rows.start.min(end)..end, stride: stride.max(1), layout, stored: self })
+    }
+
+    /// Adds to the columns of `table`, which are columns of this one, every `stride`-th of some rows.
+    fn fill(&self, table: &mut Table, rows: Range<usize>, stride: usize) -> Result<(), TableError> {
+        let mut columns = Vec::with_capacity(table.columns.len());
+        for (name, column) in &mut table.columns {
+            let index = self.layout.columns.get_index_of(name).ok_or(TableError::OtherColumns)?;
+            columns.push((index, name.as_str(), column));
+        }
+        for (number, bounds) in self.bounds.windows(2).enumerate() {
+            let Some(first) = first_in(&rows, stride, bounds[0]) else { break };
+            let within = first..rows.end.min(bounds[1]);
+            if within.is_empty() {
+                continue;
+            }
+            let group = self.reader.get_row_group(number)?;
+            let within = within.start - bounds[0]..within.end - bounds[0];
+            for (index, name, column) in &mut columns {
+                read_column(group.as_ref(), *index, name, within.clone(), stride, column)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first of every `stride`-th of some rows that is not before `bound`.
+fn first_in(rows: &Range<usize>, stride: usize, bound: usize) -> Option<usize> {
+    let first = rows.start + bound.saturating_sub(rows.start).div_ceil(stride) * stride;
+    (first < rows.end).then_some(first)
+}
+
+/// A part of a stored table.
+pub struct Cut<R: ReadAt> {
+    stored: StoredTable<R>,
+    layout: Table,
+    rows: Range<usize>,
+    stride: usize,
+}
+
+impl<R: ReadAt> Cut<R> {
+    /// The part as a table in memory.
+    ///
+    /// # Errors
+    /// When the bytes cannot be read or are not such a table.
+    pub fn read(&self) -> Result<Table, TableError> {
+        let mut table = self.layout.clone();
+        self.stored.fill(&mut table, self.rows.clone(), self.stride)?;
+        Ok(table)
+    }
+
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows.len().div_ceil(self.stride)
+    }
+
+    /// Rows of the stored table that make the next piece after `start`: of one row group, and of bounded bytes.
+    fn piece_from(&self, start: usize) -> Option<Range<usize>> {
+        if start >= self.rows.end {
+            return None;
+        }
+        let bounds = &self.stored.bounds;
+        let group_end = bounds[bounds.partition_point(|bound| *bound <= start)];
+        let width: usize = self.layout.columns.values().map(width).sum();
+        let most = (ROW_GROUP_BYTES / width.max(1)).max(1).saturating_mul(self.stride);
+        Some(start..start.saturating_add(most).min(group_end).min(self.rows.end))
+    }
+}
+
+impl<R: ReadAt> Source for Cut<R> {
+    fn layout(&self) -> &Table {
+        &self.layout
+    }
+
+    fn by_rows(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>> {
+        let mut next = self.rows.start;
+        std::iter::from_fn(move || {
+            let piece = self.piece_from(next)?;
+            next = first_in(&self.rows, self.stride, piece.end).unwrap_or(self.rows.end);
+            let mut table = self.layout.clone();
+            Some(self.stored.fill(&mut table, piece, self.stride).map(|()| Cow::Owned(table)))
+        })
+    }
+
+    fn by_columns(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>> {
+        let columns: Vec<(&String, &Column)> = self.layout.columns.iter().collect();
+        let mut next = 0;
+        std::iter::from_fn(move || {
+            let mut bytes = 0;
+            let fits = |(_, column): &&(&String, &Column)| {
+                bytes += self.rows() * width(column);
+                bytes <= ROW_GROUP_BYTES
+            };
+            let count = columns[next..].iter().take_while(fits).count().max(1);
+            let piece = columns.get(next..(next + count).min(columns.len()))?;
+            next += piece.len();
+            if piece.is_empty() {
+                return None;
+            }
+            let own = piece.iter().map(|&(name, column)| (name.clone(), column.clone()));
+            let mut table = Table { columns: own.collect(), ..Table::default() };
+            Some(self.stored.fill(&mut table, self.rows.clone(), self.stride).map(|()| Cow::Owned(table)))
+        })
+    }
+}
+
+/// A file, read in blocks; the last one is kept, since what is read next mostly lies in it.
+struct Blocks<R>(Arc<Inner<R>>);
+
+struct Inner<R> {
+    file: R,
+    last: Mutex<Option<(u64, Bytes)>>,
+}
+
+impl<R> Clone for Blocks<R> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<R: ReadAt> Blocks<R> {
+    fn of(file: R) -> Self {
+        Self(Arc::new(Inner { file, last: Mutex::default() }))
+    }
+
+    /// What follows on a place, to the end of its block; nothing at the end of the file.
+    fn from(&self, start: u64) -> io::Result<Bytes> {
+        let length = self.0.file.length();
+        if start >= length {
+            return Ok(Bytes::new());
+        }
+        let first = start / BLOCK * BLOCK;
+        let within = usize::try_from(start - first).map_err(io::Error::other)?;
+        let mut last = self.0.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, block)) = last.as_ref().filter(|(place, _)| *place == first) {
+            return Ok(block.slice(within..));
+        }
+        *last = None;
+        let block = self.0.file.read_at(first..length.min(first + BLOCK))?;
+        *last = Some((first, block.clone()));
+        Ok(block.slice(within..))
+    }
+}
+
+impl<R: ReadAt> Length for Blocks<R> {
+    fn len(&self) -> u64 {
+        self.0.file.length()
+    }
+}
+
+impl<R: ReadAt> ChunkReader for Blocks<R> {
+    type T = BlockReader<R>;
+
+    fn get_read(&self, start: u64) -> Result<BlockReader<R>, ParquetError> {
+        Ok(BlockReader { blocks: self.clone(), position: start })
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes, ParquetError> {
+        let end = start.checked_add(length as u64).filter(|end| *end <= self.len());
+        let end =
+            end.ok_or_else(|| ParquetError::EOF(format!("the file has no {length} bytes at {start}")))?;
+        Ok(self.0.file.read_at(start..end)?)
+    }
+}
+
+/// Reads on from a place.
+struct BlockReader<R> {
+    blocks: Blocks<R>,
+    position: u64,
+}
+
+impl<R: ReadAt> io::Read for BlockReader<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let bytes = self.blocks.from(self.position)?;
+        let count = bytes.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&bytes[..count]);
+        self.position += count as u64;
+        Ok(count)
+    }
+}
+
+/// Bytes of a value in memory; of a text, without the text itself.
+fn width(column: &Column) -> usize {
+    match column {
+        Column::Single(_) => size_of::<f32>(),
+        Column::Number(_) => size_of::<f64>(),
+        Column::Integer(_) => size_of::<Option<i64>>(),
+        Column::Text(_) => size_of::<Option<String>>(),
+    }
+}
+
+/// Reads a Parquet table: some columns or all, some rows or all. Rows beyond the end are left out. Units are those that were written,
+/// or where none were those of the vocabulary.
+///
+/// # Errors
+/// When the bytes are not a table that [`write()`](super::write()) writes.
+pub fn read(bytes: Bytes, columns: Option<&[&str]>, rows: Option<Range<usize>>) -> Result<Table, TableError> {
+    let stored = StoredTable::open(bytes)?;
+    let all: Vec<&str> = stored.layout.columns.keys().map(String::as_str).collect();
+    stored.read(columns.unwrap_or(&all), rows.unwrap_or(0..usize::MAX))
+}
+
+/// Adds every `stride`-th of some rows of a row group to a column.
+fn read_column(
+    group: &dyn RowGroupReader,
+    index: usize,
+    name: &str,
+    rows: Range<usize>,
+    stride: usize,
+    column: &mut Column,
+) -> Result<(), TableError> {
+    macro_rules! read {
+        ($reader:expr, $values:expr, $convert:expr) => {{
+            let mut reader = $reader;
+            reader.skip_records(rows.start)?;
+            let mut values = Vec::with_capacity(rows.len());
+            reader.read_records(rows.len(), None, None, &mut values)?;
+            for value in values.into_iter().step_by(stride) {
+                $values.push($convert(value)?);
+            }
+        }};
+    }
+    match (group.get_column_reader(index)?, column) {
+        (ColumnReader::DoubleColumnReader(reader), Column::Number(values)) => {
+            read!(reader, values, Ok::<f64, TableError>);
+        }
+        (ColumnReader::FloatColumnReader(reader), Column::Single(values)) => {
+            read!(reader, values, Ok::<f32, TableError>);
+        }
+        (ColumnReader::Int64ColumnReader(reader), Column::Integer(values)) => {
+            read!(reader, values, |value| Ok::<_, TableError>(Some(value)));
+        }
+        (ColumnReader::ByteArrayColumnReader(reader), Column::Text(values)) => {
+            let text = |bytes: ByteArray| match bytes.as_utf8() {
+                Ok(text) => Ok(Some(text.to_owned())),
+                Err(_) => Err(TableError::NotUtf8(name.to_owned())),
+            };
+            read!(reader, values, text);
+        }
+        _ => return Err(TableError::UnknownType(name.to_owned())),
+    }
+    Ok(())
+}

@@ -1,0 +1,34 @@
+//! Where a table comes from that is written piece by piece, so that it need not be in memory as a whole.
+
+use std::borrow::Cow;
+use std::iter::once;
+
+use crate::parquet::TableError;
+use crate::table::Table;
+
+/// A table in pieces: what a format is written from.
+pub trait Source {
+    /// The columns in their order with types and units, and the attributes. It may have rows: all of them.
+    fn layout(&self) -> &Table;
+
+    /// All columns, in pieces of some rows, in their order.
+    fn by_rows(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>>;
+
+    /// All rows, in pieces of some columns, in their order.
+    fn by_columns(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>>;
+}
+
+/// One piece.
+impl Source for Table {
+    fn layout(&self) -> &Table {
+        self
+    }
+
+    fn by_rows(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>> {
+        once(Ok(Cow::Borrowed(self)))
+    }
+
+    fn by_columns(&self) -> impl Iterator<Item = Result<Cow<'_, Table>, TableError>> {
+        once(Ok(Cow::Borrowed(self)))
+    }
+}

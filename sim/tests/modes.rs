@@ -435,8 +435,8 @@ fn a_rod_of_two_materials_has_the_modes_of_a_stepped_rod() {
     let found = modes_to(&scenario, 40.0);
     let shear = |material: &Material| material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
     let young = |material: &Material| material.youngs_modulus;
-    let kinds: [(ModeKind, &dyn Fn(&Material) -> f64); 2] =
-        [(ModeKind::Axial, &young), (ModeKind::Torsional, &shear)];
+    type Modulus<'a> = &'a dyn Fn(&Material) -> f64;
+    let kinds: [(ModeKind, Modulus<'_>); 2] = [(ModeKind::Axial, &young), (ModeKind::Torsional, &shear)];
     for (kind, modulus) in kinds {
         let [upper, lower] = [(90.0, steel), (110.0, aluminium)].map(|(length, material)| {
             let speed = (modulus(&material) / material.density).sqrt();

@@ -28,9 +28,9 @@ use crate::listen::InReserve;
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// Wraps the routes: request ids, spans, metrics, compression, types that are not guessed, copies that are still right, problem documents,
-/// overlong requests, panics, refusal of other sites' pages, tokens and rates, body limit; in this order from the outside.
+/// encodings that nobody offers, overlong requests, panics, refusal of other sites' pages, tokens and rates, body limit; in this order from the outside.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
-    let compressible =
+    let worthwhile =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
     routes.layer(
         ServiceBuilder::new()
@@ -38,10 +38,15 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(TraceLayer::new_for_http().make_span_with(span).on_request(()).on_response(log_response))
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
             .layer(from_fn_with_state(app.clone(), measure::measure))
-            .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compressible))
+            .layer(
+                CompressionLayer::new()
+                    .quality(CompressionLevel::Fastest)
+                    .compress_when(Worthwhile(worthwhile)),
+            )
             .layer(from_fn(forbid_guessing))
             .layer(from_fn(tell_unchanged))
             .layer(from_fn(write_problems))
+            .layer(from_fn(agree_on_encoding))
             .layer(from_fn(refuse_long_requests))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
@@ -86,6 +91,54 @@ async fn forbid_guessing(request: Request, next: Next) -> Response<Body> {
     let mut response = next.run(request).await;
     response.headers_mut().insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
     response
+}
+
+/// Marks answers to clients that refuse what is not encoded.
+#[derive(Clone, Copy)]
+struct MustBeEncoded;
+
+/// Which answers are compressed: those that it pays for, and those that must be encoded.
+#[derive(Clone, Copy)]
+struct Worthwhile<P>(P);
+
+impl<P: Predicate> Predicate for Worthwhile<P> {
+    fn should_compress<B: axum::body::HttpBody>(&self, response: &Response<B>) -> bool {
+        response.extensions().get::<MustBeEncoded>().is_some() || self.0.should_compress(response)
+    }
+}
+
+/// Refuses requests that exclude both gzip and an answer without any encoding (RFC 9110 section 12.5.3), before anything is done for
+/// them, and sees that those that exclude only the latter get no part of an answer, since parts are not encoded.
+async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
+    let fields = request.headers().get_all(header::ACCEPT_ENCODING);
+    let accepted: Vec<&str> = fields.iter().filter_map(|value| value.to_str().ok()).collect();
+    let accepted = accepted.join(",");
+    let any = accepts(&accepted, &["*"]);
+    if accepts(&accepted, &["identity"]).or(any).unwrap_or(true) {
+        return next.run(request).await;
+    }
+    if !accepts(&accepted, &["gzip", "x-gzip"]).or(any).unwrap_or(false) {
+        let detail = format!(
+            "answers are encoded as gzip or not at all (identity), not as Accept-Encoding wants: {accepted}"
+        );
+        return Error::new(ProblemKind::NotAcceptable, detail).into_response();
+    }
+    request.headers_mut().remove(header::RANGE);
+    let mut response = next.run(request).await;
+    response.extensions_mut().insert(MustBeEncoded);
+    response
+}
+
+/// Whether an `Accept-Encoding` header accepts an encoding of one of these names; none where it names none of them.
+fn accepts(header: &str, names: &[&str]) -> Option<bool> {
+    header.split(',').find_map(|entry| {
+        let mut parts = entry.split(';').map(str::trim);
+        let name = parts.next()?;
+        names.iter().any(|wanted| wanted.eq_ignore_ascii_case(name)).then(|| {
+            let weight = parts.find_map(|part| part.strip_prefix("q=").or_else(|| part.strip_prefix("Q=")));
+            weight.and_then(|weight| weight.parse::<f64>().ok()).is_none_or(|weight| weight > 0.0)
+        })
+    })
 }
 
 /// Bytes of a request's target, and of its header fields together, at most: what other servers allow.

@@ -185,3 +185,34 @@ async fn pages_for_people_are_kept_to_themselves() {
     let policy = answer.headers["content-security-policy"].to_str().unwrap();
     assert!(policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"), "{policy}");
 }
+
+#[tokio::test]
+async fn who_refuses_unencoded_answers_gets_encoded_ones_or_is_refused_before_anything_is_done() {
+    let bench = Bench::new().await;
+    let ask = |method: &str, path: &str, accepted: &str| {
+        let request = Request::builder().method(method).uri(path).header(header::ACCEPT_ENCODING, accepted);
+        let request = request.header(header::CONTENT_TYPE, "application/json");
+        request.body(Body::from(if method == "POST" { r#"{"preset": "paper-200m"}"# } else { "" })).unwrap()
+    };
+    for accepted in ["identity;q=0", "*;q=0", "br, identity;q=0", "gzip;q=0, identity;q=0", "br, *;q=0.0"] {
+        let problem = bench.send(ask("POST", "/v1/sweeps", accepted)).await.problem(406, "not-acceptable");
+        assert!(problem["detail"].as_str().unwrap().contains("gzip"), "{problem}");
+    }
+    assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"], serde_json::json!([]));
+
+    // Too small to be worth compressing, and compressed all the same.
+    let plain = bench.send(ask("GET", "/v1/sweeps", "gzip")).await;
+    assert!(!plain.headers.contains_key(header::CONTENT_ENCODING));
+    for accepted in ["gzip, identity;q=0", "gzip;q=0.1, *;q=0", "identity;q=0, *", "X-GZIP, IDENTITY;q=0.000"]
+    {
+        for path in ["/v1/sweeps", "/v1/no-such-route"] {
+            let answer = bench.send(ask("GET", path, accepted)).await;
+            assert_eq!(answer.headers[header::CONTENT_ENCODING], "gzip", "{accepted} at {path}");
+            assert!(answer.body.starts_with(b"\x1f\x8b"), "{accepted} at {path}");
+        }
+    }
+    for accepted in ["", "identity", "br", "*;q=0, identity", "br;q=1, identity;q=0.001"] {
+        let answer = bench.send(ask("GET", "/v1/sweeps", accepted)).await;
+        assert_eq!(answer.body, plain.body, "{accepted}");
+    }
+}

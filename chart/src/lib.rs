@@ -9,8 +9,8 @@ pub mod picture;
 mod table;
 
 pub use cost::work_precision;
-pub use picture::{Drawing, PictureError};
-pub use table::{Hole, caption, history, orbit, profile, spectrum, sweep};
+pub use picture::{Drawing, PictureError, Spacing};
+pub use table::{Hole, Place, SweepView, caption, history, orbit, profile, spectrum, sweep};
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

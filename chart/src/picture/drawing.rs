@@ -1,5 +1,7 @@
 //! A laid-out picture: shapes on a page, in the order in which they are painted.
 
+use indexmap::IndexMap;
+
 use super::{PictureError, marker::Marker, png, svg, text::Text};
 
 /// A place on the page: from the left and from the top, in page units (CSS pixels).
@@ -39,6 +41,16 @@ impl Drawing {
     pub fn height(&self) -> f64 {
         self.height
     }
+
+    /// This picture with another below it, on one page as wide as the wider of them.
+    #[must_use]
+    pub(crate) fn above(mut self, mut below: Drawing) -> Drawing {
+        below.shapes.iter_mut().for_each(|shape| shape.move_down(self.height));
+        self.shapes.append(&mut below.shapes);
+        self.width = self.width.max(below.width);
+        self.height += below.height;
+        self
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -52,10 +64,54 @@ pub(super) enum Shape {
     Ground(Rectangle),
     Polyline(Vec<Position>, Stroke),
     Marker(Position, Marker, Colour),
+    Mosaic(Mosaic),
     Text(Text),
 }
 
+/// A rectangle in rows and columns of cells, for more cells than a picture should have rectangles: a line of the page each.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Mosaic {
+    pub(super) area: Rectangle,
+    /// Cells across and down.
+    pub(super) size: [usize; 2],
+    /// By colour the runs of cells: row from the top, first column, number of cells.
+    pub(super) runs: Vec<(Colour, Vec<[usize; 3]>)>,
+}
+
+impl Mosaic {
+    /// The mosaic of cells given row by row from the top; one without a colour stays empty.
+    pub(super) fn new(area: Rectangle, columns: usize, cells: &[Option<Colour>]) -> Self {
+        let mut runs: IndexMap<[u8; 3], Vec<[usize; 3]>> = IndexMap::new();
+        for (row, cells) in cells.chunks(columns.max(1)).enumerate() {
+            let mut start = 0;
+            for run in cells.chunk_by(|a, b| a == b) {
+                if let Some(Colour(red, green, blue)) = run[0] {
+                    runs.entry([red, green, blue]).or_default().push([row, start, run.len()]);
+                }
+                start += run.len();
+            }
+        }
+        let runs = runs.into_iter().map(|([red, green, blue], runs)| (Colour(red, green, blue), runs));
+        Self { area, size: [columns, cells.len() / columns.max(1)], runs: runs.collect() }
+    }
+}
+
 impl Shape {
+    fn move_down(&mut self, distance: f64) {
+        match self {
+            Self::Group(_, members) => members.iter_mut().for_each(|member| member.move_down(distance)),
+            Self::Rectangle(area, _)
+            | Self::Filled(area, _)
+            | Self::Ground(area)
+            | Self::Mosaic(Mosaic { area, .. }) => {
+                area.top += distance;
+                area.bottom += distance;
+            }
+            Self::Polyline(places, _) => places.iter_mut().for_each(|place| place[1] += distance),
+            Self::Marker(at, _, _) | Self::Text(Text { at, .. }) => at[1] += distance,
+        }
+    }
+
     pub(super) const GROUND_OPACITY: f32 = 0.8;
 }
 

@@ -21,11 +21,15 @@ const LABEL_SIZE: f64 = 11.5;
 const LABEL_WIDTH: f64 = 180.0;
 /// Columns of the page, each of which shows at most a first, a lowest, a highest and a last point of a line.
 const COLUMNS: usize = 900;
+/// The same over all lines of a plot: with more than 20 lines each has less than the page.
+const COLUMNS_OF_ALL: usize = 18_000;
+/// The most points of a line that has markers; of more, markers would cover each other and the line.
+const MOST_MARKERS: usize = 200;
 
 /// Lines over one axis, each value vertical over its place across; or, downwards, each value across at its depth.
 ///
 /// A point that is not finite breaks its line. Where a line has more points than the page has room for, the extremes
-/// of each column of the page stay. Without [`VerticalAxis::Depth`] the order of points is that of the axis across.
+/// of each column of the page stay, no gap that is thinner than a column does, and markers are left out. Without [`VerticalAxis::Depth`] the order of points is that of the axis across.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinePlot {
     /// The title; may be empty.
@@ -138,7 +142,11 @@ impl LinePlot {
         }
         let entry = |(index, line): (usize, &Line)| {
             let (colour, marker) = series_style(index);
-            Entry::line(line.name.clone(), colour, line.is_marked.then_some(marker))
+            Entry::line(
+                line.name.clone(),
+                colour,
+                (line.is_marked && line.points.len() <= MOST_MARKERS).then_some(marker),
+            )
         };
         self.lines.iter().enumerate().map(entry).chain(shade).collect()
     }
@@ -166,13 +174,19 @@ impl LinePlot {
         for (index, line) in self.lines.iter().enumerate() {
             let (colour, marker) = series_style(index);
             let mut members = Vec::new();
-            for piece in line.points.split(|point| !is_finite(point)).filter(|piece| !piece.is_empty()) {
-                let places: Vec<Position> = piece.iter().filter_map(position).collect();
-                let places = thinned(places, area, self.vertical == VerticalAxis::Depth);
+            let page = Columns {
+                is_downwards: self.vertical == VerticalAxis::Depth,
+                count: COLUMNS.min(COLUMNS_OF_ALL / self.lines.len()).max(1),
+                area,
+            };
+            for places in
+                page.pieces(line.points.iter().map(|point| position(point).filter(|_| is_finite(point))))
+            {
+                let places = page.thinned(places);
                 room.avoid(&places);
                 members.push(Shape::Polyline(places, Stroke::solid(colour, width)));
             }
-            if line.is_marked {
+            if line.is_marked && line.points.len() <= MOST_MARKERS {
                 let places = line.points.iter().filter_map(position);
                 members.extend(places.map(|at| Shape::Marker(at, marker, colour)));
             }
@@ -199,27 +213,71 @@ fn is_finite(point: &[f64; 2]) -> bool {
     point.iter().all(|coordinate| coordinate.is_finite())
 }
 
-/// The first, lowest, highest and last point of each column of the page; in rows of it for lines that run downwards.
-fn thinned(places: Vec<Position>, area: &Rectangle, is_downwards: bool) -> Vec<Position> {
-    if places.len() <= 4 * COLUMNS {
-        return places;
+/// The columns of a page that lines are drawn in; rows for lines that run downwards.
+struct Columns<'a> {
+    is_downwards: bool,
+    count: usize,
+    area: &'a Rectangle,
+}
+
+impl Columns<'_> {
+    /// The coordinates of a position along the columns and across them.
+    fn axes(&self) -> (usize, usize) {
+        if self.is_downwards { (1, 0) } else { (0, 1) }
     }
-    let (along, across, start, length) = match is_downwards {
-        true => (1, 0, area.top, area.height()),
-        false => (0, 1, area.left, area.width()),
-    };
-    let column = |place: &Position| ((place[along] - start) / length * COLUMNS as f64).floor() as i64;
-    let mut kept = Vec::new();
-    for run in places.chunk_by(|a, b| column(a) == column(b)) {
-        let by_value = |a: &usize, b: &usize| run[*a][across].total_cmp(&run[*b][across]);
-        let extremes = [(0..run.len()).min_by(by_value), (0..run.len()).max_by(by_value)];
-        let mut indices: Vec<usize> =
-            [Some(0), Some(run.len() - 1)].into_iter().chain(extremes).flatten().collect();
-        indices.sort_unstable();
-        indices.dedup();
-        kept.extend(indices.into_iter().map(|index| run[index]));
+
+    /// The width of a column.
+    fn width(&self) -> f64 {
+        let length = if self.is_downwards { self.area.height() } else { self.area.width() };
+        length / self.count as f64
     }
-    kept
+
+    /// The parts of a line that are whole; of a line with more points than the columns have room for, gaps within a column count as
+    /// none.
+    fn pieces(&self, places: impl ExactSizeIterator<Item = Option<Position>>) -> Vec<Vec<Position>> {
+        let (along, _) = self.axes();
+        let bridged = if places.len() > 4 * self.count { self.width() } else { 0.0 };
+        let mut pieces: Vec<Vec<Position>> = Vec::new();
+        let mut is_broken = true;
+        for place in places {
+            let Some(place) = place else {
+                is_broken = true;
+                continue;
+            };
+            match pieces.last_mut() {
+                Some(piece)
+                    if !is_broken
+                        || piece.last().is_some_and(|last| (place[along] - last[along]).abs() < bridged) =>
+                {
+                    piece.push(place);
+                }
+                _ => pieces.push(vec![place]),
+            }
+            is_broken = false;
+        }
+        pieces
+    }
+
+    /// The first, lowest, highest and last point of each column.
+    fn thinned(&self, places: Vec<Position>) -> Vec<Position> {
+        if places.len() <= 4 * self.count {
+            return places;
+        }
+        let (along, across) = self.axes();
+        let start = if self.is_downwards { self.area.top } else { self.area.left };
+        let column = |place: &Position| ((place[along] - start) / self.width()).floor() as i64;
+        let mut kept = Vec::new();
+        for run in places.chunk_by(|a, b| column(a) == column(b)) {
+            let by_value = |a: &usize, b: &usize| run[*a][across].total_cmp(&run[*b][across]);
+            let extremes = [(0..run.len()).min_by(by_value), (0..run.len()).max_by(by_value)];
+            let mut indices: Vec<usize> =
+                [Some(0), Some(run.len() - 1)].into_iter().chain(extremes).flatten().collect();
+            indices.sort_unstable();
+            indices.dedup();
+            kept.extend(indices.into_iter().map(|index| run[index]));
+        }
+        kept
+    }
 }
 
 fn place_label(room: &mut LabelRoom, at: Position, label: &str) -> Option<[Shape; 2]> {
@@ -283,6 +341,21 @@ mod tests {
         let time = |x: f64| 59.999 * (x - first[0]) / (last[0] - first[0]);
         assert!((time(top[0]) - 31.415).abs() < 0.1 && (time(bottom[0]) - 27.182).abs() < 0.1);
         assert!(!svg.contains("legend"), "one line without a name needs none");
+    }
+
+    #[test]
+    fn long_lines_many_lines_and_broken_lines_stay_below_a_megabyte() {
+        let value = |k: u32| (f64::from(k) * 0.37).sin();
+        let marked = Line { is_marked: true, ..line("", (0..100_000).map(|k| [f64::from(k), value(k)])) };
+        let broken = (0..100_000).map(|k| [f64::from(k), if k % 2 == 0 { value(k) } else { f64::NAN }]);
+        let many = (0..100).map(|n| line("u", (0..10_000).map(move |k| [f64::from(k), value(k + n)])));
+        for (which, lines) in [vec![marked], vec![line("", broken)], many.collect()].into_iter().enumerate() {
+            let size = LinePlot { lines, ..LinePlot::default() }.svg().len();
+            assert!(size < 1_000_000, "{which}: {size} bytes");
+        }
+        // What is wide enough to be seen stays a gap.
+        let gap = (0..100_000).map(|k| [f64::from(k), if k / 1000 == 50 { f64::NAN } else { value(k) }]);
+        assert_eq!(polylines(&LinePlot { lines: vec![line("", gap)], ..LinePlot::default() }.svg()).len(), 2);
     }
 
     #[test]

@@ -34,6 +34,15 @@ pub(super) fn series_style(index: usize) -> (Colour, Marker) {
     (PALETTE[index % PALETTE.len()], Marker::ALL[index % Marker::ALL.len()])
 }
 
+/// Colours of areas that differ in kind, at most: Okabe and Ito's whole palette.
+pub(super) const KINDS: usize = PALETTE.len() + 1;
+
+/// The colour of an area of this kind, below [`KINDS`].
+pub(super) fn kind_colour(kind: usize) -> Colour {
+    const YELLOW: Colour = Colour(0xf0, 0xe4, 0x42);
+    PALETTE.get(kind).copied().unwrap_or(YELLOW)
+}
+
 impl Marker {
     /// The distance from a marker's middle within which all of it lies, the white rim included.
     pub(super) const REACH: f64 = 7.0;

@@ -27,5 +27,5 @@ pub use drawing::Drawing;
 pub use line_plot::{Label, Line, LinePlot, Shade, VerticalAxis};
 pub use orbit::OrbitPlot;
 pub use png::PictureError;
-pub use sweep_map::{MapPoint, SweepMap};
+pub use sweep_map::{MapPoint, Spacing, SweepMap};
 pub use work_precision::{Point, Series, WantedAccuracy, WorkPrecisionChart};

@@ -1,9 +1,9 @@
 //! Drawings as SVG 1.1.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 use super::{
-    drawing::{Colour, Drawing, Position, Shape, Stroke},
+    drawing::{Colour, Drawing, Mosaic, Position, Shape, Stroke},
     marker::Marker,
     text::{Anchor, Weight},
 };
@@ -75,6 +75,7 @@ fn shapes(out: &mut String, all: &[Shape]) {
                     ),
                 }
             }
+            Shape::Mosaic(tiles) => mosaic(out, tiles),
             Shape::Text(text) => {
                 let [x, y] = text.at.map(number);
                 let anchor = match text.anchor {
@@ -93,6 +94,29 @@ fn shapes(out: &mut String, all: &[Shape]) {
             }
         };
     }
+}
+
+/// In units of cells, a line as wide as a row for each run: a few bytes each, since places count from the run before.
+fn mosaic(out: &mut String, Mosaic { area, size: [columns, rows], runs }: &Mosaic) -> fmt::Result {
+    let scale = [area.width() / *columns as f64, area.height() / *rows as f64];
+    writeln!(
+        out,
+        r#"<g class="mosaic" transform="translate({},{}) scale({},{})" fill="none" shape-rendering="crispEdges">"#,
+        number(area.left),
+        number(area.top),
+        scale[0],
+        scale[1]
+    )?;
+    for (colour, runs) in runs {
+        write!(out, r#"<path stroke="{}" d="M0,.5"#, hex(*colour))?;
+        let mut pen = [0i64; 2];
+        for [row, start, length] in runs.iter().map(|run| run.map(|value| value as i64)) {
+            write!(out, "m{},{}h{length}", start - pen[0], row - pen[1])?;
+            pen = [start + length, row];
+        }
+        writeln!(out, r#""/>"#)?;
+    }
+    writeln!(out, "</g>")
 }
 
 fn stroke_attributes(stroke: &Stroke) -> String {

@@ -8,7 +8,7 @@ use drillsweep_api::view::node::{self, Choice, Recorded};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{PHYSICS_VERSION, PointState, ProblemDetails, ProblemKind};
-use drillsweep_chart::Hole;
+use drillsweep_chart::{Hole, Place};
 use drillsweep_store::{Artifact, BlobId, Repair, Store, WorkKey};
 use drillsweep_table::parquet::{self, StoredTable, TableError};
 use drillsweep_table::quantity::columns::*;
@@ -302,6 +302,15 @@ impl Recording {
     /// Names of the columns of the history.
     fn columns(&self) -> Result<Vec<String>> {
         Ok(StoredTable::open(self.history.clone())?.layout().columns.keys().cloned().collect())
+    }
+
+    /// Where the recorded nodes lie.
+    pub(crate) fn places(&self) -> Result<Vec<Place>> {
+        let place = |recorded: Recorded| {
+            let Recorded { node, measured_depth, .. } = recorded;
+            Ok(Place { node, measured_depth, low_side: self.hole_at(node)?.low_side })
+        };
+        self.nodes(&self.columns()?)?.into_iter().map(place).collect()
     }
 
     /// The recorded nodes.

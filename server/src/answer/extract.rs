@@ -190,6 +190,23 @@ pub(crate) mod value {
         Ok(Some(text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()))
     }
 
+    /// Names with a finite number each, separated by commas: `flow_rate:0.01,mud_density:1200`.
+    pub(crate) fn assignments<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Vec<(String, f64)>>, D::Error> {
+        let assignment = |text: String| {
+            let (name, number) = text.rsplit_once(':')?;
+            let number: f64 = number.trim().parse().ok()?;
+            number.is_finite().then(|| (name.trim().to_owned(), number))
+        };
+        let assignments: Option<Vec<_>> =
+            names(deserializer)?.unwrap_or_default().into_iter().map(assignment).collect();
+        match assignments {
+            Some(assignments) => Ok(Some(assignments)),
+            None => Err(D::Error::custom("must be names with a number each, such as mud.density:1200")),
+        }
+    }
+
     /// `true` or `false`.
     pub(crate) fn truth<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
         let text = String::deserialize(deserializer)?;

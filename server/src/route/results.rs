@@ -218,7 +218,8 @@ impl HistoryQuery {
 
 /// The recorded motion of the recorded nodes
 ///
-/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...
+/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ... A picture shows u and v,
+/// where the string twists also the rate of twist of the lowest node, or the `fields`; the legend says at which depth and to which side.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/history",
@@ -256,8 +257,9 @@ pub(crate) async fn history(
             let max_points = query.max_points.map(|points| points as usize);
             let table = history::history(table, query.from, query.to, max_points);
             let fields = query.fields.as_deref();
+            let places = if format.is_picture() { recording.places()? } else { Vec::new() };
             format::respond_or_draw(&table, fields, format, &file_name, |table| {
-                chart::history(table, fields, &title)
+                chart::history(table, fields, &places, &title)
             })
         })
         .await

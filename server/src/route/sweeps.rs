@@ -27,13 +27,12 @@ use crate::answer::blocking::{blocking, to_the_end};
 use crate::answer::document::{Conditional, PictureResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
-use crate::answer::format::{self, Format};
+use crate::answer::format::{self, Format, PictureFormat};
 use crate::answer::records;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
-use crate::route::results::PictureQuery;
 use crate::route::status::WORKER_SILENCE;
 use crate::route::verification::Verified;
 
@@ -676,27 +675,73 @@ pub(crate) async fn append(
     Ok(Json(Sweep { warnings: expansion.warnings, ..load(&app, &id).await? }))
 }
 
+/// How the table of a sweep is served.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SweepTableQuery {
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<PictureFormat>,
+    /// Only these columns, separated by commas; of a picture, what it shows.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    fields: Option<Vec<String>>,
+    /// Of a map: how the values of its parameters are placed; absent means `even`.
+    #[param(inline)]
+    spacing: Option<MapSpacing>,
+    /// Of a picture: parameters that it holds, each with one of its values in the units of the table, separated by commas:
+    /// `mud.density:1200,operation.weight_on_bit:-50000`. Of the others a map is over the first two; further ones are held at the
+    /// first value that they have. The picture says at which.
+    #[serde(default, deserialize_with = "value::assignments")]
+    #[param(value_type = Option<String>)]
+    slice: Option<Vec<(String, f64)>>,
+}
+
+/// How a map places the values of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MapSpacing {
+    /// At equal distances, whatever the values.
+    #[default]
+    Even,
+    /// As far apart as the values are.
+    ToScale,
+}
+
+impl From<MapSpacing> for chart::Spacing {
+    fn from(spacing: MapSpacing) -> Self {
+        match spacing {
+            MapSpacing::Even => chart::Spacing::Even,
+            MapSpacing::ToScale => chart::Spacing::ToScale,
+        }
+    }
+}
+
 /// One row a point: its parameters and the scalars of its result
 ///
 /// Points without a result have their row too, with empty fields; `state` and `error` say why. Points that the request's `verify`
 /// has chosen have the bias of each statistic against the reference, as `bias_orbit_radius_rms_49`; where biases exceed what the
 /// accuracy promises, the attribute `warnings` says so. A picture shows the columns in `fields` over the parameters that vary: lines
-/// over one of them, a map of the first column over two, with diamonds at verified points.
+/// over one of them, a map of the first column over two, with diamonds at verified points; with more, a slice. Words, such as `state`
+/// and `stable`, have a colour each.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/table",
     tag = "sweeps",
     operation_id = "get_sweep_table",
-    params(("id" = String, Path, description = "Identifier of the sweep"), PictureQuery, Conditional),
+    params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
-    Query(PictureQuery { format, fields }): Query<PictureQuery>,
+    Query(SweepTableQuery { format, fields, spacing, slice }): Query<SweepTableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
+    let spacing = spacing.unwrap_or_default().into();
+    let view = chart::SweepView { spacing, slice: slice.unwrap_or_default() };
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let place = app.views.enter().await?;
     let records = app.store.table_rows(&id).await?;
@@ -712,7 +757,7 @@ pub(crate) async fn table(
             let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
             let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
             format::respond_or_draw(&table, fields, format, &format!("sweep-{id}"), |table| {
-                chart::sweep(table, &parameters, fields, findings, title)
+                chart::sweep(table, &parameters, fields, findings, title, &view)
             })
         })
         .await

@@ -26,7 +26,7 @@ async fn results_are_shown_as_drawings_and_as_pixels() {
         ("points/1/orbit?node=49&from=2&to=8", "Orbit, flow rate 0.01 m3/s, mud density 1200 kg/m3"),
         ("points/1/orbit?node=49&from=2&to=8", "node 49 at 57.73 m, 2.00 to 8.00 s"),
         ("points/1/spectrum?node=49&from=2&to=8&range_hz=5&peaks=3", "+2.00 Hz, 30.00 mm"),
-        ("points/1/history?node=49&from=2&to=3", "u 49"),
+        ("points/1/history?node=49&from=2&to=3", "u at 57.7 m MD, lateral"),
         ("table?fields=density_seen", "flow against density"),
     ] {
         let svg = bench.get(&format!("{path}/{query}&format=svg").replace("&&", "&")).await;
@@ -39,6 +39,23 @@ async fn results_are_shown_as_drawings_and_as_pixels() {
     }
     let problem = bench.get(&format!("{path}/table?format=png")).await.problem(400, "invalid-parameter");
     assert!(problem["detail"].as_str().unwrap().contains("density_seen"), "{problem}");
+    let words = bench
+        .get(&format!("{path}/table?fields=state&spacing=to_scale&slice=mud_density:1200&format=svg"))
+        .await;
+    for text in [">state: succeeded<", "slice at mud density 1200 kg/m3 (one of 2)"] {
+        assert!(words.text().contains(text), "{text} in {}", words.text());
+    }
+    for (query, parameter, valid) in [
+        ("spacing=uneven", "spacing", "to_scale"),
+        ("slice=mud_density", "slice", "mud.density:1200"),
+        ("slice=mud_density:1300", "slice", "1200"),
+        ("slice=mud:1", "slice", "flow_rate"),
+    ] {
+        let refused = bench.get(&format!("{path}/table?fields=state&{query}&format=svg")).await;
+        let problem = refused.problem(400, "invalid-parameter");
+        assert_eq!(problem["errors"][0]["parameter"], parameter, "{problem}");
+        assert!(problem["errors"][0]["detail"].as_str().unwrap().contains(valid), "{problem}");
+    }
     // Such a profile has no depths to be shown over.
     bench.get(&format!("{path}/points/1/profile?format=svg")).await.problem(400, "invalid-parameter");
 }

@@ -99,7 +99,7 @@ def test_progress_is_told_and_drawn(client: Client) -> None:
 
 
 def test_wait_gives_up_in_time_and_a_sweep_can_be_cancelled_and_retried(client: Client) -> None:
-    long = client.run("paper-200m", set={"duration": 3600, "recording.spectrum_windows": []})
+    long = client.run("paper-200m", set={"duration": 1800, "recording.spectrum_windows": []})
     with pytest.raises(TimeoutError, match=long.id):
         long.wait(timeout=0.3, progress=False)
     with pytest.raises(NoResult) as no_result:
@@ -113,7 +113,7 @@ def test_wait_gives_up_in_time_and_a_sweep_can_be_cancelled_and_retried(client: 
 
 def test_a_sweep_is_paused_changed_found_extended_and_resumed(client: Client) -> None:
     # A density of its own, so that there is something to compute.
-    long = {"duration": 3600, "recording.spectrum_windows": [], "mud.density": 1234}
+    long = {"duration": 1800, "recording.spectrum_windows": [], "mud.density": 1234}
     sweep = client.submit("paper-200m", set=long, axes={"flow_rate": [0.01, 0.03]}, tags={"campaign-7"})
     assert sweep.pause().state == "paused"
     assert [found.id for found in client.sweeps(tag="campaign-7", state="paused")] == [sweep.id]

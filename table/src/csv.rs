@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use crate::parquet::TableError;
+use crate::error::TableError;
 use crate::source::Source;
 use crate::table::{Column, Table};
 

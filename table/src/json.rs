@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use crate::parquet::TableError;
+use crate::error::TableError;
 use crate::source::Source;
 
 /// The table as serde writes it, to the byte; it holds one piece of some columns in memory.

@@ -6,6 +6,7 @@
 //! is then read piece by piece.
 
 pub mod csv;
+mod error;
 pub mod json;
 pub mod npz;
 pub mod parquet;
@@ -13,6 +14,7 @@ pub mod quantity;
 mod source;
 mod table;
 
+pub use error::TableError;
 pub use quantity::{Quantity, Unit, Units};
 pub use source::Source;
 pub use table::{Column, Table};

@@ -5,7 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use crate::parquet::TableError;
+use crate::error::TableError;
 use crate::source::Source;
 use crate::table::Column;
 

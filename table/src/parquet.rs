@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use ::parquet::basic::{Compression, ConvertedType, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
 use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type};
-use ::parquet::errors::ParquetError;
 use ::parquet::file::metadata::KeyValue;
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use ::parquet::schema::types::{ColumnPath, Type};
 
+use crate::error::TableError;
 use crate::source::Source;
 use crate::table::{Column, Table};
 
@@ -27,36 +27,6 @@ const ROW_GROUP_BYTES: usize = 32 << 20;
 
 /// Prefix of the metadata keys that hold units.
 const UNIT_PREFIX: &str = "unit.";
-
-/// Why a table cannot be written or read.
-#[derive(Debug, thiserror::Error)]
-pub enum TableError {
-    /// The bytes are not what this program writes, or cannot be encoded.
-    #[error("parquet: {0}")]
-    Parquet(#[from] ParquetError),
-    /// What it is written to does not take it.
-    #[error("the table cannot be written: {0}")]
-    Sink(#[from] std::io::Error),
-    /// Columns of different length.
-    #[error("column {name:?} has {rows} rows, the first one {expected}")]
-    Ragged {
-        /// The column.
-        name: String,
-        /// Its length.
-        rows: usize,
-        /// The first column's length.
-        expected: usize,
-    },
-    /// A piece of a table with other columns than the ones before it.
-    #[error("a piece of a table has other columns than the table")]
-    OtherColumns,
-    /// A column of a type that is not used here.
-    #[error("column {0:?} has a type that is not used here")]
-    UnknownType(String),
-    /// A text that is not UTF-8.
-    #[error("column {0:?} holds text that is not UTF-8")]
-    NotUtf8(String),
-}
 
 /// A table as Parquet, without its attributes. Every column is required there: a missing number is NaN (whole numbers of which one is
 /// missing become numbers of double precision), a missing text is empty. The same table gives the same bytes.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::iter::once;
 
-use crate::parquet::TableError;
+use crate::error::TableError;
 use crate::table::Table;
 
 /// A table in pieces: what a format is written from.

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 use bytes::Bytes;
-use drillsweep_table::parquet::{StoredTable, TableError, Writer, read, write};
-use drillsweep_table::{Column, Table};
+use drillsweep_table::parquet::{StoredTable, Writer, read, write};
+use drillsweep_table::{Column, Table, TableError};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 

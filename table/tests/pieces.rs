@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytes::Bytes;
-use drillsweep_table::parquet::{Cut, ReadAt, StoredTable, TableError};
-use drillsweep_table::{Column, Source, Table, csv, json, npz, parquet};
+use drillsweep_table::parquet::{Cut, ReadAt, StoredTable};
+use drillsweep_table::{Column, Source, Table, TableError, csv, json, npz, parquet};
 
 /// 25,000 samples with every type of column, and values that no format has digits for.
 fn history() -> Table {

@@ -4,8 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use drillsweep_table::Table;
-use drillsweep_table::parquet::{self, TableError};
+use drillsweep_table::{Table, TableError, parquet};
 use serde_json::Value;
 
 /// A table or report as it is stored.

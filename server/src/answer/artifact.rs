@@ -10,10 +10,10 @@ use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::{PHYSICS_VERSION, PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::{Hole, Place};
 use drillsweep_store::{Artifact, BlobId, Repair, Store, WorkKey};
-use drillsweep_table::parquet::{self, StoredTable, TableError};
+use drillsweep_table::parquet::{self, StoredTable};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, tables};
-use drillsweep_table::{Column, Quantity, Table};
+use drillsweep_table::{Column, Quantity, Table, TableError};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::records;

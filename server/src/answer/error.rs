@@ -4,7 +4,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_store::StoreError;
-use drillsweep_table::parquet::TableError;
+use drillsweep_table::TableError;
 
 /// The result of a handler.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

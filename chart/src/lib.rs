@@ -10,7 +10,9 @@ mod table;
 
 pub use cost::work_precision;
 pub use picture::{Drawing, PictureError, Spacing};
-pub use table::{Hole, Place, SweepView, caption, history, orbit, profile, spectrum, sweep};
+pub use table::{
+    Hole, Place, SweepView, caption, history, orbit, profile, shown_of_history, spectrum, sweep,
+};
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

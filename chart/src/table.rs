@@ -79,6 +79,19 @@ pub fn profile(
     Ok(plot.drawing())
 }
 
+/// The columns of a history that its picture shows, out of its `layout`: the time, and u and v and the rate of twist of the lowest node, or
+/// the `fields` that are given.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, Box<ProblemDetails>> {
+    let twist = rate_of_twist(layout).filter(|_| fields.is_none());
+    let lines = lines_of_history(layout, fields).into_iter().chain(twist);
+    let mut names: Vec<String> = lines.map(str::to_owned).collect();
+    names.push(TIME.name.to_owned());
+    layout.select(&names).map_err(|missing| Box::new(ProblemDetails::no_such_column(layout, &missing)))
+}
+
 /// Where a recorded node lies, for the legend of its history.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Place {
@@ -102,12 +115,7 @@ pub fn history(
     places: &[Place],
     title: &str,
 ) -> Result<Drawing, Box<ProblemDetails>> {
-    let is_lateral =
-        |name: &&str| Name::parse(name).is_some_and(|name| name.quantity == &U || name.quantity == &V);
-    let names: Vec<&str> = match fields {
-        Some(fields) => fields.iter().map(String::as_str).collect(),
-        None => table.columns.keys().map(String::as_str).filter(is_lateral).collect(),
-    };
+    let names = lines_of_history(table, fields);
     let shown = Shown::of(table, &names)?;
     let y_label = shown.label();
     let lateral = over_time(table, shown, &y_label, places, [title, &node_of(table)])?;
@@ -151,15 +159,20 @@ fn over_time(
     Ok(plot.drawing())
 }
 
-/// The rate of twist of the lowest node that has one; none where none of them ever twists.
-fn twisting(table: &Table) -> Option<&str> {
+/// The rate of twist of the lowest node that has one.
+fn rate_of_twist(table: &Table) -> Option<&str> {
     let rates = table.columns.keys().filter_map(|name| {
         let parsed = Name::parse(name)?;
         (parsed.quantity == &THETA_Z_RATE && parsed.variant == Variant::Value).then_some((parsed.node?, name))
     });
-    let (_, name) = rates.max_by_key(|(node, _)| *node)?;
+    rates.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
+}
+
+/// The same; none where it is zero throughout.
+fn twisting(table: &Table) -> Option<&str> {
+    let name = rate_of_twist(table)?;
     let moves = table.columns[name].numbers()?.iter().any(|rate| *rate != 0.0);
-    moves.then_some(name.as_str())
+    moves.then_some(name)
 }
 
 /// What a column of a node is, where the node lies, and which way it moves.
@@ -208,6 +221,15 @@ fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
 fn grouped(depth: f64) -> String {
     let whole = depth.round() as i64;
     if whole >= 1000 { format!("{} {:03}", whole / 1000, whole % 1000) } else { format!("{depth:.1}") }
+}
+
+fn lines_of_history<'t>(table: &'t Table, fields: Option<&'t [String]>) -> Vec<&'t str> {
+    let is_lateral =
+        |name: &&str| Name::parse(name).is_some_and(|name| name.quantity == &U || name.quantity == &V);
+    match fields {
+        Some(fields) => fields.iter().map(String::as_str).collect(),
+        None => table.columns.keys().map(String::as_str).filter(is_lateral).collect(),
+    }
 }
 
 /// The path of a node across its hole: the whole hole, or with `zoom` the motion alone with the hole as an inset; unless that is said,

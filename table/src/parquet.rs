@@ -17,13 +17,16 @@ use crate::table::{Column, Table};
 
 mod read;
 
-pub use read::{Cut, ReadAt, StoredTable, read};
+pub use read::{Cut, FOOTER_END, ReadAt, StoredTable, memory, read};
 
 /// Rows of a row group at most.
 const ROW_GROUP: usize = 10_000;
 
 /// Bytes of a row group at most, before compression: what writing or reading a table of many columns takes at once.
 const ROW_GROUP_BYTES: usize = 32 << 20;
+
+/// Bytes of memory that a [`Writer`] takes at most, besides its footer.
+pub const MEMORY_OF_WRITER: u64 = ROW_GROUP_BYTES as u64;
 
 /// Prefix of the metadata keys that hold units.
 const UNIT_PREFIX: &str = "unit.";

@@ -1,87 +1,32 @@
-//! The tables that workers stored, as they are read back.
+//! The tables that workers stored, and what views read of them.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use axum::body::Bytes;
 use drillsweep_api::view::node::{self, Choice, Recorded};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
-use drillsweep_api::{PHYSICS_VERSION, PointState, ProblemDetails, ProblemKind};
+use drillsweep_api::view::window;
+use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::{Hole, Place};
-use drillsweep_store::{Artifact, BlobId, Repair, Store, WorkKey};
-use drillsweep_table::parquet::{self, StoredTable};
+use drillsweep_store::{Artifact, Store, WorkKey};
+use drillsweep_table::parquet::StoredTable;
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, tables};
-use drillsweep_table::{Column, Quantity, Table, TableError};
+use drillsweep_table::{Column, Quantity, Table};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::records;
+use crate::answer::stored::{Stored, StoredFile};
 
-/// One table of a point's result, as Parquet.
-pub(crate) async fn load(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Bytes> {
+/// One table of a point's result.
+pub(crate) async fn stored(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Stored> {
     let key = result_key(store, sweep, n).await?;
-    load_of(store, &key, name).await
+    stored_of(store, &key, name).await
 }
 
-async fn load_of(store: &Store, key: &WorkKey, name: &str) -> Result<Bytes> {
-    let artifact = find(store, key, name).await?;
-    read(store, key, &artifact, None).await
-}
-
-/// The bytes of a table, or a range of them. Where storage has lost it, its point is computed again, and the problem says so.
-pub(crate) async fn read(
-    store: &Store,
-    key: &WorkKey,
-    artifact: &Artifact,
-    range: Option<Range<u64>>,
-) -> Result<Bytes> {
-    check_age(artifact)?;
-    let blob: BlobId = artifact.blob.parse()?;
-    let bytes = match range {
-        None => store.blobs().get(blob).await,
-        Some(range) => store.blobs().get_range(blob, range).await,
-    };
-    match bytes {
-        Err(error) if error.is_damage() => {
-            tracing::error!(%error, table = artifact.name, "a stored table is damaged");
-            let repair = store.queue_damaged(key, blob, PHYSICS_VERSION.into()).await?;
-            Err(damaged(&artifact.name, repair))
-        }
-        bytes => Ok(bytes?),
-    }
-}
-
-/// Refuses a table that has reached its age.
-pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
-    let Some(expired) = artifact.expired else { return Ok(()) };
-    let detail = format!(
-        "the table {} expired at {}; the summary is kept, and a sweep submitted with ?cache=refresh recomputes the point",
-        artifact.name,
-        records::timestamp(expired)?
-    );
-    Err(Error::new(ProblemKind::Expired, detail))
-}
-
-/// The problem that a table is lost, with what becomes of it.
-fn damaged(name: &str, repair: Repair) -> Error {
-    let consequence = match repair {
-        Repair::Queued | Repair::UnderWay => {
-            "the point is being computed again; ask again when it is done".to_owned()
-        }
-        Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
-                                submit it again to have another try"
-            .to_owned(),
-        Repair::OtherNumbers(version) => format!(
-            "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \
-             {PHYSICS_VERSION}"
-        ),
-        Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
-    };
-    let detail = format!(
-        "the table {name} is lost or was changed in storage, and nothing of it is served; {consequence}"
-    );
-    Error::new(ProblemKind::Damaged, detail)
+async fn stored_of(store: &Store, key: &WorkKey, name: &str) -> Result<Stored> {
+    Stored::new(store, key, find(store, key, name).await?)
 }
 
 /// Where a table of a result is, or was until it expired.
@@ -116,21 +61,16 @@ pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<Wor
     Err(ProblemDetails { state: Some(state), ..ProblemDetails::new(ProblemKind::NoResult, detail) }.into())
 }
 
-/// Columns of a stored table, or all of them, for the wire.
-pub(crate) fn decode(bytes: Bytes, columns: Option<&[&str]>) -> Result<Table, TableError> {
-    Ok(parquet::read(bytes, columns, None)?.widened())
-}
-
 /// The recorded histories of a run, and where their nodes are.
 pub(crate) struct Recording {
-    history: Bytes,
-    statics: Bytes,
+    pub(crate) history: Stored,
+    pub(crate) statics: Stored,
 }
 
 /// Full spectra that were kept in place of histories, and where their nodes are.
 pub(crate) struct KeptSpectra {
-    spectra: Bytes,
-    statics: Bytes,
+    spectra: Stored,
+    statics: Stored,
 }
 
 /// Where the full spectra of a run come from.
@@ -165,9 +105,25 @@ impl SpectrumSource {
         if !artifacts.iter().any(|artifact| artifact.name == tables::SPECTRA.name) {
             return Ok(SpectrumSource::Recording(Recording::load_of(store, &key).await?));
         }
-        let spectra = load_of(store, &key, tables::SPECTRA.name).await?;
-        let statics = load_of(store, &key, tables::STATICS.name).await?;
+        let spectra = stored_of(store, &key, tables::SPECTRA.name).await?;
+        let statics = stored_of(store, &key, tables::STATICS.name).await?;
         Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
+    }
+
+    /// Bytes of memory that a spectrum takes.
+    pub(crate) async fn memory(&self) -> Result<u64> {
+        /// Of a sample: its time, u and v, the bins, and frequencies and amplitudes with what of them is shown.
+        const OF_SAMPLE: u64 = 136;
+        /// Of a line of any spectrum: its node, window, frequency and amplitude.
+        const OF_LINE: u64 = 64;
+        Ok(match self {
+            SpectrumSource::Recording(Recording { history, .. }) => {
+                history.memory().await? + history.rows() * OF_SAMPLE
+            }
+            SpectrumSource::Kept(KeptSpectra { spectra, .. }) => {
+                spectra.memory().await? + spectra.rows() * OF_LINE
+            }
+        })
     }
 }
 
@@ -185,7 +141,7 @@ impl KeptSpectra {
             Weighting::Hann => &AMPLITUDE_HANN,
         };
         let wanted = [&NODE, &FROM, &TO, &FREQUENCY, amplitude].map(|quantity| quantity.name);
-        let table = decode(self.spectra.clone(), Some(&wanted))?;
+        let table = self.spectra.read(Some(&wanted))?;
         let Some(Column::Integer(nodes)) = table.columns.get(NODE.name) else {
             return Err(Error::internal("a table of spectra without nodes"));
         };
@@ -236,41 +192,64 @@ impl Recording {
     }
 
     async fn load_of(store: &Store, key: &WorkKey) -> Result<Self> {
-        let history = load_of(store, key, tables::HISTORY.name).await?;
-        let statics = load_of(store, key, tables::STATICS.name).await?;
+        let history = stored_of(store, key, tables::HISTORY.name).await?;
+        let statics = stored_of(store, key, tables::STATICS.name).await?;
         Ok(Recording { history, statics })
     }
 
-    /// The whole recording.
-    pub(crate) fn table(&self) -> Result<Table> {
-        Ok(decode(self.history.clone(), None)?)
+    /// Bytes of memory that an orbit takes.
+    pub(crate) async fn memory_of_orbit(&self) -> Result<u64> {
+        /// Of a sample: its time, u and v as they are read, and again with the radius as they are served.
+        const OF_SAMPLE: u64 = 64;
+        Ok(self.history.memory().await? + self.history.rows() * OF_SAMPLE)
     }
 
-    /// The recording of one node.
-    pub(crate) fn table_of(&self, choice: Choice) -> Result<Table> {
-        let columns = self.columns()?;
-        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
-        let is_wanted = |name: &&str| {
+    /// The columns of one node, out of the `layout` of the history, with the node that they are of.
+    pub(crate) fn layout_of(&self, choice: Choice, mut layout: Table) -> Result<Table> {
+        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&layout)?)?;
+        let is_wanted = |name: &str| {
             Name::parse(name).is_some_and(|name| match name.node {
                 Some(of) => of == node as usize,
                 None => name.quantity == &TIME,
             })
         };
-        let wanted: Vec<&str> = columns.iter().map(String::as_str).filter(is_wanted).collect();
-        Ok(of_node(decode(self.history.clone(), Some(&wanted))?, node, measured_depth))
+        layout.columns.retain(|name, _| is_wanted(name));
+        layout.units.retain(|name, _| is_wanted(name));
+        Ok(of_node(layout, node, measured_depth))
     }
 
-    /// The lateral motion of one node.
-    pub(crate) fn motion_of(&self, choice: Choice) -> Result<NodeMotion> {
-        let columns = self.columns()?;
-        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&columns)?)?;
+    /// The samples of a half-open window \[from, to) \[s\] of the history; an absent end is open.
+    pub(crate) fn samples(
+        &self,
+        history: &StoredTable<StoredFile>,
+        from: Option<f64>,
+        to: Option<f64>,
+    ) -> Result<Range<usize>> {
+        if from.is_none() && to.is_none() {
+            return Ok(0..history.rows());
+        }
+        let mut times = self.read(history, &[TIME.name], 0..history.rows())?;
+        Ok(window::samples(&take(&mut times, TIME.name)?, from, to))
+    }
+
+    /// The lateral motion of one node in such a window.
+    pub(crate) fn motion_of(&self, choice: Choice, from: Option<f64>, to: Option<f64>) -> Result<NodeMotion> {
+        let history = self.history.open()?;
+        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(history.layout())?)?;
         let (u, v) = (U.at_node(node as usize), V.at_node(node as usize));
-        let mut table = decode(self.history.clone(), Some(&[TIME.name, &u, &v]))?;
-        let mut take = |name: &str| match table.columns.swap_remove(name) {
-            Some(Column::Number(values)) => Ok(values),
-            _ => Err(Error::internal(&format!("a history without numbers in the column {name}"))),
-        };
-        Ok(NodeMotion { node, measured_depth, time: take(TIME.name)?, u: take(&u)?, v: take(&v)? })
+        let samples = self.samples(&history, from, to)?;
+        let mut table = self.read(&history, &[TIME.name, &u, &v], samples)?;
+        Ok(NodeMotion {
+            node,
+            measured_depth,
+            time: take(&mut table, TIME.name)?,
+            u: take(&mut table, &u)?,
+            v: take(&mut table, &v)?,
+        })
+    }
+
+    fn read(&self, history: &StoredTable<StoredFile>, columns: &[&str], rows: Range<usize>) -> Result<Table> {
+        Ok(history.read(columns, rows).map_err(|error| self.history.problem(error))?.widened())
     }
 
     /// How the hole stands about a node.
@@ -278,7 +257,7 @@ impl Recording {
         /// Below this part of a hole's length gained in depth the low side is worth the name: 0.1 degrees.
         const VERTICAL: f64 = 0.999_998_5;
         let wanted = [&NODE, &MEASURED_DEPTH, &TRUE_VERTICAL_DEPTH, &CLEARANCE, &LOW_SIDE_ANGLE];
-        let statics = decode(self.statics.clone(), Some(&wanted.map(|quantity| quantity.name)))?;
+        let statics = self.statics.read(Some(&wanted.map(|quantity| quantity.name)))?;
         let column = |quantity: &Quantity| match statics.columns.get(quantity.name) {
             Some(Column::Number(values)) => values.as_slice(),
             _ => &[],
@@ -299,23 +278,26 @@ impl Recording {
         })
     }
 
-    /// Names of the columns of the history.
-    fn columns(&self) -> Result<Vec<String>> {
-        Ok(StoredTable::open(self.history.clone())?.layout().columns.keys().cloned().collect())
+    /// The recorded nodes, by the columns of the history.
+    fn nodes(&self, layout: &Table) -> Result<Vec<Recorded>> {
+        nodes_among(&self.statics, node::recorded(layout.columns.keys().map(String::as_str)))
     }
 
     /// Where the recorded nodes lie.
-    pub(crate) fn places(&self) -> Result<Vec<Place>> {
+    pub(crate) fn places(&self, layout: &Table) -> Result<Vec<Place>> {
         let place = |recorded: Recorded| {
             let Recorded { node, measured_depth, .. } = recorded;
             Ok(Place { node, measured_depth, low_side: self.hole_at(node)?.low_side })
         };
-        self.nodes(&self.columns()?)?.into_iter().map(place).collect()
+        self.nodes(layout)?.into_iter().map(place).collect()
     }
+}
 
-    /// The recorded nodes.
-    fn nodes(&self, columns: &[String]) -> Result<Vec<Recorded>> {
-        nodes_among(&self.statics, node::recorded(columns.iter().map(String::as_str)))
+/// The numbers of a column of a history.
+fn take(table: &mut Table, name: &str) -> Result<Vec<f64>> {
+    match table.columns.swap_remove(name) {
+        Some(Column::Number(values)) => Ok(values),
+        _ => Err(Error::internal(&format!("a history without numbers in the column {name}"))),
     }
 }
 
@@ -325,8 +307,8 @@ fn of_node(table: Table, node: u32, measured_depth: f64) -> Table {
 }
 
 /// The nodes of these numbers, from the table of the statics, which has all of the mesh.
-fn nodes_among(statics: &Bytes, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<Recorded>> {
-    let statics = decode(statics.clone(), Some(&[NODE.name, MEASURED_DEPTH.name]))?;
+fn nodes_among(statics: &Stored, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<Recorded>> {
+    let statics = statics.read(Some(&[NODE.name, MEASURED_DEPTH.name]))?;
     let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
         (statics.columns.get(NODE.name), statics.columns.get(MEASURED_DEPTH.name))
     else {

@@ -1,15 +1,19 @@
 //! Which format a table is served in, and how.
 
-use axum::body::{Body, Bytes};
+use std::io::{self, Write};
+
+use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
-use drillsweep_table::{Table, csv, json, npz, parquet};
+use drillsweep_table::parquet::Cut;
+use drillsweep_table::{Source, Table, TableError, csv, json, npz, parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
 use crate::answer::error::{Error, Result};
+use crate::answer::stored::{Stored, StoredFile};
 
 /// The formats in which tables are served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
@@ -117,6 +121,12 @@ impl Format {
         }
     }
 
+    /// Bytes of memory that it takes to write what takes so many to be read. A Parquet file's footer, with its statistics, is larger
+    /// on the way out.
+    pub(crate) fn memory(self, reading: u64) -> u64 {
+        if self == Format::Parquet { 3 * reading + parquet::MEMORY_OF_WRITER } else { reading }
+    }
+
     pub(crate) fn is_picture(self) -> bool {
         matches!(self, Format::Svg | Format::Png)
     }
@@ -174,66 +184,139 @@ fn best(accept: &str, offered: &[Format]) -> Option<Format> {
     chosen
 }
 
-/// A table, or some columns of it, in a format that is no picture, as a file called `name` for those who save it.
-pub(crate) fn respond(
-    table: &Table,
-    fields: Option<&[String]>,
-    format: Format,
-    name: &str,
-) -> Result<Response> {
-    respond_or_draw(table, fields, format, name, |_| {
-        Err(Box::new(ProblemDetails::new(ProblemKind::NotAcceptable, "there is no picture of this")))
-    })
+/// What is served, as a file for those who save it.
+pub(crate) struct Answer {
+    head: Head,
+    content: Content,
 }
 
-/// The same; a picture is drawn by `draw` from the whole table.
-pub(crate) fn respond_or_draw(
-    table: &Table,
-    fields: Option<&[String]>,
-    format: Format,
-    name: &str,
-    draw: impl FnOnce(&Table) -> Result<Drawing, Box<ProblemDetails>>,
-) -> Result<Response> {
-    let selected;
-    let table = match fields.filter(|_| !format.is_picture()) {
-        None => table,
-        Some(fields) => {
-            selected = table
-                .select(fields)
-                .map_err(|missing| Box::new(ProblemDetails::no_such_column(table, &missing)))?;
-            &selected
+enum Content {
+    Table(Table),
+    Part(Box<(Stored, Cut<StoredFile>)>),
+    Picture(Vec<u8>),
+}
+
+impl Answer {
+    /// A table in memory, or its columns `fields`, in a format that is no picture.
+    pub(crate) fn of_table(
+        table: Table,
+        fields: Option<&[String]>,
+        format: Format,
+        name: &str,
+    ) -> Result<Self> {
+        let table = select(table, fields)?;
+        let mut hasher = blake3::Hasher::new();
+        write(&table, format, &mut hasher)?;
+        Ok(Self { head: Head::new(format, name, &hasher), content: Content::Table(table) })
+    }
+
+    /// The same; a picture is drawn by `draw` from the whole table.
+    pub(crate) fn of_table_or_picture(
+        table: Table,
+        fields: Option<&[String]>,
+        format: Format,
+        name: &str,
+        draw: impl FnOnce(&Table) -> Result<Drawing, Box<ProblemDetails>>,
+    ) -> Result<Self> {
+        let picture = match format {
+            Format::Svg => draw(&table)?.svg().into_bytes(),
+            Format::Png => draw(&table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
+            _ => return Self::of_table(table, fields, format, name),
+        };
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&picture);
+        Ok(Self { head: Head::new(format, name, &hasher), content: Content::Picture(picture) })
+    }
+
+    /// A part of a stored table, in a format that is no picture: the one that `selection` says. That, the stored bytes, the format and
+    /// what writes it are all that the body depends on, so that its tag is known before the body is.
+    pub(crate) fn of_part(
+        stored: Stored,
+        part: Cut<StoredFile>,
+        format: Format,
+        name: &str,
+        selection: &impl std::fmt::Debug,
+    ) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        let depends = (env!("CARGO_PKG_VERSION"), stored.blob(), format, selection);
+        hasher.update(format!("{depends:?}").as_bytes());
+        Self { head: Head::new(format, name, &hasher), content: Content::Part(Box::new((stored, part))) }
+    }
+
+    /// What goes before the body.
+    pub(crate) fn head(&self) -> Head {
+        self.head.clone()
+    }
+
+    /// Writes the body.
+    pub(crate) fn write(&self, mut sink: impl Write + Send) -> Result<(), TableError> {
+        match &self.content {
+            Content::Table(table) => write(table, self.head.format, sink),
+            Content::Part(part) => write(&part.1, self.head.format, sink),
+            Content::Picture(bytes) => Ok(sink.write_all(bytes)?),
         }
-    };
-    let mut body = Vec::new();
-    match format {
-        Format::Json => json::write_to(table, &mut body)?,
-        Format::Csv => csv::write_to(table, &mut body)?,
-        Format::Parquet => parquet::write_to(table, &mut body)?,
-        Format::Npz => npz::write_to(table, &mut body)?,
-        Format::Svg => body = draw(table)?.svg().into_bytes(),
-        Format::Png => body = draw(table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
     }
-    Ok(file(body, format, name))
+
+    /// What it means that the body could not be written.
+    pub(crate) fn problem(&self, error: TableError) -> Error {
+        match &self.content {
+            Content::Part(part) => part.0.problem(error),
+            _ => error.into(),
+        }
+    }
 }
 
-/// Bytes that are already in a format. Their tag is a weak one, since they may be compressed on their way.
-pub(crate) fn file(body: impl Into<Bytes>, format: Format, name: &str) -> Response {
-    let body = body.into();
-    let tag = format!("W/\"{}\"", blake3::hash(&body).to_hex());
-    let mut response = Body::from(body).into_response();
-    let headers = response.headers_mut();
-    if let Ok(tag) = tag.parse() {
-        headers.insert(header::ETAG, tag);
+/// The columns of a table that are asked for.
+pub(crate) fn select(table: Table, fields: Option<&[String]>) -> Result<Table> {
+    let Some(fields) = fields else { return Ok(table) };
+    let selected = table.select(fields);
+    Ok(selected.map_err(|missing| Box::new(ProblemDetails::no_such_column(&table, &missing)))?)
+}
+
+fn write(source: &impl Source, format: Format, sink: impl Write + Send) -> Result<(), TableError> {
+    match format {
+        Format::Json => json::write_to(source, sink),
+        Format::Csv => csv::write_to(source, sink),
+        Format::Parquet => parquet::write_to(source, sink),
+        Format::Npz => npz::write_to(source, sink),
+        Format::Svg | Format::Png => {
+            Err(io::Error::new(io::ErrorKind::Unsupported, "a table is no picture").into())
+        }
     }
-    // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
-    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
-    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(format.media_type()));
-    headers.insert(header::VARY, HeaderValue::from_static("accept"));
-    let disposition = format!("inline; filename=\"{name}.{}\"", format.extension());
-    if let Ok(disposition) = disposition.parse() {
-        headers.insert(header::CONTENT_DISPOSITION, disposition);
+}
+
+/// What goes before a body: format, name for those who save it, and tag.
+#[derive(Debug, Clone)]
+pub(crate) struct Head {
+    format: Format,
+    name: String,
+    tag: String,
+}
+
+impl Head {
+    /// The tag is a weak one, since the body may be compressed on its way.
+    pub(crate) fn new(format: Format, name: &str, determined_by: &blake3::Hasher) -> Self {
+        let tag = format!("W/\"{}\"", determined_by.finalize().to_hex());
+        Self { format, name: name.to_owned(), tag }
     }
-    response
+
+    /// The response with this body.
+    pub(crate) fn response(self, body: Body) -> Response {
+        let mut response = body.into_response();
+        let headers = response.headers_mut();
+        if let Ok(tag) = self.tag.parse() {
+            headers.insert(header::ETAG, tag);
+        }
+        // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.format.media_type()));
+        headers.insert(header::VARY, HeaderValue::from_static("accept"));
+        let disposition = format!("inline; filename=\"{}.{}\"", self.name, self.format.extension());
+        if let Ok(disposition) = disposition.parse() {
+            headers.insert(header::CONTENT_DISPOSITION, disposition);
+        }
+        response
+    }
 }
 
 #[cfg(test)]

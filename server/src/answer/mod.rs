@@ -2,10 +2,12 @@
 
 pub(crate) mod artifact;
 pub(crate) mod blocking;
+pub(crate) mod body;
 pub(crate) mod document;
 pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod records;
+pub(crate) mod stored;
 pub(crate) mod tag;
 pub(crate) mod vocabulary;

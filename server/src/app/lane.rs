@@ -1,43 +1,56 @@
-//! Work that takes a core and memory for a while: some at once, some more that wait, and those beyond told to come back.
+//! Work that takes cores and memory for a while: as much at once as there is, some more that waits, and what is beyond told to come back.
 
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::response::Response;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::timeout;
 
 use crate::answer::blocking::blocking;
+use crate::answer::body;
 use crate::answer::error::{Error, Result};
+use crate::answer::format::Answer;
 
 /// How long a request waits for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Places for one kind of work. Requests that need none are not held up by those that do.
+/// Memory, or places, for one kind of work. Requests that need none are not held up by those that do.
 pub(crate) struct Lane {
-    places: Arc<Semaphore>,
+    units: Arc<Semaphore>,
+    all: usize,
     waiting: Semaphore,
+    turns: Arc<Semaphore>,
 }
 
-/// A place, until it is dropped.
+/// Memory or a place, until it is dropped.
 pub(crate) struct Place {
-    _permit: OwnedSemaphorePermit,
+    permit: OwnedSemaphorePermit,
+    turns: Arc<Semaphore>,
 }
 
 impl Lane {
-    /// A lane for so much work at once, and so many requests that wait.
-    pub(crate) fn new(at_once: usize, waiting: usize) -> Self {
-        Self { places: Arc::new(Semaphore::new(at_once)), waiting: Semaphore::new(waiting) }
+    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait.
+    pub(crate) fn new(units: usize, at_once: usize, waiting: usize) -> Self {
+        Self {
+            units: Arc::new(Semaphore::new(units)),
+            all: units,
+            waiting: Semaphore::new(waiting),
+            turns: Arc::new(Semaphore::new(at_once.max(1))),
+        }
     }
 
-    /// Takes a place, in the order of arrival. To be taken before anything large is loaded.
-    pub(crate) async fn enter(&self) -> Result<Place> {
-        if let Ok(place) = self.places.clone().try_acquire_owned() {
-            return Ok(Place { _permit: place });
+    /// Takes so many units, or where there are fewer all of them, in the order of arrival. To be taken before anything large is loaded.
+    pub(crate) async fn enter(&self, units: usize) -> Result<Place> {
+        let units = u32::try_from(units.min(self.all).max(1)).unwrap_or(u32::MAX);
+        let place = |permit| Place { permit, turns: self.turns.clone() };
+        if let Ok(permit) = self.units.clone().try_acquire_many_owned(units) {
+            return Ok(place(permit));
         }
         let too_many = || Error::unavailable("more large answers are asked for than can be computed at once");
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
-        match timeout(PATIENCE, self.places.clone().acquire_owned()).await {
-            Ok(Ok(place)) => Ok(Place { _permit: place }),
+        match timeout(PATIENCE, self.units.clone().acquire_many_owned(units)).await {
+            Ok(Ok(permit)) => Ok(place(permit)),
             // The semaphore is never closed.
             Ok(Err(_)) | Err(_) => Err(too_many()),
         }
@@ -57,6 +70,14 @@ impl Place {
         })
         .await
     }
+
+    /// Writes an answer on a thread of its own while it is sent, and gives the place back at its end.
+    pub(crate) async fn answer(
+        self,
+        prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
+    ) -> Result<Response> {
+        body::send(self.turns, self.permit, prepare).await
+    }
 }
 
 #[cfg(test)]
@@ -65,20 +86,33 @@ mod tests {
 
     #[tokio::test]
     async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
-        let lane = Arc::new(Lane::new(1, 1));
-        let first = lane.enter().await.map_err(Error::into_problem).expect("a place is free");
+        let lane = Arc::new(Lane::new(1, 1, 1));
+        let first = lane.enter(1).await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
             let lane = lane.clone();
-            async move { lane.enter().await.map(drop).is_ok() }
+            async move { lane.enter(1).await.map(drop).is_ok() }
         });
         while lane.waiting.available_permits() > 0 {
             tokio::task::yield_now().await;
         }
-        let problem = lane.enter().await.err().expect("one waits already").into_problem();
+        let problem = lane.enter(1).await.err().expect("one waits already").into_problem();
         assert_eq!(problem.status, 503);
-        let places = lane.places.clone();
-        let done = first.run(move || Ok(places.available_permits())).await;
+        let units = lane.units.clone();
+        let done = first.run(move || Ok(units.available_permits())).await;
         assert_eq!(done.ok(), Some(0), "the place is taken while the work runs");
         assert!(second.await.expect("it ends"), "who waits is next");
+    }
+
+    #[tokio::test]
+    async fn work_takes_what_it_needs_and_at_most_all_there_is() {
+        let lane = Lane::new(10, 1, 0);
+        let small = lane.enter(3).await.map_err(Error::into_problem).expect("there is room");
+        let other = lane.enter(7).await.map_err(Error::into_problem).expect("there is just room");
+        assert!(lane.enter(1).await.is_err());
+        drop((small, other));
+        let all = lane.enter(1_000).await.map_err(Error::into_problem).expect("all of it");
+        assert!(lane.enter(1).await.is_err());
+        drop(all);
+        assert_eq!(lane.units.available_permits(), 10);
     }
 }

@@ -13,8 +13,11 @@ use axum::extract::FromRef;
 use drillsweep_store::Store;
 use tokio::sync::{Semaphore, watch};
 
+use crate::answer::body::MEMORY_OF_BODY;
+use crate::answer::error::Result;
 use crate::answer::extract::BodyPatience;
-use crate::app::lane::Lane;
+use crate::answer::stored::MEMORY_OF_FILE;
+use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
 use crate::app::readiness::Readiness;
@@ -41,6 +44,8 @@ pub struct Config {
     pub connections: ConnectionLimits,
     /// Large answers (tables, pictures, views of histories) that are computed at once, and as many plans and expansions of sweeps.
     pub large_answers: usize,
+    /// Bytes of memory that large answers take together; files that are sent as they are stored take half as much besides.
+    pub large_answer_bytes: usize,
     /// Requests for them that may wait; those beyond are told to come back.
     pub large_answers_waiting: usize,
 }
@@ -55,6 +60,7 @@ impl Default for Config {
             retention: Retaining::default(),
             connections: ConnectionLimits::default(),
             large_answers: std::thread::available_parallelism().map_or(2, std::num::NonZero::get),
+            large_answer_bytes: 128 << 20,
             large_answers_waiting: 256,
         }
     }
@@ -72,14 +78,17 @@ pub(crate) struct App {
     pub(crate) readiness: Arc<Readiness>,
     /// Places for event streams.
     pub(crate) streams: Arc<Semaphore>,
-    /// Places for views of results, which load and write out tables.
-    pub(crate) views: Arc<Lane>,
+    /// Memory for views of results, which read and write out tables \[KiB\].
+    views: Arc<Lane>,
+    /// Memory for files that are sent as they are stored \[KiB\].
+    files: Arc<Lane>,
     /// Places for expanding and planning sweeps, which searches an equilibrium, and for `rk4` estimates how long a step may be.
     pub(crate) plans: Arc<Lane>,
 }
 
 impl App {
     pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
+        let lane = |units| Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting));
         App {
             store,
             stopping,
@@ -87,11 +96,28 @@ impl App {
             metrics: Arc::new(Metrics::new()),
             readiness: Arc::default(),
             streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
-            views: Arc::new(Lane::new(config.large_answers, config.large_answers_waiting)),
-            plans: Arc::new(Lane::new(config.large_answers, config.large_answers_waiting)),
+            views: lane(config.large_answer_bytes / KIB),
+            files: lane(config.large_answer_bytes / 2 / KIB),
+            plans: lane(config.large_answers),
             config: Arc::new(config),
         }
     }
+
+    /// Takes so much memory \[bytes\] for a view of a result, and what its body takes on its way.
+    pub(crate) async fn view(&self, bytes: u64) -> Result<Place> {
+        self.views.enter(kibibytes(bytes.saturating_add(MEMORY_OF_BODY))).await
+    }
+
+    /// Takes the memory for a file that is sent as it is stored.
+    pub(crate) async fn file(&self) -> Result<Place> {
+        self.files.enter(kibibytes(MEMORY_OF_FILE)).await
+    }
+}
+
+const KIB: usize = 1 << 10;
+
+fn kibibytes(bytes: u64) -> usize {
+    usize::try_from(bytes).unwrap_or(usize::MAX).div_ceil(KIB)
 }
 
 impl FromRef<App> for BodyPatience {

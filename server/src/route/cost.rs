@@ -83,7 +83,7 @@ pub(crate) async fn show(
     Path(PointPath { id, n }): Path<PointPath>,
     Query(CostQuery { format, measure }): Query<CostQuery>,
 ) -> Result<Response> {
-    let stored = artifact::load(&app.store, &id, n, "cost").await?;
+    let stored = artifact::stored(&app.store, &id, n, "cost").await?.whole().await?;
     if format == CostFormat::Json {
         return Ok(answer(stored.into(), format));
     }

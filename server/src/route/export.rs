@@ -2,15 +2,13 @@
 
 use std::io::{self, Write};
 
-use axum::body::{Body, Bytes};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::view::points;
 use drillsweep_api::{ExportManifest, MissingFile};
-use drillsweep_store::{Artifact, Store};
+use drillsweep_store::{Artifact, Store, WorkKey};
 use drillsweep_table::csv;
-use futures::StreamExt;
 use serde::Deserialize;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
@@ -18,18 +16,13 @@ use utoipa::IntoParams;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
-use crate::answer::artifact;
+use crate::answer::body::{self, Sink, WAITING_CHUNKS};
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
+use crate::answer::stored::Stored;
 use crate::app::App;
 use crate::route::verification::Verified;
-
-/// Bytes that are sent at once.
-const CHUNK: usize = 256 << 10;
-
-/// Chunks that may wait for the client; then the writing waits.
-const WAITING_CHUNKS: usize = 4;
 
 /// Points whose files are looked up at once.
 const PAGE: i64 = 200;
@@ -66,54 +59,24 @@ pub(crate) async fn export(
 ) -> Result<Response> {
     let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
+    let place = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
     let archive =
         Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
     tokio::task::spawn_blocking(move || {
-        let mut sink = Sink { sender, buffer: Vec::with_capacity(CHUNK) };
-        if let Err(error) = archive.write(&mut sink, &sweep) {
-            // The client sees a body that breaks off; one that has gone away needs no word in the log.
-            if error.kind() != io::ErrorKind::BrokenPipe {
-                tracing::error!(%error, sweep = archive.id, "an export was aborted");
-            }
-            let _ = sink.sender.blocking_send(Err(error));
+        let _place = place;
+        let mut sink = Sink::new(sender, archive.handle.clone(), None);
+        match archive.write(&mut sink, &sweep) {
+            Ok(()) => sink.finish(),
+            // A client that has gone away needs no word in the log.
+            Err(_) if sink.is_abandoned() => {}
+            Err(error) => sink.fail(Error::internal(&error)),
         }
     });
-    let chunks = futures::stream::unfold(receiver, async |mut receiver| {
-        receiver.recv().await.map(|chunk| (chunk, receiver))
-    });
-    // Compression polls a stream beyond its end.
-    let body = Body::from_stream(chunks.fuse());
+    let body = body::body(None, receiver);
     let name = format!("attachment; filename=\"sweep-{id}.zip\"");
     let headers = [(header::CONTENT_TYPE, "application/zip".to_owned()), (header::CONTENT_DISPOSITION, name)];
     Ok((headers, body).into_response())
-}
-
-/// Chunks on their way to the client.
-struct Sink {
-    sender: mpsc::Sender<io::Result<Bytes>>,
-    buffer: Vec<u8>,
-}
-
-impl Sink {
-    fn send(&mut self) -> io::Result<()> {
-        let chunk = std::mem::replace(&mut self.buffer, Vec::with_capacity(CHUNK));
-        self.sender.blocking_send(Ok(chunk.into())).map_err(|_| io::ErrorKind::BrokenPipe.into())
-    }
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.buffer.extend_from_slice(bytes);
-        if self.buffer.len() >= CHUNK {
-            self.send()?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
@@ -136,10 +99,10 @@ impl Archive {
         let verified = self.handle.block_on(Verified::load(&self.store, &self.id)).map_err(failed)?;
         zip.start_file("table.csv", text.large_file(true))?;
         let table = points::points(&verified.rows(&records).map_err(failed)?);
-        zip.write_all(csv::write(&table).map_err(io::Error::other)?.as_bytes())?;
+        csv::write_to(&table, &mut zip).map_err(io::Error::other)?;
         if !verified.points.is_empty() {
             zip.start_file("verification.csv", text)?;
-            zip.write_all(csv::write(&verified.table()).map_err(io::Error::other)?.as_bytes())?;
+            csv::write_to(&verified.table(), &mut zip).map_err(io::Error::other)?;
         }
         let mut manifest = ExportManifest::default();
         if self.wanted.as_ref().is_none_or(|wanted| !wanted.is_empty()) {
@@ -148,7 +111,7 @@ impl Archive {
         zip.start_file("manifest.json", text)?;
         serde_json::to_writer_pretty(&mut zip, &manifest)?;
         zip.finish()?;
-        sink.send()
+        Ok(())
     }
 
     fn write_points(&self, zip: &mut Zip<'_>, manifest: &mut ExportManifest) -> io::Result<()> {
@@ -164,9 +127,9 @@ impl Archive {
                         continue;
                     }
                     // One file that cannot be read must not cost all others.
-                    match self.handle.block_on(artifact::read(&self.store, key, artifact, None)) {
-                        Ok(bytes) => {
-                            write_artifact(zip, *ordinal, artifact, &bytes)?;
+                    match self.verified(key, artifact) {
+                        Ok(stored) => {
+                            self.write_artifact(zip, *ordinal, artifact, &stored)?;
                             manifest.files += 1;
                         }
                         Err(error) => manifest.missing.push(MissingFile {
@@ -179,17 +142,34 @@ impl Archive {
             }
         }
     }
-}
 
-fn write_artifact(zip: &mut Zip<'_>, ordinal: i64, artifact: &Artifact, bytes: &[u8]) -> io::Result<()> {
-    let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
-    // Parquet is compressed already.
-    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-    zip.start_file(
-        format!("points/{ordinal}/{}.{extension}", artifact.name),
-        stored.large_file(bytes.len() > 1 << 31),
-    )?;
-    zip.write_all(bytes)
+    /// A file that is there and whole: once it is begun in the archive it can no longer be left out.
+    fn verified(&self, key: &WorkKey, artifact: &Artifact) -> Result<Stored> {
+        let _runtime = self.handle.enter();
+        let stored = Stored::new(&self.store, key, artifact.clone())?;
+        self.handle.block_on(stored.verify())?;
+        Ok(stored)
+    }
+
+    fn write_artifact(
+        &self,
+        zip: &mut Zip<'_>,
+        ordinal: i64,
+        artifact: &Artifact,
+        stored: &Stored,
+    ) -> io::Result<()> {
+        let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
+        // Parquet is compressed already.
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        zip.start_file(
+            format!("points/{ordinal}/{}.{extension}", artifact.name),
+            options.large_file(stored.length() > 1 << 31),
+        )?;
+        for stretch in Stored::stretches(0..stored.length()) {
+            zip.write_all(&self.handle.block_on(stored.range(stretch)).map_err(failed)?)?;
+        }
+        Ok(())
+    }
 }
 
 fn failed(error: Error) -> io::Error {

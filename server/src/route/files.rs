@@ -1,7 +1,6 @@
 //! The files of a point's result as they are stored: whole or in ranges, and not again to those who have them.
 
 use axum::Json;
-use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -15,6 +14,7 @@ use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 use crate::answer::records;
+use crate::answer::stored::Stored;
 use crate::app::App;
 use crate::route::results::PointPath;
 
@@ -107,9 +107,10 @@ pub(crate) async fn show(
             format!("{stem} is kept as {stem}{}, not as {stem}{ending}", extension(&stored.media_type));
         return Err(Error::new(ProblemKind::NoSuchTable, detail));
     }
-    artifact::check_age(&stored)?;
-    let length = stored.bytes.unsigned_abs();
-    let tag = format!("\"{}\"", stored.blob);
+    let media_type = HeaderValue::try_from(&stored.media_type).map_err(|error| Error::internal(&error))?;
+    let stored = Stored::new(&app.store, &key, stored)?;
+    let length = stored.length();
+    let tag = format!("\"{}\"", stored.blob());
     let etag: ETag = tag.parse().map_err(|_| Error::internal("a blob's name that is no entity tag"))?;
     let tag = HeaderValue::try_from(tag).map_err(|error| Error::internal(&error))?;
     if headers.typed_get::<IfNoneMatch>().is_some_and(|known| !known.precondition_passes(&etag)) {
@@ -117,7 +118,6 @@ pub(crate) async fn show(
     }
     let is_current = headers.typed_get::<IfRange>().is_none_or(|known| !known.is_modified(Some(&etag), None));
     let range = headers.get(header::RANGE).filter(|_| is_current).and_then(|value| value.to_str().ok());
-    let media_type = HeaderValue::try_from(&stored.media_type).map_err(|error| Error::internal(&error))?;
     let usual: [(HeaderName, HeaderValue); 4] = [
         (header::CONTENT_TYPE, media_type),
         (header::ETAG, tag),
@@ -125,25 +125,26 @@ pub(crate) async fn show(
         // The point may be recomputed; checking whether the copy is current costs little.
         (header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache")),
     ];
-    // What is not a range of bytes is to be ignored (RFC 9110 section 14.2).
-    let Some(ranges) = range.and_then(|range| http_range_header::parse_range_header(range).ok()) else {
-        return Ok(
-            (usual, Body::from(artifact::read(&app.store, &key, &stored, None).await?)).into_response()
-        );
+    // What is not a range of bytes is to be ignored (RFC 9110 section 14.2), and of several ranges the whole is the answer.
+    let ranges = range.and_then(|range| http_range_header::parse_range_header(range).ok());
+    let Ok(ranges) = ranges.map(|ranges| ranges.validate(length)).transpose() else {
+        return Ok(not_satisfiable(length));
     };
-    let ranges = match ranges.validate(length) {
-        Ok(ranges) => ranges,
-        Err(_) => return Ok(not_satisfiable(length)),
-    };
-    let [range] = ranges.as_slice() else {
-        return Ok(
-            (usual, Body::from(artifact::read(&app.store, &key, &stored, None).await?)).into_response()
-        );
-    };
-    let wanted = *range.start()..range.end() + 1;
-    let bytes = artifact::read(&app.store, &key, &stored, Some(wanted)).await?;
-    let place = format!("bytes {}-{}/{length}", range.start(), range.end());
-    Ok((StatusCode::PARTIAL_CONTENT, usual, [(header::CONTENT_RANGE, place)], bytes).into_response())
+    let place = app.file().await?;
+    match ranges.as_deref() {
+        Some([range]) => {
+            let wanted = *range.start()..range.end() + 1;
+            let bytes = [(header::CONTENT_LENGTH, HeaderValue::from(wanted.end - wanted.start))];
+            let part = format!("bytes {}-{}/{length}", range.start(), range.end());
+            let body = stored.body(wanted, place).await?;
+            Ok((StatusCode::PARTIAL_CONTENT, usual, bytes, [(header::CONTENT_RANGE, part)], body)
+                .into_response())
+        }
+        _ => {
+            let bytes = [(header::CONTENT_LENGTH, HeaderValue::from(length))];
+            Ok((usual, bytes, stored.body(0..length, place).await?).into_response())
+        }
+    }
 }
 
 const PARQUET: &str = ".parquet";

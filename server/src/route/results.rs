@@ -1,11 +1,12 @@
 //! The tables of one point's result, and the views cut from them.
 
 use axum::extract::State;
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use drillsweep_api::view::{history, node, orbit, spectrum};
 use drillsweep_chart as chart;
 use drillsweep_store::Store;
+use drillsweep_table::Table;
 use drillsweep_table::quantity::tables::{self, Layout};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
@@ -15,8 +16,9 @@ use crate::answer::artifact::{self, Recording, SpectrumSource};
 use crate::answer::document::{Conditional, PictureResponse, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Format, PictureFormat, TableFormat};
+use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
 use crate::answer::records;
+use crate::answer::stored::Stored;
 use crate::app::App;
 
 /// Which point's result.
@@ -77,19 +79,18 @@ pub(crate) async fn profile(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let place = app.views.enter().await?;
-    let parquet = artifact::load(&app.store, &id, n, tables::PROFILE.name).await?;
+    let profile = artifact::stored(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
-    if format == Format::Parquet && fields.is_none() {
-        return Ok(format::file(parquet, format, &file_name));
+    if !format.is_picture() {
+        return part(&app, profile, fields, format, file_name).await;
     }
     let title = caption(&app.store, &id, n, "Profile").await?;
+    let place = app.view(format.memory(profile.memory().await?)).await?;
     place
-        .run(move || {
-            let (table, fields) = (artifact::decode(parquet, None)?, fields.as_deref());
-            format::respond_or_draw(&table, fields, format, &file_name, |table| {
-                chart::profile(table, fields, &title)
-            })
+        .answer(move || {
+            let table = profile.read(None)?;
+            let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title);
+            Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
 }
@@ -157,21 +158,46 @@ async fn whole_table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
-    let place = app.views.enter().await?;
-    let parquet = artifact::load(&app.store, &id, n, name).await?;
-    let file_name = file_name(&id, n, name);
-    if format == Format::Parquet && query.fields.is_none() {
-        return Ok(format::file(parquet, format, &file_name));
+    let table = artifact::stored(&app.store, &id, n, name).await?;
+    part(&app, table, query.fields, format, file_name(&id, n, name)).await
+}
+
+/// A stored table, or some columns of it, in a format that is no picture; Parquet goes out as it lies there.
+async fn part(
+    app: &App,
+    stored: Stored,
+    fields: Option<Vec<String>>,
+    format: Format,
+    file_name: String,
+) -> Result<Response> {
+    if format == Format::Parquet && fields.is_none() {
+        return whole_file(app, stored, &file_name).await;
     }
+    let place = app.view(format.memory(stored.memory().await?)).await?;
     place
-        .run(move || {
-            format::respond(&artifact::decode(parquet, None)?, query.fields.as_deref(), format, &file_name)
+        .answer(move || {
+            let table = stored.open()?;
+            let layout = format::select(table.layout().clone(), fields.as_deref())?;
+            let cut = table.cut(layout, 0..usize::MAX, 1)?;
+            Ok(Answer::of_part(stored, cut, format, &file_name, &fields))
         })
         .await
 }
 
+/// A table as it is stored.
+async fn whole_file(app: &App, stored: Stored, file_name: &str) -> Result<Response> {
+    let place = app.file().await?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(stored.blob().to_string().as_bytes());
+    let head = Head::new(Format::Parquet, file_name, &hasher);
+    let length = stored.length();
+    let mut response = head.response(stored.body(0..length, place).await?);
+    response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
+    Ok(response)
+}
+
 /// Which part of the recorded histories is wanted.
-#[derive(Deserialize, IntoParams)]
+#[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HistoryQuery {
@@ -241,28 +267,58 @@ pub(crate) async fn history(
         (node, depth) => Some(node::Choice::from_parameters(node, depth, query.nearest)?),
     };
     let file_name = file_name(&id, n, tables::HISTORY.name);
-    if format == Format::Parquet && query.is_whole() {
-        let parquet = artifact::load(&app.store, &id, n, tables::HISTORY.name).await?;
-        return Ok(format::file(parquet, format, &file_name));
-    }
-    let place = app.views.enter().await?;
     let recording = Recording::load(&app.store, &id, n).await?;
+    if format == Format::Parquet && query.is_whole() {
+        return whole_file(&app, recording.history, &file_name).await;
+    }
     let title = caption(&app.store, &id, n, "History").await?;
+    let picture = if format.is_picture() { MOST_SHOWN as u64 * MEMORY_OF_SHOWN } else { 0 };
+    let place = app.view(format.memory(recording.history.memory().await? + picture)).await?;
     place
-        .run(move || {
-            let table = match choice {
-                None => recording.table()?,
-                Some(choice) => recording.table_of(choice)?,
+        .answer(move || {
+            let history = recording.history.open()?;
+            let layout = match choice {
+                None => history.layout().clone(),
+                Some(choice) => recording.layout_of(choice, history.layout().clone())?,
             };
-            let max_points = query.max_points.map(|points| points as usize);
-            let table = history::history(table, query.from, query.to, max_points);
-            let fields = query.fields.as_deref();
-            let places = if format.is_picture() { recording.places()? } else { Vec::new() };
-            format::respond_or_draw(&table, fields, format, &file_name, |table| {
-                chart::history(table, fields, &places, &title)
-            })
+            let samples = recording.samples(&history, query.from, query.to)?;
+            let stride = history::stride(samples.len(), query.max_points.map(|points| points as usize));
+            let layout = layout.attribute("samples", samples.len());
+            if !format.is_picture() {
+                let layout = format::select(layout, query.fields.as_deref())?;
+                let part = history.cut(layout, samples, stride)?;
+                let selection = (recording.statics.blob(), &query);
+                return Ok(Answer::of_part(recording.history, part, format, &file_name, &selection));
+            }
+            let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
+            let columns = layout.columns.len();
+            let part = history.cut(layout, samples, stride)?;
+            check_shown(part.rows(), columns)?;
+            let table = part.read().map_err(|error| recording.history.problem(error))?.widened();
+            let places = recording.places(&table)?;
+            let draw = |table: &Table| chart::history(table, query.fields.as_deref(), &places, &title);
+            Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
+}
+
+/// Values that a picture of a history shows at most.
+const MOST_SHOWN: usize = 2_000_000;
+
+/// Bytes of memory that drawing one of them takes.
+const MEMORY_OF_SHOWN: u64 = 64;
+
+/// Refuses a picture in which nobody could make out anything.
+fn check_shown(rows: usize, columns: usize) -> Result<()> {
+    let values = rows.saturating_mul(columns);
+    if values <= MOST_SHOWN {
+        return Ok(());
+    }
+    let detail = format!(
+        "the picture would show {values} values, {rows} of each of {columns} columns, and shows at most {MOST_SHOWN}: ask for one \
+         node, some `fields`, a shorter window, or at most so many points"
+    );
+    Err(Error::parameter("max_points", None, detail))
 }
 
 /// Which part of one node's orbit is wanted.
@@ -326,18 +382,18 @@ pub(crate) async fn orbit(
         let detail = format!("must be {} or more", orbit::FEWEST_POINTS);
         return Err(Error::parameter("max_points", Some(&points.to_string()), detail));
     }
-    let place = app.views.enter().await?;
     let recording = Recording::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Orbit").await?;
+    let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
     place
-        .run(move || {
-            let motion = recording.motion_of(choice)?;
-            let table = motion.label(orbit::orbit(&motion.columns(), query.from, query.to, max_points));
+        .answer(move || {
+            let motion = recording.motion_of(choice, query.from, query.to)?;
+            let table = motion.label(orbit::orbit(&motion.columns(), None, None, max_points));
             let hole = recording.hole_at(motion.node)?;
             let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
-            format::respond_or_draw(&table, None, format, &file_name, |table| {
-                chart::orbit(table, &hole, &title, query.zoom)
-            })
+            drop(motion);
+            let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
+            Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
 }
@@ -422,19 +478,19 @@ pub(crate) async fn spectrum(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
-    let place = app.views.enter().await?;
     let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     let point = app.store.point(&id, n.into()).await?;
+    let place = app.view(format.memory(source.memory().await?)).await?;
     place
-        .run(move || {
+        .answer(move || {
             let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
             let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
             let (node, table) = match source {
                 SpectrumSource::Recording(recording) => {
-                    let motion = recording.motion_of(choice)?;
-                    let part = motion.columns().window(from, to);
-                    (motion.node, motion.label(spectrum::spectrum(&part, window, range_hz, peaks)?))
+                    let motion = recording.motion_of(choice, from, to)?;
+                    let table = spectrum::spectrum(&motion.columns(), window, range_hz, peaks)?;
+                    (motion.node, motion.label(table))
                 }
                 SpectrumSource::Kept(kept) => {
                     let kept = kept.spectrum_of(choice, from, to, window)?;
@@ -443,7 +499,8 @@ pub(crate) async fn spectrum(
             };
             let table = spectrum::mark_resolved(table, resolved_hz);
             let file_name = file_name(&id, n, &format!("spectrum-{node}"));
-            format::respond_or_draw(&table, None, format, &file_name, |table| chart::spectrum(table, &title))
+            let draw = |table: &Table| chart::spectrum(table, &title);
+            Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
 }

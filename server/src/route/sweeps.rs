@@ -27,14 +27,14 @@ use crate::answer::blocking::{blocking, to_the_end};
 use crate::answer::document::{Conditional, PictureResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
-use crate::answer::format::{self, Format, PictureFormat};
+use crate::answer::format::{Answer, Format, PictureFormat};
 use crate::answer::records;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
 use crate::route::status::WORKER_SILENCE;
-use crate::route::verification::Verified;
+use crate::route::verification::{MEMORY_OF_POINT, Verified};
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
@@ -150,7 +150,7 @@ async fn submit(
     // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
     let (expansion, new_sweep) = app
         .plans
-        .enter()
+        .enter(1)
         .await?
         .run(move || {
             let expansion = expand(&request)?;
@@ -217,7 +217,7 @@ async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<Dry
         (known(Some(&expansion)).await?, known(expansion.verification.as_deref()).await?);
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
-    let place = app.plans.enter().await?;
+    let place = app.plans.enter(1).await?;
     place.run(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
 }
 
@@ -616,7 +616,7 @@ pub(crate) async fn append(
     let verify = original.verify;
     let (expansion, points) = app
         .plans
-        .enter()
+        .enter(1)
         .await?
         .run(move || {
             let expansion = expand_added(request, &original)?;
@@ -743,12 +743,13 @@ pub(crate) async fn table(
     let spacing = spacing.unwrap_or_default().into();
     let view = chart::SweepView { spacing, slice: slice.unwrap_or_default() };
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
-    let place = app.views.enter().await?;
+    let place = app.view(sweep.counts.total.unsigned_abs() * MEMORY_OF_POINT).await?;
     let records = app.store.table_rows(&id).await?;
     let verified = Verified::load(&app.store, &id).await?;
     place
-        .run(move || {
+        .answer(move || {
             let rows = verified.rows(&records)?;
+            drop(records);
             let mut table = points::points(&rows);
             let findings = &verified.findings;
             if !findings.warnings.is_empty() {
@@ -756,7 +757,7 @@ pub(crate) async fn table(
             }
             let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
             let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-            format::respond_or_draw(&table, fields, format, &format!("sweep-{id}"), |table| {
+            Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), |table| {
                 chart::sweep(table, &parameters, fields, findings, title, &view)
             })
         })

@@ -14,10 +14,13 @@ use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query};
-use crate::answer::format::{self, Format};
+use crate::answer::format::{Answer, Format};
 use crate::answer::records;
 use crate::app::App;
 use crate::route::results::TableQuery;
+
+/// Bytes of memory that a point takes on its way into a table of its sweep.
+pub(crate) const MEMORY_OF_POINT: u64 = 4 << 10;
 
 /// The points of a sweep that are verified, and what they show.
 #[derive(Default)]
@@ -88,8 +91,11 @@ pub(crate) async fn show(
         return Err(records::no_such_sweep(&id));
     }
     let verified = Verified::load(&app.store, &id).await?;
-    blocking(move || {
-        format::respond(&verified.table(), fields.as_deref(), format, &format!("sweep-{id}-verification"))
-    })
-    .await
+    let place = app.view(verified.points.len() as u64 * MEMORY_OF_POINT).await?;
+    place
+        .answer(move || {
+            let name = format!("sweep-{id}-verification");
+            Answer::of_table(verified.table(), fields.as_deref(), format, &name)
+        })
+        .await
 }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
+use axum::response::Response;
 use drillsweep_server::{Config, router};
 use drillsweep_store::{Claim, NewArtifact, NewResult, Role, Store, StoreConfig};
 use drillsweep_table::{Column, Table, parquet};
@@ -83,6 +84,12 @@ impl Bench {
         Answer { status: parts.status, headers: parts.headers, body }
     }
 
+    /// An answer whose body is not read yet.
+    pub(crate) async fn open(&self, path: &str) -> Response {
+        let request = Request::get(path).body(Body::empty()).unwrap();
+        self.routes.clone().oneshot(request).await.unwrap()
+    }
+
     pub(crate) async fn get(&self, path: &str) -> Answer {
         self.send(Request::get(path).body(Body::empty()).unwrap()).await
     }
@@ -127,14 +134,21 @@ impl Bench {
 
     /// The same with a number of one's own in the summary.
     pub(crate) async fn succeed_with(&self, residual: f64) {
+        let tables = tables();
+        let tables: Vec<_> = tables.iter().map(|(name, table)| (*name, table)).collect();
+        self.succeed_with_tables(residual, &tables).await;
+    }
+
+    /// The same with tables of one's own.
+    pub(crate) async fn succeed_with_tables(&self, residual: f64, tables: &[(&str, &Table)]) {
         let claim = self.claim().await;
         let scenario =
             drillsweep_api::compose(&claim.scenario.base_json, &claim.scenario.changes_json).unwrap();
         let mut artifacts = Vec::new();
-        for (name, table) in tables() {
-            let bytes = parquet::write(&table).unwrap();
+        for (name, table) in tables {
+            let bytes = parquet::write(table).unwrap();
             artifacts.push(NewArtifact {
-                name: name.to_owned(),
+                name: (*name).to_owned(),
                 media_type: "application/vnd.apache.parquet".to_owned(),
                 bytes: bytes.len().try_into().unwrap(),
                 row_count: table.rows().try_into().unwrap(),

@@ -10,6 +10,7 @@ mod errors;
 mod events;
 mod files;
 mod follow;
+mod large;
 mod openapi;
 mod pictures;
 mod results;

@@ -252,7 +252,12 @@ async fn what_the_client_has_a_copy_of_is_not_sent_again() {
 #[tokio::test]
 async fn large_answers_beyond_their_places_are_refused_and_light_ones_are_not() {
     let (mut bench, path) = finished().await;
-    bench.reconfigure(Config { large_answers: 0, large_answers_waiting: 0, ..Config::default() });
+    bench.reconfigure(Config {
+        large_answers: 0,
+        large_answer_bytes: 0,
+        large_answers_waiting: 0,
+        ..Config::default()
+    });
     for view in ["points/1/history?format=csv", "points/1/orbit?node=49", "points/1/profile", "table"] {
         let answer = bench.get(&format!("{path}/{view}")).await;
         answer.problem(503, "unavailable");

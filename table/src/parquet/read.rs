@@ -14,10 +14,13 @@ use ::parquet::file::reader::{ChunkReader, FileReader, Length, RowGroupReader, S
 use ::parquet::file::serialized_reader::ReadOptionsBuilder;
 use bytes::Bytes;
 
-use super::{ROW_GROUP_BYTES, UNIT_PREFIX};
+use super::{ROW_GROUP, UNIT_PREFIX};
 use crate::error::TableError;
 use crate::source::Source;
 use crate::table::{Column, Table};
+
+/// Bytes of the values of a piece in memory, unless one row or one column has more.
+const PIECE_BYTES: usize = 16 << 20;
 
 /// Bytes that are read at once, from a multiple of them on.
 const BLOCK: u64 = 256 << 10;
@@ -197,7 +200,7 @@ impl<R: ReadAt> Cut<R> {
         let bounds = &self.stored.bounds;
         let group_end = bounds[bounds.partition_point(|bound| *bound <= start)];
         let width: usize = self.layout.columns.values().map(width).sum();
-        let most = (ROW_GROUP_BYTES / width.max(1)).max(1).saturating_mul(self.stride);
+        let most = (PIECE_BYTES / width.max(1)).max(1).saturating_mul(self.stride);
         Some(start..start.saturating_add(most).min(group_end).min(self.rows.end))
     }
 }
@@ -224,7 +227,7 @@ impl<R: ReadAt> Source for Cut<R> {
             let mut bytes = 0;
             let fits = |(_, column): &&(&String, &Column)| {
                 bytes += self.rows() * width(column);
-                bytes <= ROW_GROUP_BYTES
+                bytes <= PIECE_BYTES
             };
             let count = columns[next..].iter().take_while(fits).count().max(1);
             let piece = columns.get(next..(next + count).min(columns.len()))?;
@@ -312,6 +315,29 @@ impl<R: ReadAt> io::Read for BlockReader<R> {
         self.position += count as u64;
         Ok(count)
     }
+}
+
+/// Bytes at the end of a file that say how long its footer is.
+pub const FOOTER_END: u64 = 8;
+
+/// Bytes of memory that it takes to read a stored table and write it in another format, a piece at a time, at most: by the length of
+/// its file, the file's last [`FOOTER_END`] bytes, and its rows. To Parquet it takes [`MEMORY_OF_WRITER`] besides.
+pub fn memory(length: u64, end: &[u8], rows: u64) -> u64 {
+    /// Of the footer as it is read and decoded, by its length; writing Parquet makes another one.
+    const OF_FOOTER: u64 = 8;
+    /// Bytes in the footer for a column of a row group, at least.
+    const OF_CHUNK: u64 = 40;
+    /// Of a number, be it a whole one that may be missing.
+    const OF_VALUE: u64 = size_of::<Option<i64>>() as u64;
+    let footer = match end {
+        [a, b, c, d, _, _, _, _] => u64::from(u32::from_le_bytes([*a, *b, *c, *d])).min(length),
+        _ => length,
+    };
+    let row_groups = rows.div_ceil(ROW_GROUP as u64).max(1);
+    let column = rows.saturating_mul(OF_VALUE);
+    let all = column.saturating_mul(footer / OF_CHUNK / row_groups);
+    // A piece may have a column alone, and each column of it may become an array.
+    footer.saturating_mul(OF_FOOTER) + all.min(PIECE_BYTES as u64).max(column) + column + BLOCK
 }
 
 /// Bytes of a value in memory; of a text, without the text itself.

@@ -1,0 +1,167 @@
+//! Bodies that are written while they are sent: by a thread that waits for the client, so that only chunks are in memory.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::{Body, Bytes};
+use axum::response::Response;
+use futures::StreamExt;
+use tokio::runtime::Handle;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
+use tokio::time::timeout;
+
+use crate::answer::error::{Error, Result};
+use crate::answer::format::Answer;
+use crate::answer::stored::broken_off;
+
+/// Bytes that are sent at once.
+const CHUNK: usize = 256 << 10;
+
+/// Chunks that may wait for the client; then the writing waits.
+pub(crate) const WAITING_CHUNKS: usize = 2;
+
+/// Bytes of memory that a body takes on its way.
+pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
+
+/// How long a client may take to make room for a chunk: whoever takes less does not read, but hold what others wait for.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Writes an answer in a thread of its own, which computes when it is its turn and has `held` until it ends. What fails before the
+/// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
+pub(crate) async fn send(
+    turns: Arc<Semaphore>,
+    held: impl Send + 'static,
+    prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
+) -> Result<Response> {
+    let (sender, mut receiver) = mpsc::channel(WAITING_CHUNKS);
+    let (head, heading) = oneshot::channel();
+    let (span, handle) = (tracing::Span::current(), Handle::current());
+    tokio::task::spawn_blocking(move || {
+        let _entered = span.enter();
+        let _held = held;
+        let mut sink = Sink::new(sender, handle, Some(turns));
+        let answer = match prepare() {
+            Ok(answer) => answer,
+            Err(error) => return sink.fail(error),
+        };
+        // Nobody listens any more where the request has ended.
+        let _ = head.send(answer.head());
+        let written = answer.write(&mut sink);
+        match written {
+            Ok(()) => sink.finish(),
+            Err(_) if sink.is_abandoned() => {}
+            Err(error) => sink.fail(answer.problem(error)),
+        }
+    });
+    let ended = || Error::internal("the thread that writes an answer has ended");
+    let first = receiver.recv().await.ok_or_else(ended)??;
+    let head = heading.await.map_err(|_| ended())?;
+    Ok(head.response(match first {
+        Chunk::Last(bytes) => Body::from(bytes),
+        first @ Chunk::One(_) => body(Some(first), receiver),
+    }))
+}
+
+/// A part of a body.
+pub(crate) enum Chunk {
+    One(Bytes),
+    Last(Bytes),
+}
+
+/// A body of chunks: `first`, and those that come. One that ends without its last breaks off.
+pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>) -> Body {
+    let chunks = futures::stream::unfold(Some((first, receiver)), async |state| {
+        let (first, mut receiver) = state?;
+        let chunk = match first {
+            Some(first) => Some(Ok(first)),
+            None => receiver.recv().await,
+        };
+        Some(match chunk {
+            Some(Ok(Chunk::One(bytes))) => (Ok(bytes), Some((None, receiver))),
+            Some(Ok(Chunk::Last(bytes))) => (Ok(bytes), None),
+            Some(Err(error)) => (Err(broken_off(error)), None),
+            None => (Err(io::ErrorKind::UnexpectedEof.into()), None),
+        })
+    });
+    // Compression polls a stream beyond its end.
+    Body::from_stream(chunks.fuse())
+}
+
+/// Chunks on their way to the client.
+pub(crate) struct Sink {
+    sender: mpsc::Sender<Result<Chunk>>,
+    buffer: Vec<u8>,
+    handle: Handle,
+    /// Where turns to compute are had, and the one at hand.
+    turns: Option<Arc<Semaphore>>,
+    turn: Option<OwnedSemaphorePermit>,
+    is_abandoned: bool,
+}
+
+impl Sink {
+    /// A sink for a thread that computes when it is its turn; without `turns` whenever it likes.
+    pub(crate) fn new(
+        sender: mpsc::Sender<Result<Chunk>>,
+        handle: Handle,
+        turns: Option<Arc<Semaphore>>,
+    ) -> Self {
+        let mut sink = Sink { sender, buffer: Vec::new(), handle, turns, turn: None, is_abandoned: false };
+        sink.take_turn();
+        sink
+    }
+
+    fn take_turn(&mut self) {
+        if let Some(turns) = &self.turns {
+            // The semaphore is never closed.
+            self.turn = self.handle.block_on(turns.clone().acquire_owned()).ok();
+        }
+    }
+
+    /// Sends what is left, as the end of the body.
+    pub(crate) fn finish(mut self) {
+        let bytes = std::mem::take(&mut self.buffer);
+        let _ = self.send(Ok(Chunk::Last(bytes.into())));
+    }
+
+    /// Breaks the body off.
+    pub(crate) fn fail(mut self, error: Error) {
+        let _ = self.send(Err(error));
+    }
+
+    /// Whether the client has gone away, or takes nothing.
+    pub(crate) fn is_abandoned(&self) -> bool {
+        self.is_abandoned
+    }
+
+    /// Others compute while this one waits for its client.
+    fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
+        self.turn = None;
+        let sent = self.handle.block_on(async { timeout(PATIENCE, self.sender.send(chunk)).await });
+        if !matches!(sent, Ok(Ok(()))) {
+            self.is_abandoned = true;
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        Ok(())
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.is_abandoned {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        let count = bytes.len().min(CHUNK - self.buffer.len());
+        self.buffer.extend_from_slice(&bytes[..count]);
+        if self.buffer.len() == CHUNK {
+            let chunk = std::mem::take(&mut self.buffer);
+            self.send(Ok(Chunk::One(chunk.into())))?;
+            self.take_turn();
+        }
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,216 @@
+//! A table of a result where it lies: read in verified ranges, computed again where storage has lost it.
+
+use std::io;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use axum::body::{Body, Bytes};
+use drillsweep_api::{PHYSICS_VERSION, ProblemKind};
+use drillsweep_store::{Artifact, BlobId, BlobStore, Repair, Store, StoreError, WorkKey};
+use drillsweep_table::parquet::{self, ReadAt, StoredTable};
+use drillsweep_table::{Table, TableError};
+use futures::{StreamExt, stream};
+use tokio::runtime::Handle;
+
+use crate::answer::error::{Error, Result};
+use crate::answer::records;
+
+/// Bytes of a file that are read, verified and sent at once: what storage verifies as one.
+const STRETCH: u64 = 256 << 10;
+
+/// Bytes of memory that sending a file as it is stored takes: a stretch on its way, and the next one.
+pub(crate) const MEMORY_OF_FILE: u64 = 2 * STRETCH;
+
+/// One table of a point's result, of which nothing is in memory.
+#[derive(Clone)]
+pub(crate) struct Stored {
+    store: Store,
+    key: WorkKey,
+    name: String,
+    rows: u64,
+    file: StoredFile,
+}
+
+/// Its file, for a thread that may wait.
+#[derive(Clone)]
+pub(crate) struct StoredFile {
+    blobs: BlobStore,
+    blob: BlobId,
+    length: u64,
+    handle: Handle,
+    /// Why it could not be read: Parquet's errors do not tell.
+    failure: Arc<Mutex<Option<StoreError>>>,
+}
+
+impl ReadAt for StoredFile {
+    fn length(&self) -> u64 {
+        self.length
+    }
+
+    fn read_at(&self, range: Range<u64>) -> io::Result<Bytes> {
+        self.handle.block_on(self.blobs.get_range(self.blob, range)).map_err(|error| {
+            let failed = io::Error::other(error.to_string());
+            *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            failed
+        })
+    }
+}
+
+impl Stored {
+    /// A table that a result has, unless it has reached its age.
+    pub(crate) fn new(store: &Store, key: &WorkKey, artifact: Artifact) -> Result<Self> {
+        check_age(&artifact)?;
+        let file = StoredFile {
+            blobs: store.blobs().clone(),
+            blob: artifact.blob.parse()?,
+            length: artifact.bytes.unsigned_abs(),
+            handle: Handle::current(),
+            failure: Arc::default(),
+        };
+        let rows = artifact.row_count.unsigned_abs();
+        Ok(Self { store: store.clone(), key: *key, name: artifact.name, rows, file })
+    }
+
+    /// The name of its content.
+    pub(crate) fn blob(&self) -> BlobId {
+        self.file.blob
+    }
+
+    /// Length of the file \[bytes\].
+    pub(crate) fn length(&self) -> u64 {
+        self.file.length
+    }
+
+    /// The number of rows.
+    pub(crate) fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Bytes of memory that it takes to read it a piece at a time.
+    pub(crate) async fn memory(&self) -> Result<u64> {
+        let end = self.range(self.length().saturating_sub(parquet::FOOTER_END)..self.length()).await?;
+        Ok(parquet::memory(self.length(), &end, self.rows))
+    }
+
+    /// All bytes of a file that is known to be small.
+    pub(crate) async fn whole(&self) -> Result<Bytes> {
+        match self.file.blobs.get(self.file.blob).await {
+            Ok(bytes) => Ok(bytes),
+            Err(error) => Err(self.lost(error).await),
+        }
+    }
+
+    /// A range of the bytes.
+    pub(crate) async fn range(&self, range: Range<u64>) -> Result<Bytes> {
+        match self.file.blobs.get_range(self.file.blob, range).await {
+            Ok(bytes) => Ok(bytes),
+            Err(error) => Err(self.lost(error).await),
+        }
+    }
+
+    /// Reads all of it without keeping it.
+    pub(crate) async fn verify(&self) -> Result<()> {
+        match self.file.blobs.verify(self.file.blob).await {
+            Ok(_) => Ok(()),
+            Err(error) => Err(self.lost(error).await),
+        }
+    }
+
+    /// The ranges in which a range of the bytes is read.
+    pub(crate) fn stretches(range: Range<u64>) -> impl Iterator<Item = Range<u64>> {
+        let mut next = range.start;
+        std::iter::from_fn(move || {
+            let stretch = next..range.end.min((next / STRETCH + 1) * STRETCH);
+            next = stretch.end;
+            (!stretch.is_empty()).then_some(stretch)
+        })
+    }
+
+    /// A body of a range of the bytes, which are read as the client takes them; `held` is dropped at its end. The first of them are
+    /// read before there is one, so that what is damaged there is a problem. What is damaged further on breaks it off.
+    pub(crate) async fn body(self, range: Range<u64>, held: impl Send + 'static) -> Result<Body> {
+        let mut stretches = Self::stretches(range);
+        let Some(first) = stretches.next() else { return Ok(Body::empty()) };
+        let first = stream::once(std::future::ready(Ok(self.range(first).await?)));
+        let later = stream::try_unfold((self, stretches, held), async |(stored, mut stretches, held)| {
+            let Some(stretch) = stretches.next() else { return Ok(None) };
+            let bytes = stored.range(stretch).await.map_err(broken_off)?;
+            Ok::<_, io::Error>(Some((bytes, (stored, stretches, held))))
+        });
+        // Compression polls a stream beyond its end.
+        Ok(Body::from_stream(first.chain(later).fuse()))
+    }
+
+    /// The table, to be read in parts by a thread that may wait.
+    pub(crate) fn open(&self) -> Result<StoredTable<StoredFile>> {
+        StoredTable::open(self.file.clone()).map_err(|error| self.problem(error))
+    }
+
+    /// Some columns, or all of them, of all rows, with numbers in double precision; read by a thread that may wait.
+    pub(crate) fn read(&self, columns: Option<&[&str]>) -> Result<Table> {
+        let stored = self.open()?;
+        let all: Vec<&str> = stored.layout().columns.keys().map(String::as_str).collect();
+        let table = stored.read(columns.unwrap_or(&all), 0..stored.rows());
+        Ok(table.map_err(|error| self.problem(error))?.widened())
+    }
+
+    /// What it means that a thread could not read a part. Where storage has lost it, its point is computed again, and the problem says
+    /// so.
+    pub(crate) fn problem(&self, error: TableError) -> Error {
+        let failure = self.file.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match failure {
+            Some(failure) => self.file.handle.block_on(self.lost(failure)),
+            None => error.into(),
+        }
+    }
+
+    async fn lost(&self, error: StoreError) -> Error {
+        if !error.is_damage() {
+            return error.into();
+        }
+        tracing::error!(%error, table = self.name, "a stored table is damaged");
+        match self.store.queue_damaged(&self.key, self.file.blob, PHYSICS_VERSION.into()).await {
+            Ok(repair) => damaged(&self.name, repair),
+            Err(error) => error.into(),
+        }
+    }
+}
+
+/// What breaks off a body.
+pub(crate) fn broken_off(error: Error) -> io::Error {
+    let detail = error.into_problem().detail;
+    tracing::error!(detail, "an answer was broken off");
+    io::Error::other(detail)
+}
+
+/// Refuses a table that has reached its age.
+pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
+    let Some(expired) = artifact.expired else { return Ok(()) };
+    let detail = format!(
+        "the table {} expired at {}; the summary is kept, and a sweep submitted with ?cache=refresh recomputes the point",
+        artifact.name,
+        records::timestamp(expired)?
+    );
+    Err(Error::new(ProblemKind::Expired, detail))
+}
+
+/// The problem that a table is lost, with what becomes of it.
+fn damaged(name: &str, repair: Repair) -> Error {
+    let consequence = match repair {
+        Repair::Queued | Repair::UnderWay => {
+            "the point is being computed again; ask again when it is done".to_owned()
+        }
+        Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
+                                submit it again to have another try"
+            .to_owned(),
+        Repair::OtherNumbers(version) => format!(
+            "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \
+             {PHYSICS_VERSION}"
+        ),
+        Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
+    };
+    let detail = format!(
+        "the table {name} is lost or was changed in storage, and nothing of it is served; {consequence}"
+    );
+    Error::new(ProblemKind::Damaged, detail)
+}

@@ -11,8 +11,6 @@ RUN useradd --system --uid 10001 --no-create-home drillsweep && install --direct
 COPY --from=build /usr/local/bin/drillsweep /usr/local/bin/drillsweep
 USER 10001
 ENV DRILLSWEEP_DATA=/data
-# Each of more arenas keeps what its threads have freed: with two, large answers take what the service allows them.
-ENV MALLOC_ARENA_MAX=2
 VOLUME /data
 EXPOSE 7340
 ENTRYPOINT ["drillsweep"]

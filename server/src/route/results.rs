@@ -246,6 +246,7 @@ impl HistoryQuery {
 ///
 /// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ... A picture shows u and v,
 /// where the string twists also the rate of twist of the lowest node, or the `fields`; the legend says at which depth and to which side.
+/// It shows 2,000,000 values at most.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/history",

@@ -77,7 +77,7 @@ const TURNS_WITH_ITS_FORCE: f64 = 0.5;
 
 /// The force of the same law that agrees with the motion which it leads to, as far as the node's own force moves it: in the
 /// normal direction by one step of Newton's method, along the surface by a solution of the whole friction curve. A node whose clearance is so
-/// small that its own force [turns it about the axis](TURNS_WITH_ITS_FORCE) is first [put where that force leaves it](settle). Where the motion
+/// small that its own force turns it about the axis is first put where that force leaves it. Where the motion
 /// agrees with the force that it was found with, it is that of [`dynamic_contact`].
 #[inline(always)]
 pub fn implicit_contact<L: Lane>(

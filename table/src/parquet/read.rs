@@ -321,7 +321,7 @@ impl<R: ReadAt> io::Read for BlockReader<R> {
 pub const FOOTER_END: u64 = 8;
 
 /// Bytes of memory that it takes to read a stored table and write it in another format, a piece at a time, at most: by the length of
-/// its file, the file's last [`FOOTER_END`] bytes, and its rows. To Parquet it takes [`MEMORY_OF_WRITER`] besides.
+/// its file, the file's last [`FOOTER_END`] bytes, and its rows. To Parquet it takes [`MEMORY_OF_WRITER`](crate::parquet::MEMORY_OF_WRITER) besides.
 pub fn memory(length: u64, end: &[u8], rows: u64) -> u64 {
     /// Of the footer as it is read and decoded, by its length; writing Parquet makes another one.
     const OF_FOOTER: u64 = 8;

@@ -7,7 +7,8 @@ use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::scenario::{
     Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
 };
-use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::statics::{Equilibrium, StaticsError};
+use drillsweep_sim::study::soak;
 
 /// A horizontal string of one section without mud, friction and torque.
 fn horizontal(length: f64, diameters: [f64; 2], element: f64) -> Scenario {
@@ -246,4 +247,27 @@ fn a_pulled_string_carries_its_weight_and_the_pull() {
     let [_, _, w, ..] = *equilibrium.displacement.last().expect("the bit");
     let stretch = (pull * length + 0.5 * weight * length * length) / beam.axial_stiffness();
     assert!((w / stretch - 1.0).abs() < 1e-9, "{w} m for {stretch} m");
+}
+
+#[test]
+fn equilibria_that_end_as_friction_grows_end_at_one_friction() {
+    // A scene drawn at random of which no search finds an equilibrium, though it has one without friction.
+    let with_friction = |share: f64| {
+        let mut scenario = soak::scene(1, 207);
+        scenario.contact.static_friction *= share;
+        scenario.contact.dynamic_friction *= share;
+        Model::new(&scenario).unwrap()
+    };
+    let limit = |share: f64| match Equilibrium::find(&with_friction(share)).map(|found| found.effort) {
+        Err(StaticsError::NotConverged { friction_limit: Some(limit), overload: None, .. }) => limit * share,
+        found => panic!("at {share}: {found:?}"),
+    };
+    // It is the scene's, whatever friction the path was to lead to.
+    let whole = limit(1.0);
+    for share in [0.8, 1.2, 1.5] {
+        assert!((limit(share) / whole - 1.0).abs() < 0.01, "{share}: {whole}");
+    }
+    // Just below it an equilibrium is found, by whichever search comes first.
+    let found = Equilibrium::find(&with_friction(0.95 * whole)).unwrap();
+    assert!(found.normal_force.iter().any(|force| *force > 0.0));
 }

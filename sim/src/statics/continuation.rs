@@ -1,15 +1,17 @@
-//! Continuation: the path of equilibria from the unloaded string to the loaded one.
+//! Continuation: the path of equilibria from the unloaded string to the loaded one, or from a wall without friction to one with it.
 //!
-//! `R(x, s) = 0`, the balance under a share s of the loads, is a path through x and s that begins at rest on the centre line. It is followed by its
-//! arc length (Riks 1979; Keller 1977), so that it may turn back in s: where it does, at a limit point, the equilibria that began at the
-//! unloaded string end.
+//! `R(x, s) = 0`, the balance under a share s of the loads or of the friction, is a path through x and s that begins where an equilibrium is known:
+//! at rest on the centre line, or on the slippery wall. It is followed by its
+//! arc length (Riks 1979; Keller 1977), so that it may turn back in s: where it does, at a limit point, the equilibria that began there end.
 
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
+use crate::contact::Wall;
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::{BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector};
+use crate::scenario::ContactLaw;
 
-/// First step along the path, in shares of the loads or radii of the hole, whichever are more.
+/// First step along the path, in shares or radii of the hole, whichever are more.
 const FIRST_STEP: f64 = 0.05;
 
 /// The shortest step: of a path that needs shorter ones the search has lost hold.
@@ -21,7 +23,7 @@ const MOST_LINEARISATIONS: usize = 4000;
 /// Iterations within which a step has to come back to the path.
 const MOST_CORRECTIONS: usize = 10;
 
-/// Last correction at which it has, in the largest displacement (or 1 m, 1 rad), and of the share of the loads.
+/// Last correction at which it has, in the largest displacement (or 1 m, 1 rad), and of the share.
 const ON_THE_PATH: f64 = 1e-8;
 
 /// Follows the equilibria from the unloaded string to `load`, and moves `displacement` to the one there; `None` where the path does not come
@@ -35,15 +37,65 @@ pub(super) fn follow(
     displacement: &mut NodalVector,
     spring: f64,
 ) -> Option<NewtonOutcome> {
-    let tributary = tributary_lengths(model);
-    let held = (0..model.node_count()).map(|node| model.held_by_top(node)).collect();
-    Path { model, load, spring, tributary, held, linearisations: 0 }.follow(displacement)
+    let start = vec![[0.0; DOFS]; load.len()];
+    match Path::new(model, load, Grown::Loads { spring }).follow(start, displacement) {
+        End::Found(outcome) => Some(outcome),
+        End::TurnedBack { .. } | End::Lost => None,
+    }
+}
+
+/// Follows the equilibria under `load` as the friction of the wall grows, from the one on [a wall without](slippery), at `displacement`,
+/// which is moved to the one with it.
+pub(super) fn with_growing_friction(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> End {
+    let start = displacement.clone();
+    Path::new(model, load, Grown::Friction { none: slippery(model) }).follow(start, displacement)
+}
+
+/// The model's wall without friction.
+pub(super) fn slippery(model: &Model) -> Wall {
+    with_friction(model, 0.0)
+}
+
+/// The model's wall with a share of its friction.
+fn with_friction(model: &Model, share: f64) -> Wall {
+    let own = &model.scenario.contact;
+    let law = ContactLaw {
+        static_friction: share * own.static_friction,
+        dynamic_friction: share * own.dynamic_friction,
+        ..*own
+    };
+    model.wall.with_law(&law, &model.effects)
+}
+
+/// Where a path led.
+pub(super) enum End {
+    /// To the whole of what grows.
+    Found(NewtonOutcome),
+    /// Back to where it began, from this share at most: there is no further equilibrium on it.
+    TurnedBack { share: f64 },
+    /// The search has lost hold of it.
+    Lost,
+}
+
+/// What grows along a path.
+enum Grown {
+    /// The loads, while a spring per length \[N/m2\] to the centre line fades.
+    Loads { spring: f64 },
+    /// The wall's friction.
+    Friction {
+        /// The wall without.
+        none: Wall,
+    },
 }
 
 struct Path<'a> {
     model: &'a Model,
     load: &'a [[f64; DOFS]],
-    spring: f64,
+    grown: Grown,
     tributary: Vec<f64>,
     held: Vec<[bool; DOFS]>,
     linearisations: usize,
@@ -65,13 +117,19 @@ impl Point {
     }
 }
 
-impl Path<'_> {
-    fn follow(mut self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
-        let mut here = Point { displacement: vec![[0.0; DOFS]; self.load.len()], share: 0.0 };
+impl<'a> Path<'a> {
+    fn new(model: &'a Model, load: &'a [[f64; DOFS]], grown: Grown) -> Self {
+        let held = (0..model.node_count()).map(|node| model.held_by_top(node)).collect();
+        Self { model, load, grown, tributary: tributary_lengths(model), held, linearisations: 0 }
+    }
+
+    fn follow(mut self, start: NodalVector, displacement: &mut NodalVector) -> End {
+        let mut here = Point { displacement: start, share: 0.0 };
+        let mut most = 0.0_f64;
         let mut last_direction: Option<Point> = None;
         let mut step = FIRST_STEP;
         loop {
-            let direction = self.direction(&here, last_direction.as_ref())?;
+            let Some(direction) = self.direction(&here, last_direction.as_ref()) else { return End::Lost };
             let (next, corrections) = loop {
                 if let Some((next, corrections)) = self.step(&here, &direction, step) {
                     if next.share < 1.0 {
@@ -84,19 +142,19 @@ impl Path<'_> {
                     self.linearisations += newton::LAST_ITERATIONS;
                     if let Some(outcome) = newton::finish(self.model, self.load, &mut at_load) {
                         *displacement = at_load;
-                        return Some(outcome);
+                        return End::Found(outcome);
                     }
                 }
                 step *= 0.5;
                 if step < SHORTEST_STEP || self.linearisations > MOST_LINEARISATIONS {
-                    return None;
+                    return End::Lost;
                 }
             };
             here = next;
             last_direction = Some(direction);
-            // Back where no load is there is no further equilibrium of this path.
+            most = most.max(here.share);
             if here.share < 0.0 {
-                return None;
+                return End::TurnedBack { share: most };
             }
             step *= match corrections {
                 ..=3 => 2.0,
@@ -147,16 +205,37 @@ impl Path<'_> {
         None
     }
 
-    /// Unbalanced forces at a point, the factor of their tangent, and their derivative by the share of the loads.
+    /// Unbalanced forces at a point, the factor of their tangent, and their derivative by the share.
     fn linearised(&mut self, at: &Point) -> Option<(NodalVector, Factor, NodalVector)> {
         self.linearisations += 1;
+        let (residual, tangent, slope) = match &self.grown {
+            Grown::Loads { spring } => self.with_share_of_loads(at, *spring),
+            Grown::Friction { none } => self.with_share_of_friction(at, none),
+        };
+        Some((residual, Factor::new(&tangent).ok()?, slope))
+    }
+
+    fn with_share_of_friction(
+        &self,
+        at: &Point,
+        none: &Wall,
+    ) -> (NodalVector, BlockTridiagonal, NodalVector) {
+        let on = |wall: &Wall| linearise(self.model, wall, self.load, &at.displacement);
+        let (residual, tangent) = on(&with_friction(self.model, at.share));
+        // Friction is in proportion to its share.
+        let (mut slope, (without, _)) = (on(&self.model.wall).0, on(none));
+        add(&mut slope, -1.0, &without);
+        (residual, tangent, slope)
+    }
+
+    fn with_share_of_loads(&self, at: &Point, spring: f64) -> (NodalVector, BlockTridiagonal, NodalVector) {
         let share = at.share;
         let carried: NodalVector = self.load.iter().map(|load| load.map(|value| share * value)).collect();
         let (mut residual, mut tangent): (_, BlockTridiagonal) =
             linearise(self.model, &self.model.wall, &carried, &at.displacement);
         let mut slope = self.load.to_vec();
         for (node, length) in self.tributary.iter().enumerate() {
-            let stiffness = self.spring * length;
+            let stiffness = spring * length;
             for dof in [U, V] {
                 let displacement = at.displacement[node][dof];
                 residual[node][dof] -= (1.0 - share) * stiffness * displacement;
@@ -167,7 +246,7 @@ impl Path<'_> {
                 (residual[node][dof], slope[node][dof]) = (0.0, 0.0);
             }
         }
-        Some((residual, Factor::new(&tangent).ok()?, slope))
+        (residual, tangent, slope)
     }
 
     /// The product of two lateral displacements, mean along the string, in squares of the hole's radius.

@@ -8,6 +8,7 @@ mod newton;
 mod overload;
 mod relaxation;
 
+use continuation::End;
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 
@@ -78,7 +79,7 @@ pub enum StaticsError {
     /// Newton's method did not converge.
     #[error(
         "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
-        overload::verdict(overload.as_ref())
+        overload::verdict(overload.as_ref(), *friction_limit)
     )]
     NotConverged {
         /// Iterations made.
@@ -89,6 +90,9 @@ pub enum StaticsError {
         node: usize,
         /// The instability that the string has wherever it lies; absent where none is shown.
         overload: Option<Overload>,
+        /// Share of the wall's friction at which the equilibria end that begin on a wall without; absent where they were not followed to
+        /// their end.
+        friction_limit: Option<f64>,
     },
     /// The tangent broke down.
     #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
@@ -222,7 +226,8 @@ impl Equilibrium {
 }
 
 /// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with
-/// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, and by plain steps of any length.
+/// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, along the path from a wall
+/// without friction, and by plain steps of any length.
 fn with_fallbacks(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -252,10 +257,22 @@ fn with_fallbacks(
         }
     }
     displacement.clone_from(&start);
+    let mut friction_limit = None;
     let found = PATH_SPRINGS
         .iter()
         .find_map(|&spring| continuation::follow(model, load, displacement, spring))
         .or_else(|| relaxation::settle(model, load, displacement))
+        .or_else(|| {
+            displacement.clone_from(&start);
+            match with_growing_friction(model, load, displacement) {
+                End::Found(outcome) => Some(outcome),
+                End::TurnedBack { share } => {
+                    friction_limit = Some(share);
+                    None
+                }
+                End::Lost => None,
+            }
+        })
         .or_else(|| {
             displacement.clone_from(&start);
             newton::finish(model, load, displacement)
@@ -265,10 +282,34 @@ fn with_fallbacks(
     }
     Err(match failure {
         StaticsError::NotConverged { iterations, residual, node, .. } => {
-            StaticsError::NotConverged { iterations, residual, node, overload: overload::find(model) }
+            let overload = overload::find(model);
+            StaticsError::NotConverged { iterations, residual, node, overload, friction_limit }
         }
         other => other,
     })
+}
+
+/// The path of equilibria as friction grows, from the one on the wall without; [lost](End::Lost) also where that is not found, or the wall has
+/// no friction.
+fn with_growing_friction(model: &Model, load: &[[f64; DOFS]], displacement: &mut NodalVector) -> End {
+    let has_friction = model.effects.contact && model.effects.friction;
+    if !has_friction || model.scenario.contact.static_friction == 0.0 {
+        return End::Lost;
+    }
+    let slippery = continuation::slippery(model);
+    let start = displacement.clone();
+    let settings = NewtonSettings::default();
+    let (_, shorter) = FALLBACK_STEPS[0];
+    let slow = NewtonSettings {
+        largest_step: shorter * settings.largest_step,
+        iteration_limit: FALLBACK_ITERATIONS,
+        ..settings.clone()
+    };
+    let is_found = [settings, slow].iter().any(|settings| {
+        displacement.clone_from(&start);
+        newton::solve(model, &slippery, load, displacement, settings).is_ok()
+    });
+    if is_found { continuation::with_growing_friction(model, load, displacement) } else { End::Lost }
 }
 
 /// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.

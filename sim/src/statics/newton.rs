@@ -112,6 +112,7 @@ pub(super) fn solve(
         residual: largest(&residual),
         node,
         overload: None,
+        friction_limit: None,
     })
 }
 

@@ -50,11 +50,16 @@ impl fmt::Display for Overload {
 }
 
 /// What a failed search says about the physics.
-pub(super) fn verdict(overload: Option<&Overload>) -> String {
-    overload.map_or_else(
-        || "the string is not shown to be unstable: the search itself failed".to_owned(),
-        Overload::to_string,
-    )
+pub(super) fn verdict(overload: Option<&Overload>, friction_limit: Option<f64>) -> String {
+    match (overload, friction_limit) {
+        (Some(overload), _) => overload.to_string(),
+        (None, Some(share)) => format!(
+            "the equilibria that begin on a wall without friction end at {:.1} % of the wall's: beyond it friction may drive the string round \
+             its hole",
+            100.0 * share
+        ),
+        (None, None) => "the string is not shown to be unstable: the search itself failed".to_owned(),
+    }
 }
 
 /// The instability of a string wherever it lies, if there is one, with the stretch that is loaded most.

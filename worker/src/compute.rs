@@ -337,8 +337,8 @@ impl<'a> Runs<'a> {
             )
             .ok()?;
         let nodes = recorded_nodes(self.model);
-        let has_samples =
-            nodes.is_empty() || (spool.nodes() == nodes && spool.samples() as u64 == transient.recorded());
+        let recorded = if nodes.is_empty() { 0 } else { transient.recorded() };
+        let has_samples = spool.samples() as u64 == recorded && (recorded == 0 || spool.nodes() == nodes);
         if !has_samples {
             tracing::warn!(
                 "a checkpoint has other samples than its run; the point starts from its beginning"
@@ -511,6 +511,36 @@ mod tests {
         }
         for name in full.summary_row().keys() {
             assert!(Name::parse(name).is_some(), "{name} is not in the vocabulary");
+        }
+    }
+
+    #[test]
+    fn a_point_goes_on_from_wherever_it_was_suspended_with_all_its_samples() {
+        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        scenario.duration = 0.4;
+        scenario.recording.spectrum_windows = Some(Vec::new());
+        scenario.recording.orbit_window = None;
+        let scratch = std::env::temp_dir();
+        let whole = compute(&scenario, &Control::new()).expect("runs");
+        // Before its first step, and on its way.
+        for at in [0.0, 0.2] {
+            let control = Control::observed_by(move |control, time| {
+                if time >= at {
+                    control.suspend();
+                }
+            });
+            let suspended = match compute_from(&scenario, &control, None, &scratch) {
+                Ok(Computation::Suspended(suspended)) => *suspended,
+                other => panic!("{other:?}"),
+            };
+            let resumed = match compute_from(&scenario, &Control::new(), Some(suspended), &scratch) {
+                Ok(Computation::Finished(resumed)) => *resumed,
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(json!(resumed.provenance)["resumed"], true, "from {at} s");
+            for (resumed, whole) in resumed.artifacts.iter().zip(&whole.artifacts) {
+                assert_eq!(read(resumed), read(whole), "{} from {at} s", whole.name);
+            }
         }
     }
 

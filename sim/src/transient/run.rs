@@ -297,7 +297,10 @@ impl<'m, const D: usize> Run<'m, D> {
                 control.reach(self.time());
                 // The ledger adds up between its rows: a run is suspended at one of them.
                 if control.is_suspended() {
-                    self.hand_over(keep)?;
+                    // A run that has not begun records its start when it does.
+                    if self.progress.ticks > 0 {
+                        self.hand_over(keep)?;
+                    }
                     self.progress.work = self.ledger.work();
                     let checkpoint = Checkpoint::new(&self.model.scenario, &self.progress);
                     return Ok(Outcome::Suspended(Box::new(checkpoint), ()));

@@ -453,7 +453,10 @@ fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     assert_eq!((&point["error"]["class"], &point["attempts"]), (&json!("crash"), &json!(3)), "{point}");
     assert!(up.log.lock().unwrap().contains("memory allocation"), "the workers died of something else");
     // SIGABRT.
-    assert!(point["error"]["reason"].as_str().unwrap().contains("signal 6 ended it"), "{point}");
+    assert!(
+        point["error"]["reason"].as_str().unwrap().contains("the last one was ended by signal 6"),
+        "{point}"
+    );
     assert_eq!(wait(&address, &harmless, completed)["counts"]["succeeded"], 4);
     let after = submit(&address, &request(0.5, 1, 3));
     assert_eq!(wait(&address, &after, completed)["counts"]["succeeded"], 3);

@@ -373,8 +373,8 @@ async fn keep_worker(
         let process = child.id();
         tokio::select! {
             status = child.wait() => {
-                let note = obituary(status?, memory_kills() > kills);
-                tracing::warn!("a worker ended: {note}; a new one is started");
+                let note = how_it_ended(status?, memory_kills() > kills);
+                tracing::warn!("a worker {note}; a new one is started");
                 if let Some(process) = process && let Err(error) = bury(store, process, &note).await {
                     tracing::warn!(%error, "its point is queued again when its lease expires");
                 }
@@ -398,12 +398,12 @@ async fn bury(store: &StoreConfig, process: u32, note: &str) -> drillsweep_store
 }
 
 /// How a worker ended, for those who look for the reason.
-fn obituary(status: ExitStatus, was_memory_short: bool) -> String {
+fn how_it_ended(status: ExitStatus, was_memory_short: bool) -> String {
     match (status.signal(), status.code()) {
         // The system ends processes with this signal when memory is short; so do people.
-        (Some(9), _) if was_memory_short => "the system ended it for lack of memory".to_owned(),
-        (Some(signal), _) => format!("signal {signal} ended it"),
-        (None, code) => format!("it ended with exit code {}", code.unwrap_or_default()),
+        (Some(9), _) if was_memory_short => "was ended by the system for lack of memory".to_owned(),
+        (Some(signal), _) => format!("was ended by signal {signal}"),
+        (None, code) => format!("ended with exit code {}", code.unwrap_or_default()),
     }
 }
 

@@ -275,8 +275,8 @@ impl Store {
         self.leave(sql::queue::KEEP_CHECKPOINT, lease, &blob.to_string()).await
     }
 
-    /// Notes what is known of the worker of a lease, for those who look for the reason when it is heard of no more: a sentence's part
-    /// after "it is known that". False if the lease was lost.
+    /// Notes what is known of the worker of a lease, for those who look for the reason when it is heard of no more: what follows "the
+    /// last one", such as "was ended by signal 9". False if the lease was lost.
     ///
     /// # Errors
     /// When the database fails.

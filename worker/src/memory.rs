@@ -25,13 +25,13 @@ impl Memory {
         Some(Self { resident, limit: machine.min(group) })
     }
 
-    /// What to say of this worker should it be heard of no more; nothing where there is room.
+    /// What follows "the last worker" should this one be heard of no more; nothing where there is room.
     pub(crate) fn note(self) -> Option<String> {
         let Self { resident, limit } = self;
         (resident as f64 > NEARLY_FULL * limit as f64).then(|| {
             let gigabytes = |bytes: u64| bytes as f64 / 1e9;
             format!(
-                "it held {:.1} GB of the {:.1} GB of memory it may have: it was probably ended for lack of memory",
+                "held {:.1} GB of the {:.1} GB of memory it may have, and was probably ended for lack of memory",
                 gigabytes(resident),
                 gigabytes(limit)
             )
@@ -63,6 +63,6 @@ mod tests {
     fn a_worker_that_is_nearly_full_says_so() {
         let memory = |resident| Memory { resident, limit: 16_000_000_000 };
         assert_eq!(memory(12_000_000_000).note(), None);
-        assert!(memory(15_000_000_000).note().unwrap().starts_with("it held 15.0 GB of the 16.0 GB"));
+        assert!(memory(15_000_000_000).note().unwrap().starts_with("held 15.0 GB of the 16.0 GB"));
     }
 }

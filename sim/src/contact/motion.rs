@@ -121,7 +121,7 @@ fn settle<L: Lane>(
     let distance = L::select(somewhere, squared, one).sqrt();
     // Friction cannot turn the normal beyond the direction that the node is pushed in.
     let across = lateral * friction * law.tangential_share / distance;
-    let across = across.abs().min(L::splat(MOST_ACROSS)).copysign(across);
+    let across = across.abs().min(L::splat(LARGEST_TURN)).copysign(across);
     let along = (one - across * across).sqrt();
     let (unit_u, unit_v) = (free_u / distance, free_v / distance);
     let (normal_u, normal_v) =
@@ -140,8 +140,9 @@ fn settle<L: Lane>(
     (settled, L::select(somewhere, stiffness * pushed, yielding.normal))
 }
 
-/// The largest part of the way across that friction is taken to push a node that [settles](settle).
-const MOST_ACROSS: f64 = 0.9;
+/// Sine of the largest angle by which friction is taken to turn the normal of a node that [settles](settle): short of a right angle, beyond
+/// which nothing would press the node on the wall. The exact value is without a derivation; sweeps correct what it cuts off.
+const LARGEST_TURN: f64 = 0.9;
 
 #[inline(always)]
 fn implicit_force<L: Lane>(

@@ -1,7 +1,7 @@
 //! Continuation: the path of equilibria from the unloaded string to the loaded one, or from a wall without friction to one with it.
 //!
 //! `R(x, s) = 0`, the balance under a share s of the loads or of the friction, is a path through x and s that begins where an equilibrium is known:
-//! at rest on the centre line, or on the slippery wall. It is followed by its
+//! at rest on the centre line, or on the frictionless wall. It is followed by its
 //! arc length (Riks 1979; Keller 1977), so that it may turn back in s: where it does, at a limit point, the equilibria that began there end.
 
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
@@ -44,7 +44,7 @@ pub(super) fn follow(
     }
 }
 
-/// Follows the equilibria under `load` as the friction of the wall grows, from the one on [a wall without](slippery), at `displacement`,
+/// Follows the equilibria under `load` as the friction of the wall grows, from the one on [a wall without](frictionless), at `displacement`,
 /// which is moved to the one with it.
 pub(super) fn with_growing_friction(
     model: &Model,
@@ -52,11 +52,11 @@ pub(super) fn with_growing_friction(
     displacement: &mut NodalVector,
 ) -> End {
     let start = displacement.clone();
-    Path::new(model, load, Grown::Friction { none: slippery(model) }).follow(start, displacement)
+    Path::new(model, load, Grown::Friction { none: frictionless(model) }).follow(start, displacement)
 }
 
 /// The model's wall without friction.
-pub(super) fn slippery(model: &Model) -> Wall {
+pub(super) fn frictionless(model: &Model) -> Wall {
     with_friction(model, 0.0)
 }
 

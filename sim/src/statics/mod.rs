@@ -296,7 +296,7 @@ fn with_growing_friction(model: &Model, load: &[[f64; DOFS]], displacement: &mut
     if !has_friction || model.scenario.contact.static_friction == 0.0 {
         return End::Lost;
     }
-    let slippery = continuation::slippery(model);
+    let frictionless = continuation::frictionless(model);
     let start = displacement.clone();
     let settings = NewtonSettings::default();
     let (_, shorter) = FALLBACK_STEPS[0];
@@ -307,7 +307,7 @@ fn with_growing_friction(model: &Model, load: &[[f64; DOFS]], displacement: &mut
     };
     let is_found = [settings, slow].iter().any(|settings| {
         displacement.clone_from(&start);
-        newton::solve(model, &slippery, load, displacement, settings).is_ok()
+        newton::solve(model, &frictionless, load, displacement, settings).is_ok()
     });
     if is_found { continuation::with_growing_friction(model, load, displacement) } else { End::Lost }
 }

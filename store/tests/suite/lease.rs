@@ -156,19 +156,19 @@ pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
     store.register_worker(&WorkerRecord { process: 7, ..worker("watched") }).await.unwrap();
     let reason = async |store: &drillsweep_store::Store| point_record(store, "s", 1).await.error_json;
     let first = claim(&store, "silent").await;
-    assert!(store.note_worker(&first.lease, "it was full").await.unwrap());
+    assert!(store.note_worker(&first.lease, "was nearly full").await.unwrap());
     let second_life = engine.after(2 * LEASE_MS).await;
     claim(&second_life, "another").await;
     assert!(!second_life.note_worker(&first.lease, "late").await.unwrap(), "its lease is lost");
     let third_life = engine.after(4 * LEASE_MS).await;
     claim(&third_life, "watched").await;
-    assert_eq!(third_life.bury_worker("rig", 7, Some("signal 9 ended it")).await.unwrap(), 1);
+    assert_eq!(third_life.bury_worker("rig", 7, Some("was ended by signal 9")).await.unwrap(), 1);
     let end = engine.after(4 * LEASE_MS + 1).await;
     end.reap_expired().await.unwrap();
     assert_eq!(
         reason(&end).await.as_deref(),
         Some(
-            r#"{"class":"crash","reason":"3 workers went silent while they simulated it; of the last one it is known that signal 9 ended it"}"#
+            r#"{"class":"crash","reason":"3 workers went silent while they simulated it; the last one was ended by signal 9"}"#
         )
     );
     // What was known of an earlier one is forgotten with the next claim.
@@ -176,12 +176,12 @@ pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
     for death in 0..3 {
         let lease = claim(&engine.after((6 + 2 * death) * LEASE_MS).await, "w").await.lease;
         if death == 1 {
-            assert!(engine.after(8 * LEASE_MS).await.note_worker(&lease, "it was full").await.unwrap());
+            assert!(engine.after(8 * LEASE_MS).await.note_worker(&lease, "was nearly full").await.unwrap());
         }
     }
     let end = engine.after(12 * LEASE_MS).await;
     end.reap_expired().await.unwrap();
-    assert!(!reason(&end).await.unwrap().contains("known"));
+    assert!(!reason(&end).await.unwrap().contains("last"));
 }
 
 pub(crate) async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token<E: Engine>() {

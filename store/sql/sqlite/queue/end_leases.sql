@@ -11,7 +11,7 @@ UPDATE work SET
     error = CASE WHEN cancel_requested = 0 AND crash_count + 1 >= ?1
                  THEN json_object('class', 'crash', 'reason',
                       printf('%d workers went silent while they simulated it', crash_count + 1)
-                          || coalesce('; of the last one it is known that ' || worker_note, ''))
+                          || coalesce('; the last one ' || worker_note, ''))
                  ELSE error END
 WHERE state = 'leased' AND lease_until < (SELECT now FROM clock)
 RETURNING state, crash_count, lease_owner, worker_note

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 use crate::state::WorkState;
 
@@ -40,15 +41,14 @@ impl Store {
         let depths = self.queue_depths().await?;
         type Sums = (i64, i64, i64, i64, i64, i64);
         let (sweeps, queued, running, done, failed, cancelled): Sums =
-            sqlx::query_as(sql::census::SWEEPS).fetch_one(&self.pool).await?;
-        let oldest_queued_ms: i64 =
-            sqlx::query_scalar(sql::census::OLDEST_QUEUED).fetch_one(&self.pool).await?;
-        let artifact_bytes: i64 =
-            sqlx::query_scalar(sql::census::ARTIFACT_BYTES).fetch_one(&self.pool).await?;
-        let disagreements: i64 = sqlx::query_scalar(sql::census::DISAGREEMENTS).fetch_one(&self.pool).await?;
+            query(sql::census::SWEEPS).one(&self.database).await?;
+        let oldest_queued_ms: i64 = query(sql::census::OLDEST_QUEUED).scalar(&self.database).await?;
+        let artifact_bytes: i64 = query(sql::census::ARTIFACT_BYTES).scalar(&self.database).await?;
+        let disagreements: i64 = query(sql::census::DISAGREEMENTS).scalar(&self.database).await?;
         let workers = self.workers(silence.as_millis() as i64).await?.len() as i64;
         let size = |suffix: &str| {
-            let mut path = self.database_path.clone().into_os_string();
+            let Some(path) = &self.database_path else { return 0 };
+            let mut path = path.clone().into_os_string();
             path.push(suffix);
             // The log is not there before the first write and after a clean end.
             std::fs::metadata(path).map_or(0, |metadata| metadata.len() as i64)

@@ -3,6 +3,7 @@
 use crate::blob::BlobId;
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 
@@ -32,24 +33,22 @@ impl Store {
     /// When the database cannot be read. What can be read but is wrong is reported, not an error.
     pub async fn check(&self) -> Result<CheckReport> {
         let mut report = CheckReport::default();
-        let pages: Vec<String> = sqlx::query_scalar(sql::check::PAGES).fetch_all(&self.pool).await?;
+        let pages: Vec<String> = query(sql::check::PAGES).scalars(&self.database).await?;
         report
             .problems
             .extend(pages.into_iter().filter(|line| line != "ok").map(|line| format!("database: {line}")));
-        let dangling: Vec<(String, String)> =
-            sqlx::query_as(sql::check::REFERENCES).fetch_all(&self.pool).await?;
+        let dangling: Vec<(String, String)> = query(sql::check::REFERENCES).rows(&self.database).await?;
         report.problems.extend(
             dangling.into_iter().map(|(child, parent)| format!("a row of {child} names no {parent}")),
         );
-        let without_result: Vec<Vec<u8>> =
-            sqlx::query_scalar(sql::check::WITHOUT_RESULT).fetch_all(&self.pool).await?;
+        let without_result: Vec<Vec<u8>> = query(sql::check::WITHOUT_RESULT).scalars(&self.database).await?;
         report.without_result = without_result.iter().map(|key| work_key(key)).collect::<Result<_>>()?;
         if !without_result.is_empty() {
             report.problems.push(format!("{} finished work items have no result", without_result.len()));
         }
-        let results: i64 = sqlx::query_scalar(sql::check::RESULTS).fetch_one(&self.pool).await?;
+        let results: i64 = query(sql::check::RESULTS).scalar(&self.database).await?;
         report.results = results.unsigned_abs();
-        let blobs: Vec<(String, i64)> = sqlx::query_as(sql::check::BLOBS).fetch_all(&self.pool).await?;
+        let blobs: Vec<(String, i64)> = query(sql::check::BLOBS).rows(&self.database).await?;
         for (id, bytes) in blobs {
             report.blobs += 1;
             report.bytes += bytes.unsigned_abs();

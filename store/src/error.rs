@@ -37,6 +37,9 @@ pub enum StoreError {
         /// What the system said.
         source: io::Error,
     },
+    /// A text says neither where a database nor where an object store is.
+    #[error("{0}")]
+    Location(String),
     /// A file outside the store, which is to be stored or fetched into, cannot be read or written.
     #[error("a local file: {0}")]
     LocalFile(#[source] io::Error),

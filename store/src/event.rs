@@ -2,6 +2,7 @@
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
@@ -29,12 +30,8 @@ impl Store {
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
         type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
-        let rows: Vec<Row> = sqlx::query_as(sql::event::LIST)
-            .bind(sweep_id)
-            .bind(after)
-            .bind(limit)
-            .fetch_all(&self.pool)
-            .await?;
+        let rows: Vec<Row> =
+            query(sql::event::LIST).bind(sweep_id).bind(after).bind(limit).rows(&self.database).await?;
         rows.into_iter()
             .map(|(seq, kind, key, at, ordinals, verifies)| {
                 let state = WorkState::parse(&kind)?;

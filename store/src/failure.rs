@@ -1,11 +1,9 @@
 //! Points that failed, over all sweeps.
 
-use sqlx::Row as _;
-use sqlx::sqlite::SqliteRow;
-
 use crate::connection::Store;
 use crate::error::Result;
 use crate::point::PointRecord;
+use crate::query::{Row, query};
 use crate::sql;
 
 /// A point that failed for good.
@@ -49,12 +47,12 @@ impl FailureRecord {
         FailurePlace { at: self.at, sweep_id: self.sweep_id.clone(), ordinal: self.point.ordinal }
     }
 
-    fn read(row: &SqliteRow) -> Result<Self> {
+    fn read(row: &Row) -> Result<Self> {
         Ok(Self {
-            sweep_id: row.try_get("sweep_id")?,
-            sweep_name: row.try_get("sweep_name")?,
-            owner: row.try_get("owner")?,
-            at: row.try_get("changed")?,
+            sweep_id: row.get("sweep_id")?,
+            sweep_name: row.get("sweep_name")?,
+            owner: row.get("owner")?,
+            at: row.get("changed")?,
             point: PointRecord::read(row)?,
         })
     }
@@ -74,15 +72,14 @@ impl Store {
     ) -> Result<Vec<FailureRecord>> {
         let start = FailurePlace { at: i64::MAX, sweep_id: String::new(), ordinal: 0 };
         let after = after.unwrap_or(&start);
-        let rows = sqlx::query(sql::failure::LIST)
+        query(sql::failure::LIST)
             .bind(after.at)
             .bind(&after.sweep_id)
             .bind(after.ordinal)
             .bind(filter.owner)
             .bind(filter.class)
             .bind(limit)
-            .fetch_all(&self.pool)
-            .await?;
-        rows.iter().map(FailureRecord::read).collect()
+            .records(&self.database, FailureRecord::read)
+            .await
     }
 }

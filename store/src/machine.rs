@@ -2,6 +2,7 @@
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 
 impl Store {
@@ -10,11 +11,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn keep_machine_speed(&self, host: &str, physics_version: i64, speed_json: &str) -> Result<()> {
-        sqlx::query(sql::machine::KEEP_SPEED)
+        query(sql::machine::KEEP_SPEED)
             .bind(host)
             .bind(physics_version)
             .bind(speed_json)
-            .execute(&self.pool)
+            .execute(&self.database)
             .await?;
         Ok(())
     }
@@ -25,9 +26,6 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn machine_speed(&self, physics_version: i64) -> Result<Option<String>> {
-        Ok(sqlx::query_scalar(sql::machine::LATEST_SPEED)
-            .bind(physics_version)
-            .fetch_optional(&self.pool)
-            .await?)
+        query(sql::machine::LATEST_SPEED).bind(physics_version).first_scalar(&self.database).await
     }
 }

@@ -1,11 +1,10 @@
 //! Points of a sweep and what came of them.
 
 use serde_json::Value;
-use sqlx::Row as _;
-use sqlx::sqlite::SqliteRow;
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::{Row, query};
 use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
@@ -89,14 +88,13 @@ impl Store {
     ) -> Result<Vec<PointRecord>> {
         let names = states.iter().map(|state| state.as_str());
         let wanted = (!states.is_empty()).then(|| names.collect::<Value>().to_string());
-        let rows = sqlx::query(sql::point::LIST)
+        query(sql::point::LIST)
             .bind(sweep_id)
             .bind(after)
             .bind(wanted)
             .bind(limit)
-            .fetch_all(&self.pool)
-            .await?;
-        rows.iter().map(PointRecord::read).collect()
+            .records(&self.database, PointRecord::read)
+            .await
     }
 
     /// One point with its result, if it has one; none if there is no such point.
@@ -104,9 +102,11 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
-        let row =
-            sqlx::query(sql::point::ONE).bind(sweep_id).bind(ordinal).fetch_optional(&self.pool).await?;
-        row.as_ref().map(PointRecord::read).transpose()
+        query(sql::point::ONE)
+            .bind(sweep_id)
+            .bind(ordinal)
+            .first_record(&self.database, PointRecord::read)
+            .await
     }
 
     /// One row a point, for the sweep's table, in order.
@@ -115,7 +115,7 @@ impl Store {
     /// When the database fails.
     pub async fn table_rows(&self, sweep_id: &str) -> Result<Vec<TableRecord>> {
         type Row = (i64, String, String, Option<String>, Option<String>);
-        let rows: Vec<Row> = sqlx::query_as(sql::point::TABLE).bind(sweep_id).fetch_all(&self.pool).await?;
+        let rows: Vec<Row> = query(sql::point::TABLE).bind(sweep_id).rows(&self.database).await?;
         rows.into_iter()
             .map(|(ordinal, parameters_json, state, summary_json, error_json)| {
                 Ok(TableRecord {
@@ -140,19 +140,19 @@ impl Store {
         after: i64,
         limit: i64,
     ) -> Result<Vec<(i64, WorkKey, Vec<Artifact>)>> {
-        let rows = sqlx::query(sql::point::WITH_ARTIFACTS)
+        let rows: Vec<(i64, Vec<u8>, Artifact)> = query(sql::point::WITH_ARTIFACTS)
             .bind(sweep_id)
             .bind(after)
             .bind(limit)
-            .fetch_all(&self.pool)
+            .records(&self.database, |row| {
+                Ok((row.get::<i64>("ordinal")?, row.get::<Vec<u8>>("work_key")?, Artifact::read(row)?))
+            })
             .await?;
         let mut points: Vec<(i64, WorkKey, Vec<Artifact>)> = Vec::new();
-        for row in &rows {
-            let ordinal = row.try_get("ordinal")?;
-            let artifact = Artifact::read(row)?;
+        for (ordinal, key, artifact) in rows {
             match points.last_mut() {
                 Some((last, _, artifacts)) if *last == ordinal => artifacts.push(artifact),
-                _ => points.push((ordinal, work_key(row.try_get("work_key")?)?, vec![artifact])),
+                _ => points.push((ordinal, work_key(&key)?, vec![artifact])),
             }
         }
         Ok(points)
@@ -163,41 +163,40 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
-        let rows = sqlx::query(sql::point::ARTIFACTS).bind(key.as_slice()).fetch_all(&self.pool).await?;
-        rows.iter().map(Artifact::read).collect()
+        query(sql::point::ARTIFACTS).bind(key.as_slice()).records(&self.database, Artifact::read).await
     }
 }
 
 impl PointRecord {
-    pub(crate) fn read(row: &SqliteRow) -> Result<Self> {
-        let base: Option<String> = row.try_get("base")?;
-        let changes: Option<String> = row.try_get("changes")?;
+    pub(crate) fn read(row: &Row) -> Result<Self> {
+        let base: Option<String> = row.get("base")?;
+        let changes: Option<String> = row.get("changes")?;
         Ok(Self {
-            ordinal: row.try_get("ordinal")?,
-            parameters_json: row.try_get("parameters")?,
-            work_key: work_key(row.try_get("key")?)?,
+            ordinal: row.get("ordinal")?,
+            parameters_json: row.get("parameters")?,
+            work_key: work_key(&row.get::<Vec<u8>>("key")?)?,
             scenario: base
                 .zip(changes)
                 .map(|(base_json, changes_json)| ScenarioText { base_json, changes_json }),
-            state: WorkState::parse(row.try_get("state")?)?,
-            progress: row.try_get("progress")?,
-            attempts: row.try_get("attempts")?,
-            error_json: row.try_get("error")?,
-            summary_json: row.try_get("summary")?,
-            provenance_json: row.try_get("provenance")?,
+            state: WorkState::parse(&row.get::<String>("state")?)?,
+            progress: row.get("progress")?,
+            attempts: row.get("attempts")?,
+            error_json: row.get("error")?,
+            summary_json: row.get("summary")?,
+            provenance_json: row.get("provenance")?,
         })
     }
 }
 
 impl Artifact {
-    fn read(row: &SqliteRow) -> Result<Self> {
+    fn read(row: &Row) -> Result<Self> {
         Ok(Self {
-            name: row.try_get("name")?,
-            media_type: row.try_get("media_type")?,
-            blob: row.try_get("blob")?,
-            bytes: row.try_get("bytes")?,
-            row_count: row.try_get("row_count")?,
-            expired: row.try_get("expired")?,
+            name: row.get("name")?,
+            media_type: row.get("media_type")?,
+            blob: row.get("blob")?,
+            bytes: row.get("bytes")?,
+            row_count: row.get("row_count")?,
+            expired: row.get("expired")?,
         })
     }
 }

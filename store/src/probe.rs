@@ -4,6 +4,7 @@ use bytes::Bytes;
 
 use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::query::query;
 use crate::sql;
 
 /// A version of the numbers that no worker has, so that no worker meets the scratch row.
@@ -19,14 +20,14 @@ impl Store {
         let scratch = format!("probe {}", self.now_ms().await?);
         let key = blake3::hash(scratch.as_bytes());
         let mut tx = self.write().await?;
-        sqlx::query(sql::probe::INSERT_SCENARIO).bind(key.as_bytes().as_slice()).execute(&mut *tx).await?;
-        sqlx::query(sql::probe::INSERT_TURN).execute(&mut *tx).await?;
-        sqlx::query(sql::probe::INSERT_WORK)
+        query(sql::probe::INSERT_SCENARIO).bind(key.as_bytes().as_slice()).execute(&mut tx).await?;
+        query(sql::probe::INSERT_TURN).execute(&mut tx).await?;
+        query(sql::probe::INSERT_WORK)
             .bind(key.as_bytes().as_slice())
             .bind(NO_PHYSICS)
-            .execute(&mut *tx)
+            .execute(&mut tx)
             .await?;
-        let claimed = self.claim_with(&mut *tx, "probe", NO_PHYSICS, 1_000).await?;
+        let claimed = self.claim_with(&mut tx, "probe", NO_PHYSICS, 1_000).await?;
         tx.rollback().await?;
         if claimed.is_none_or(|claim| claim.lease.key != *key.as_bytes()) {
             return Err(StoreError::Corrupt("a work item that was queued could not be claimed".to_owned()));

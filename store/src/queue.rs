@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use sqlx::{SqliteConnection, SqliteExecutor};
-
 use crate::blob::BlobId;
 use crate::connection::Store;
+use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::point::ScenarioText;
+use crate::query::{Session, Statement, query};
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 use crate::submit::ROWS_AT_ONCE;
@@ -108,12 +108,11 @@ struct Earlier {
 }
 
 impl Earlier {
-    async fn read(tx: &mut SqliteConnection, key: &[u8]) -> Result<Option<Self>> {
+    async fn read(tx: &mut Transaction, key: &[u8]) -> Result<Option<Self>> {
         let row: Option<(String, String, bool)> =
-            sqlx::query_as(sql::queue::EARLIER_RESULT).bind(key).fetch_optional(&mut *tx).await?;
+            query(sql::queue::EARLIER_RESULT).bind(key).first(&mut *tx).await?;
         let Some((summary, provenance, disagrees)) = row else { return Ok(None) };
-        let blobs: Vec<(String, String)> =
-            sqlx::query_as(sql::queue::EARLIER_BLOBS).bind(key).fetch_all(&mut *tx).await?;
+        let blobs: Vec<(String, String)> = query(sql::queue::EARLIER_BLOBS).bind(key).rows(&mut *tx).await?;
         Ok(Some(Self { summary, provenance, disagrees, blobs: blobs.into_iter().collect() }))
     }
 
@@ -143,25 +142,21 @@ impl Store {
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
         self.reap_expired().await?;
-        self.claim_with(&self.pool, worker, physics_version, lease_ms).await
+        self.claim_with(&self.database, worker, physics_version, lease_ms).await
     }
 
     /// The same over a connection or in a transaction.
     pub(crate) async fn claim_with<'c>(
         &self,
-        executor: impl SqliteExecutor<'c>,
+        session: impl Into<Session<'c>>,
         worker: &str,
         physics_version: i64,
         lease_ms: i64,
     ) -> Result<Option<Claim>> {
         type Row = (Vec<u8>, i64, String, String, Option<String>);
         // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
-        let rows: Vec<Row> = sqlx::query_as(sql::queue::CLAIM)
-            .bind(worker)
-            .bind(lease_ms)
-            .bind(physics_version)
-            .fetch_all(executor)
-            .await?;
+        let rows: Vec<Row> =
+            query(sql::queue::CLAIM).bind(worker).bind(lease_ms).bind(physics_version).rows(session).await?;
         let Some((key, fencing_token, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
             return Ok(None);
         };
@@ -175,18 +170,18 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
-        let cancel_requested: Vec<i64> = sqlx::query_scalar(sql::queue::RENEW)
+        let cancel_requested: Vec<bool> = query(sql::queue::RENEW)
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(progress)
             .bind(lease_ms)
-            .fetch_all(&self.pool)
+            .scalars(&self.database)
             .await?;
         Ok(match cancel_requested.first() {
             None => Renewal::Lost,
-            Some(0) => Renewal::Held,
-            Some(_) => Renewal::CancelRequested,
+            Some(false) => Renewal::Held,
+            Some(true) => Renewal::CancelRequested,
         })
     }
 
@@ -198,37 +193,37 @@ impl Store {
     /// # Errors
     /// When the database fails, or a blob is not there.
     pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
-        let mut tx = self.write().await?;
+        let mut tx = self.write_one().await?;
         let key = lease.key.as_slice();
-        let finished: Vec<i64> = sqlx::query_scalar(sql::queue::FINISH)
+        let finished: Vec<i64> = query(sql::queue::FINISH)
             .bind(key)
             .bind(lease.fencing_token)
             .bind(&lease.worker)
-            .fetch_all(&mut *tx)
+            .scalars(&mut tx)
             .await?;
-        let Some(now) = finished.first() else { return Ok(false) };
+        let Some(&now) = finished.first() else { return Ok(false) };
         let earlier = Earlier::read(&mut tx, key).await?;
-        sqlx::query(sql::queue::DELETE_RESULT).bind(key).execute(&mut *tx).await?;
-        sqlx::query(sql::queue::INSERT_RESULT)
+        query(sql::queue::DELETE_RESULT).bind(key).execute(&mut tx).await?;
+        query(sql::queue::INSERT_RESULT)
             .bind(key)
             .bind(result.summary_json)
             .bind(result.provenance_json)
             .bind(now)
-            .execute(&mut *tx)
+            .execute(&mut tx)
             .await?;
         for artifact in result.artifacts {
             // Under the lock that blobs are deleted under: it stays.
             if !self.blobs().contains(artifact.blob).await? {
                 return Err(StoreError::BlobMissing(artifact.blob.to_string()));
             }
-            sqlx::query(sql::queue::INSERT_ARTIFACT)
+            query(sql::queue::INSERT_ARTIFACT)
                 .bind(key)
                 .bind(&artifact.name)
                 .bind(&artifact.media_type)
                 .bind(artifact.blob.to_string())
                 .bind(artifact.bytes)
                 .bind(artifact.row_count)
-                .execute(&mut *tx)
+                .execute(&mut tx)
                 .await?;
         }
         if let Some(earlier) = earlier.filter(|_| result.is_repeatable) {
@@ -290,15 +285,14 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn crashed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
-        let changed = sqlx::query(sql::queue::CRASH)
+        let changed = query(sql::queue::CRASH)
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(error_json)
             .bind(CRASH_LIMIT)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
+            .execute(&self.database)
+            .await?;
         Ok(changed == 1)
     }
 
@@ -308,13 +302,12 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
-        let changed = sqlx::query(sql::queue::RELEASE)
+        let changed = query(sql::queue::RELEASE)
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
+            .execute(&self.database)
+            .await?;
         Ok(changed == 1)
     }
 
@@ -324,16 +317,15 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
-        let changed = sqlx::query(sql::queue::RETRY_LATER)
+        let changed = query(sql::queue::RETRY_LATER)
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(error_json)
             .bind(INFRASTRUCTURE_TRIES)
             .bind(FIRST_RETRY_MS)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
+            .execute(&self.database)
+            .await?;
         Ok(changed == 1)
     }
 
@@ -347,23 +339,21 @@ impl Store {
     /// When the database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
         // Most of the time there is nothing: look before taking the write lock.
-        let is_due: i64 = sqlx::query_scalar(sql::queue::IS_ANYTHING_DUE)
-            .bind(LONGEST_RETRY_MS)
-            .fetch_one(&self.pool)
-            .await?;
-        if is_due == 0 {
+        let is_due: bool =
+            query(sql::queue::IS_ANYTHING_DUE).bind(LONGEST_RETRY_MS).scalar(&self.database).await?;
+        if !is_due {
             return Ok(0);
         }
-        let too_long = sqlx::query(sql::queue::SHORTEN_LEASES).execute(&self.pool).await?.rows_affected();
+        let too_long = query(sql::queue::SHORTEN_LEASES).execute(&self.database).await?;
         if too_long > 0 {
             tracing::warn!(leases = too_long, "the clock was set back; leases are counted from now");
         }
         let expired: Vec<(String, i64, Option<String>, Option<String>)> =
-            sqlx::query_as(sql::queue::END_LEASES).bind(CRASH_LIMIT).fetch_all(&self.pool).await?;
+            query(sql::queue::END_LEASES).bind(CRASH_LIMIT).rows(&self.database).await?;
         for (state, crashes, owner, note) in &expired {
             tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
         }
-        sqlx::query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.pool).await?;
+        query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.database).await?;
         Ok(expired.len() as u64)
     }
 
@@ -376,21 +366,20 @@ impl Store {
         let mut ended = 0;
         loop {
             // Most of the time there is nothing: look before taking the write lock.
-            let is_anything: bool = sqlx::query_scalar(sql::queue::IS_ANYTHING_OUTDATED)
+            let is_anything: bool = query(sql::queue::IS_ANYTHING_OUTDATED)
                 .bind(physics_version)
                 .bind(silence_ms)
-                .fetch_one(&self.pool)
+                .scalar(&self.database)
                 .await?;
             if !is_anything {
                 return Ok(ended);
             }
-            ended += sqlx::query(sql::queue::END_OUTDATED)
+            ended += query(sql::queue::END_OUTDATED)
                 .bind(physics_version)
                 .bind(silence_ms)
                 .bind(ROWS_AT_ONCE as i64)
-                .execute(&self.pool)
-                .await?
-                .rows_affected();
+                .execute(&self.database)
+                .await?;
         }
     }
 
@@ -399,8 +388,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn queue_depths(&self) -> Result<QueueDepths> {
-        let (waiting, queued, held, leased) =
-            sqlx::query_as(sql::queue::DEPTHS).fetch_one(&self.pool).await?;
+        let (waiting, queued, held, leased) = query(sql::queue::DEPTHS).one(&self.database).await?;
         Ok(QueueDepths { waiting, queued, held, leased })
     }
 
@@ -409,32 +397,31 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn open_work(&self, owner: &str) -> Result<u64> {
-        let number: i64 = sqlx::query_scalar(sql::queue::OPEN_WORK).bind(owner).fetch_one(&self.pool).await?;
+        let number: i64 = query(sql::queue::OPEN_WORK).bind(owner).scalar(&self.database).await?;
         Ok(number.unsigned_abs())
     }
 
     /// Runs a statement about a lease whose fourth parameter is a text. False if the lease was lost.
-    async fn leave(&self, statement: &'static str, lease: &Lease, text: &str) -> Result<bool> {
-        let changed = sqlx::query(statement)
+    async fn leave(&self, statement: Statement, lease: &Lease, text: &str) -> Result<bool> {
+        let changed = query(statement)
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(text)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
+            .execute(&self.database)
+            .await?;
         Ok(changed == 1)
     }
 }
 
 /// Marks a result as other than the one before.
 async fn note_disagreement(
-    tx: &mut SqliteConnection,
+    tx: &mut Transaction,
     key: &[u8],
     differences: &str,
     earlier_provenance: &str,
 ) -> Result<()> {
-    sqlx::query(sql::queue::NOTE_DISAGREEMENT)
+    query(sql::queue::NOTE_DISAGREEMENT)
         .bind(key)
         .bind(differences)
         .bind(earlier_provenance)
@@ -444,7 +431,7 @@ async fn note_disagreement(
 }
 
 /// Marks a result as one of which another has been seen, though the last two agree.
-async fn keep_disagreement(tx: &mut SqliteConnection, key: &[u8], earlier_provenance: &str) -> Result<()> {
-    sqlx::query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut *tx).await?;
+async fn keep_disagreement(tx: &mut Transaction, key: &[u8], earlier_provenance: &str) -> Result<()> {
+    query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut *tx).await?;
     Ok(())
 }

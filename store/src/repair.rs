@@ -1,11 +1,11 @@
 //! Computing anew what rows name and the object store cannot give.
 
-use sqlx::SqliteConnection;
-
 use crate::blob::BlobId;
 use crate::check::CheckReport;
 use crate::connection::Store;
+use crate::database::Transaction;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 use crate::submit::{PLACE_OF_A_POINT, end_of_order};
@@ -52,10 +52,10 @@ impl Store {
     /// When the database fails.
     pub async fn queue_damaged(&self, key: &WorkKey, blob: BlobId, physics_version: i64) -> Result<Repair> {
         let mut tx = self.write().await?;
-        let names_blob: bool = sqlx::query_scalar(sql::repair::NAMES_BLOB)
+        let names_blob: bool = query(sql::repair::NAMES_BLOB)
             .bind(key.as_slice())
             .bind(blob.to_string())
-            .fetch_one(&mut *tx)
+            .scalar(&mut tx)
             .await?;
         if !names_blob {
             return Ok(Repair::Replaced);
@@ -79,7 +79,7 @@ impl Store {
         let mut keys = found.without_result.clone();
         for blob in &found.damaged {
             let works: Vec<(Vec<u8>, String)> =
-                sqlx::query_as(sql::repair::WORKS_OF_BLOB).bind(blob).fetch_all(&mut *tx).await?;
+                query(sql::repair::WORKS_OF_BLOB).bind(blob).rows(&mut tx).await?;
             for (key, _) in works {
                 keys.push(work_key(&key)?);
             }
@@ -99,15 +99,10 @@ impl Store {
 }
 
 /// Marks a result as damaged and queues its work behind what its owner has in the queue.
-async fn queue(
-    tx: &mut SqliteConnection,
-    key: &WorkKey,
-    physics_version: i64,
-    tries: Tries,
-) -> Result<Repair> {
-    let marked = sqlx::query(sql::repair::MARK).bind(key.as_slice()).execute(&mut *tx).await?.rows_affected();
+async fn queue(tx: &mut Transaction, key: &WorkKey, physics_version: i64, tries: Tries) -> Result<Repair> {
+    let marked = query(sql::repair::MARK).bind(key.as_slice()).execute(&mut *tx).await?;
     let (owner, state, version): (String, String, i64) =
-        sqlx::query_as(sql::repair::WORK).bind(key.as_slice()).fetch_one(&mut *tx).await?;
+        query(sql::repair::WORK).bind(key.as_slice()).one(&mut *tx).await?;
     if version != physics_version {
         return Ok(Repair::OtherNumbers(version));
     }
@@ -118,7 +113,7 @@ async fn queue(
         return Ok(Repair::TriedBefore);
     }
     let order = end_of_order(tx, &owner).await?;
-    sqlx::query(sql::repair::QUEUE)
+    query(sql::repair::QUEUE)
         .bind(key.as_slice())
         .bind(order.last + PLACE_OF_A_POINT)
         .execute(&mut *tx)

@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, HashSet};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use sqlx::SqliteConnection;
 
 use crate::blob::StoredObject;
-use crate::connection::{Store, Writing};
+use crate::connection::Store;
+use crate::database::Transaction;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 
 /// Blobs that are deleted under one hold of the write lock.
@@ -99,9 +100,9 @@ impl Store {
         if is_dry_run {
             return self.collect(policy, true).await;
         }
-        sqlx::query(sql::collection::BEGIN).fetch_all(&self.pool).await?;
+        query(sql::collection::BEGIN).scalars::<i64>(&self.database).await?;
         let garbage = self.collect(policy, false).await?;
-        sqlx::query(sql::collection::END).bind(garbage.to_json().to_string()).execute(&self.pool).await?;
+        query(sql::collection::END).bind(garbage.to_json().to_string()).execute(&self.database).await?;
         Ok(garbage)
     }
 
@@ -111,14 +112,14 @@ impl Store {
     /// When the database fails.
     pub async fn last_collection(&self) -> Result<Option<Collection>> {
         let last: Option<(i64, Option<i64>, Option<String>)> =
-            sqlx::query_as(sql::collection::LAST).fetch_optional(&self.pool).await?;
+            query(sql::collection::LAST).first(&self.database).await?;
         Ok(last.map(|(started, ended, deleted_json)| Collection { started, ended, deleted_json }))
     }
 
     async fn collect(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
         let mut garbage = Garbage::default();
         let mut tx = self.write().await?;
-        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
+        let now: i64 = query(sql::clock::NOW).scalar(&mut tx).await?;
         garbage.sweeps = delete_expired_sweeps(&mut tx, now).await?;
         tx = self.go_on(tx, is_dry_run).await?;
         garbage.results = delete_unwanted_work(&mut tx).await?;
@@ -129,7 +130,7 @@ impl Store {
         tx = self.go_on(tx, is_dry_run).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
         let named: HashSet<String> =
-            sqlx::query_scalar(sql::retention::BLOBS_IN_USE).fetch_all(&mut *tx).await?.into_iter().collect();
+            query(sql::retention::BLOBS_IN_USE).scalars(&mut tx).await?.into_iter().collect();
         if is_dry_run {
             tx.rollback().await?;
         } else {
@@ -152,13 +153,13 @@ impl Store {
         garbage.unfinished_bytes = unfinished.iter().sum();
         if !is_dry_run {
             // Pages that were freed go back to the file system with the next checkpoint of the log.
-            sqlx::query(sql::retention::TRUNCATE_LOG).fetch_all(&self.pool).await?;
+            query(sql::retention::TRUNCATE_LOG).scalars::<i64>(&self.database).await?;
         }
         Ok(garbage)
     }
 
     /// Lets others write between two steps. A dry run undoes them all together in the end.
-    async fn go_on(&self, tx: Writing, is_dry_run: bool) -> Result<Writing> {
+    async fn go_on(&self, tx: Transaction, is_dry_run: bool) -> Result<Transaction> {
         if is_dry_run {
             return Ok(tx);
         }
@@ -171,11 +172,9 @@ impl Store {
         let mut tx = self.write().await?;
         let mut deleted = Vec::new();
         for object in objects {
-            let is_named: i64 = sqlx::query_scalar(sql::retention::IS_BLOB_IN_USE)
-                .bind(object.blob())
-                .fetch_one(&mut *tx)
-                .await?;
-            if is_named == 0 {
+            let is_named: bool =
+                query(sql::retention::IS_BLOB_IN_USE).bind(object.blob()).scalar(&mut tx).await?;
+            if !is_named {
                 self.blobs().delete(object).await?;
                 deleted.push(object.clone());
             }
@@ -186,53 +185,51 @@ impl Store {
 }
 
 /// Sweeps take their points, events and idempotency keys along.
-async fn delete_expired_sweeps(tx: &mut SqliteConnection, now: i64) -> Result<u64> {
-    Ok(sqlx::query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut *tx).await?.rows_affected())
+async fn delete_expired_sweeps(tx: &mut Transaction, now: i64) -> Result<u64> {
+    query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut *tx).await
 }
 
 /// Work that is final and that no point wants, with its result and artifacts.
-async fn delete_unwanted_work(tx: &mut SqliteConnection) -> Result<u64> {
-    let results = sqlx::query(sql::retention::DELETE_RESULTS).execute(&mut *tx).await?.rows_affected();
-    sqlx::query(sql::retention::DELETE_WORK).execute(&mut *tx).await?;
+async fn delete_unwanted_work(tx: &mut Transaction) -> Result<u64> {
+    let results = query(sql::retention::DELETE_RESULTS).execute(&mut *tx).await?;
+    query(sql::retention::DELETE_WORK).execute(&mut *tx).await?;
     Ok(results)
 }
 
 /// Bases that no work changes any more.
-async fn delete_unused_scenarios(tx: &mut SqliteConnection) -> Result<u64> {
-    Ok(sqlx::query(sql::retention::DELETE_SCENARIOS).execute(&mut *tx).await?.rows_affected())
+async fn delete_unused_scenarios(tx: &mut Transaction) -> Result<u64> {
+    query(sql::retention::DELETE_SCENARIOS).execute(&mut *tx).await
 }
 
 /// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
-async fn expire_artifacts(tx: &mut SqliteConnection, policy: &RetentionPolicy, now: i64) -> Result<u64> {
-    let names: Vec<String> = sqlx::query_scalar(sql::retention::ARTIFACT_NAMES).fetch_all(&mut *tx).await?;
+async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
+    let names: Vec<String> = query(sql::retention::ARTIFACT_NAMES).scalars(&mut *tx).await?;
     let mut expired = 0;
     for name in names {
         let age = policy.artifact_ages.get(&name).unwrap_or(&policy.other_artifacts);
-        expired += sqlx::query(sql::retention::EXPIRE_ARTIFACTS)
+        expired += query(sql::retention::EXPIRE_ARTIFACTS)
             .bind(&name)
             .bind(now)
             .bind(now.saturating_sub(milliseconds(*age)))
             .execute(&mut *tx)
-            .await?
-            .rows_affected();
+            .await?;
     }
     Ok(expired)
 }
 
 /// Events, idempotency keys, workers and owners' turns that nobody will ask for; tells the number of events.
-async fn delete_old_rows(tx: &mut SqliteConnection, policy: &RetentionPolicy, now: i64) -> Result<u64> {
-    let events = sqlx::query(sql::retention::DELETE_EVENTS)
+async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
+    let events = query(sql::retention::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))
         .execute(&mut *tx)
-        .await?
-        .rows_affected();
+        .await?;
     for (statement, age) in [
         (sql::retention::DELETE_IDEMPOTENCY_KEYS, IDEMPOTENCY_MS),
         (sql::retention::DELETE_WORKERS, WORKER_MS),
     ] {
-        sqlx::query(statement).bind(now - age).execute(&mut *tx).await?;
+        query(statement).bind(now - age).execute(&mut *tx).await?;
     }
-    sqlx::query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
+    query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
     Ok(events)
 }
 

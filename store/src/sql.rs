@@ -1,5 +1,6 @@
-//! The statements, each whole in a file of its own: `store/sql/sqlite/`, a folder for each module that uses them. A file
-//! begins with a comment that says what the statement does, what its parameters are and what it gives.
+//! The statements, each whole in a file of its own: `store/sql/sqlite/` and `store/sql/postgres/`, in each a folder for each module
+//! that uses them, and the same files. A file begins with a comment that says what the statement does, what its parameters are and what
+//! it gives; these are the same on both engines.
 //!
 //! The time is the database's: statements read it from the view `clock`. Lists and rows come as one parameter, a JSON array, so
 //! that a statement is the same however many they are.
@@ -24,18 +25,28 @@ const fn without_comment(file: &'static str) -> &'static str {
 macro_rules! statements {
     ($($module:ident { $($name:ident = $file:literal,)+ })+) => {
         $(pub(crate) mod $module {
-            $(pub(crate) const $name: &str = super::without_comment(include_str!(concat!(
-                "../sql/sqlite/",
-                stringify!($module),
-                "/",
-                $file,
-                ".sql"
-            )));)+
+            use crate::query::Statement;
+            $(pub(crate) const $name: Statement = Statement {
+                sqlite: super::without_comment(include_str!(concat!(
+                    "../sql/sqlite/",
+                    stringify!($module),
+                    "/",
+                    $file,
+                    ".sql"
+                ))),
+                postgres: super::without_comment(include_str!(concat!(
+                    "../sql/postgres/",
+                    stringify!($module),
+                    "/",
+                    $file,
+                    ".sql"
+                ))),
+            };)+
         })+
 
         /// All of them, by folder and file.
         #[cfg(test)]
-        const ALL: &[(&str, &str)] = &[$($((concat!(stringify!($module), "/", $file), $module::$name),)+)+];
+        const ALL: &[(&str, crate::query::Statement)] = &[$($((concat!(stringify!($module), "/", $file), $module::$name),)+)+];
     };
 }
 
@@ -207,12 +218,14 @@ statements! {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
 
     use sqlx::{AssertSqlSafe, Row as _};
 
     use super::*;
     use crate::connection::{Role, Store, StoreConfig};
+    use crate::database::Database;
+    use crate::query::Statement;
 
     /// What a plan may go through from end to end, because it is small: tables of a row, a parameter, an owner, a token, a worker
     /// or a machine each, and indexes of the few rows that a statement looks for. So may it go through what it has selected
@@ -258,42 +271,75 @@ mod tests {
         ("sweep/list", "sweep"),
     ];
 
-    fn folder() -> &'static Path {
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/sql/sqlite"))
+    /// An engine: its folder, the sign before the number of a parameter, and its text of a statement.
+    type Engine = (&'static str, char, fn(&Statement) -> &'static str);
+
+    const ENGINES: [Engine; 2] =
+        [("sqlite", '?', |statement| statement.sqlite), ("postgres", '$', |statement| statement.postgres)];
+
+    fn folder(engine: &str) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("sql").join(engine)
     }
 
     #[test]
     fn every_file_is_a_statement_and_says_what_its_parameters_are() {
-        let mut files = BTreeSet::new();
-        for module in std::fs::read_dir(folder()).unwrap() {
-            for file in std::fs::read_dir(module.unwrap().path()).unwrap() {
-                let path = file.unwrap().path().with_extension("");
-                files.insert(path.strip_prefix(folder()).unwrap().to_str().unwrap().to_owned());
+        for (engine, sign, text) in ENGINES {
+            let folder = folder(engine);
+            let mut files = BTreeSet::new();
+            for module in std::fs::read_dir(&folder).unwrap() {
+                for file in std::fs::read_dir(module.unwrap().path()).unwrap() {
+                    let path = file.unwrap().path().with_extension("");
+                    files.insert(path.strip_prefix(&folder).unwrap().to_str().unwrap().to_owned());
+                }
+            }
+            assert_eq!(files, ALL.iter().map(|(name, _)| (*name).to_owned()).collect());
+            for (name, statement) in ALL {
+                let statement = text(statement);
+                let file = std::fs::read_to_string(folder.join(name).with_extension("sql")).unwrap();
+                let comment = file.strip_suffix(statement).unwrap();
+                assert!(comment.starts_with("-- "), "{engine}: {name} says nothing of itself");
+                assert!(!statement.contains("--"), "{engine}: {name} has a comment inside");
+                for number in 1..20 {
+                    let parameter = format!("{sign}{number}");
+                    assert_eq!(
+                        names(comment, &parameter),
+                        names(statement, &parameter),
+                        "{parameter} of {name}"
+                    );
+                }
             }
         }
-        assert_eq!(files, ALL.iter().map(|(name, _)| (*name).to_owned()).collect());
+    }
+
+    /// Whether a text names a parameter.
+    fn names(text: &str, parameter: &str) -> bool {
+        text.match_indices(parameter)
+            .any(|(at, found)| !text[at + found.len()..].starts_with(|next: char| next.is_ascii_digit()))
+    }
+
+    #[test]
+    fn a_statement_has_the_same_parameters_on_both_engines() {
         for (name, statement) in ALL {
-            let file = std::fs::read_to_string(folder().join(name).with_extension("sql")).unwrap();
-            let comment = file.strip_suffix(statement).unwrap();
-            assert!(comment.starts_with("-- "), "{name} says nothing of itself");
-            assert!(!statement.contains("--"), "{name} has a comment inside");
             for number in 1..20 {
-                let parameter = format!("?{number}");
-                let has = |text: &str| {
-                    text.match_indices(&parameter).any(|(at, found)| {
-                        !text[at + found.len()..].starts_with(|next: char| next.is_ascii_digit())
-                    })
-                };
-                assert_eq!(has(comment), has(statement), "{parameter} of {name}");
+                let (of_sqlite, of_postgres) = (format!("?{number}"), format!("${number}"));
+                assert_eq!(
+                    names(statement.sqlite, &of_sqlite),
+                    names(statement.postgres, &of_postgres),
+                    "parameter {number} of {name}"
+                );
             }
         }
     }
 
     #[test]
     fn only_the_clock_tells_the_time() {
+        let clocks =
+            ["julianday", "unixepoch", "current_timestamp", "strftime", "datetime", "now()", "_timestamp"];
         for (name, statement) in ALL {
-            for word in ["julianday", "unixepoch", "current_timestamp", "strftime", "datetime"] {
-                assert!(!statement.to_lowercase().contains(word), "{name} has another clock");
+            for text in [statement.sqlite, statement.postgres] {
+                for word in clocks {
+                    assert!(!text.to_lowercase().contains(word), "{name} has another clock");
+                }
             }
         }
     }
@@ -302,10 +348,12 @@ mod tests {
     async fn no_statement_reads_a_whole_table_but_those_that_must() {
         let directory = tempfile::tempdir().unwrap();
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Server)).await.unwrap();
+        let Database::Sqlite(pool, _) = &store.database else { panic!("a directory has a SQLite file") };
         let mut whole = BTreeSet::new();
         for (name, statement) in ALL {
+            let statement = statement.sqlite;
             let plan = format!("EXPLAIN QUERY PLAN {statement}");
-            for step in sqlx::query(AssertSqlSafe(plan)).fetch_all(&store.pool).await.unwrap() {
+            for step in sqlx::query(AssertSqlSafe(plan)).fetch_all(pool).await.unwrap() {
                 let step: String = step.get("detail");
                 let words: Vec<&str> = step.split(' ').collect();
                 if let ["SCAN", table, rest @ ..] = words.as_slice()

@@ -4,10 +4,11 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use serde_json::{Value, json};
-use sqlx::{SqliteConnection, SqliteExecutor};
 
-use crate::connection::{Store, Writing};
+use crate::connection::Store;
+use crate::database::Transaction;
 use crate::error::{Result, StoreError};
+use crate::query::{Session, Statement, query};
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 
@@ -163,7 +164,7 @@ impl Store {
     /// When the idempotency key was used for another request, or the database fails.
     pub async fn submit_sweep(&self, sweep: &NewSweep) -> Result<SubmitOutcome> {
         if sweep.cache == CachePolicy::Only {
-            let mut connection = self.pool.acquire().await?;
+            let mut connection = self.database.read().await?;
             if let Some(known) = known_sweep(&mut connection, sweep).await? {
                 return Ok(SubmitOutcome::Known(known));
             }
@@ -179,7 +180,7 @@ impl Store {
         if let Some(known) = known_sweep(&mut tx, sweep).await? {
             return Ok(SubmitOutcome::Known(known));
         }
-        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
+        let now: i64 = query(sql::clock::NOW).scalar(&mut tx).await?;
         insert_sweep(&mut tx, sweep, now).await?;
         let order = end_of_order(&mut tx, &sweep.owner).await?;
         match self.store_points(tx, sweep, order, now).await {
@@ -195,7 +196,13 @@ impl Store {
     }
 
     /// Stores the points of a hidden sweep by and by, so that nobody has to wait for all of them, and shows it.
-    async fn store_points(&self, mut tx: Writing, sweep: &NewSweep, order: Order, now: i64) -> Result<()> {
+    async fn store_points(
+        &self,
+        mut tx: Transaction,
+        sweep: &NewSweep,
+        order: Order,
+        now: i64,
+    ) -> Result<()> {
         let wanted = Wanted {
             sweep_id: &sweep.id,
             order,
@@ -237,7 +244,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn lacking_points(&self, sweep_id: &str, points: &[NewPoint]) -> Result<Vec<i64>> {
-        let mut connection = self.pool.acquire().await?;
+        let mut connection = self.database.read().await?;
         Ok(lacking(&mut connection, sweep_id, points).await?.iter().map(|point| point.ordinal).collect())
     }
 
@@ -255,18 +262,16 @@ impl Store {
     ) -> Result<AppendOutcome> {
         let Addition { base_json, physics_version, points, verification, request_json } = *addition;
         let mut tx = self.write().await?;
-        let sweep: Option<(String, i64, i64, i64, i64)> =
-            sqlx::query_as(sql::submit::EXTENDED_SWEEP).bind(sweep_id).fetch_optional(&mut *tx).await?;
+        let sweep: Option<(String, i64, i64, bool, bool)> =
+            query(sql::submit::EXTENDED_SWEEP).bind(sweep_id).first(&mut tx).await?;
         let Some((owner, priority, known, cancelled, paused)) = sweep else {
             return Ok(AppendOutcome::NoSuchSweep);
         };
-        if cancelled != 0 {
+        if cancelled {
             return Ok(AppendOutcome::Cancelled);
         }
-        let version: Option<i64> = sqlx::query_scalar(sql::submit::VERSION_OF_POINTS)
-            .bind(sweep_id)
-            .fetch_optional(&mut *tx)
-            .await?;
+        let version: Option<i64> =
+            query(sql::submit::VERSION_OF_POINTS).bind(sweep_id).first_scalar(&mut tx).await?;
         if let Some(other) = version.filter(|version| *version != physics_version) {
             return Ok(AppendOutcome::OtherNumbers(other));
         }
@@ -287,7 +292,7 @@ impl Store {
         if total > limit {
             return Ok(AppendOutcome::TooMany(total));
         }
-        let now: i64 = sqlx::query_scalar(sql::clock::NOW).fetch_one(&mut *tx).await?;
+        let now: i64 = query(sql::clock::NOW).scalar(&mut tx).await?;
         let wanted = Wanted {
             sweep_id,
             order: end_of_order(&mut tx, &owner).await?,
@@ -295,11 +300,11 @@ impl Store {
             priority,
             physics_version,
             cache: CachePolicy::Reuse,
-            is_paused: paused != 0,
+            is_paused: paused,
         };
         insert(&mut tx, &wanted, (base_json, &fresh), (&verification.base_json, &runs), now).await?;
-        sqlx::query(sql::submit::INSERT_APPENDED).bind(sweep_id).bind(request_json).execute(&mut *tx).await?;
-        sqlx::query(sql::submit::SET_POINTS).bind(sweep_id).bind(total as i64).execute(&mut *tx).await?;
+        query(sql::submit::INSERT_APPENDED).bind(sweep_id).bind(request_json).execute(&mut tx).await?;
+        query(sql::submit::SET_POINTS).bind(sweep_id).bind(total as i64).execute(&mut tx).await?;
         for (role, rows) in [(Role::Point, fresh.as_slice()), (Role::Verification, &runs)] {
             count(&mut tx, sweep_id, role, rows, now).await?;
         }
@@ -312,11 +317,8 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn appended_requests(&self, sweep_id: &str, limit: i64) -> Result<Vec<String>> {
-        let mut requests: Vec<String> = sqlx::query_scalar(sql::submit::APPENDED)
-            .bind(sweep_id)
-            .bind(limit)
-            .fetch_all(&self.pool)
-            .await?;
+        let mut requests: Vec<String> =
+            query(sql::submit::APPENDED).bind(sweep_id).bind(limit).scalars(&self.database).await?;
         requests.reverse();
         Ok(requests)
     }
@@ -329,17 +331,15 @@ impl Store {
         let mut known = 0;
         for keys in keys.chunks(ROWS_AT_ONCE) {
             let fuller: Vec<WorkKey> = keys.iter().filter_map(|(_, fuller)| *fuller).collect();
-            let fuller = fuller_results(&self.pool, &fuller).await?;
+            let fuller = fuller_results(&self.database, &fuller).await?;
             let own: Vec<&WorkKey> = keys
                 .iter()
                 .filter(|(_, key)| key.is_none_or(|key| !fuller.contains(&key)))
                 .map(|(key, _)| key)
                 .collect();
             known += (keys.len() - own.len()) as u64;
-            let found: i64 = sqlx::query_scalar(sql::submit::KNOWN_RESULTS)
-                .bind(list_of(own))
-                .fetch_one(&self.pool)
-                .await?;
+            let found: i64 =
+                query(sql::submit::KNOWN_RESULTS).bind(list_of(own)).scalar(&self.database).await?;
             known += found.unsigned_abs();
         }
         Ok(known)
@@ -347,13 +347,10 @@ impl Store {
 }
 
 /// The sweep that was stored before under the same idempotency key.
-async fn known_sweep(tx: &mut SqliteConnection, sweep: &NewSweep) -> Result<Option<String>> {
+async fn known_sweep(tx: &mut Transaction, sweep: &NewSweep) -> Result<Option<String>> {
     let Some((key, body_hash)) = &sweep.idempotency_key else { return Ok(None) };
-    let known: Option<(Vec<u8>, String, bool)> = sqlx::query_as(sql::submit::KNOWN_SWEEP)
-        .bind(&sweep.owner)
-        .bind(key)
-        .fetch_optional(&mut *tx)
-        .await?;
+    let known: Option<(Vec<u8>, String, bool)> =
+        query(sql::submit::KNOWN_SWEEP).bind(&sweep.owner).bind(key).first(&mut *tx).await?;
     match known {
         None => Ok(None),
         Some((known_hash, ..)) if known_hash != body_hash => Err(StoreError::IdempotencyConflict),
@@ -362,10 +359,10 @@ async fn known_sweep(tx: &mut SqliteConnection, sweep: &NewSweep) -> Result<Opti
     }
 }
 
-async fn insert_sweep(tx: &mut SqliteConnection, sweep: &NewSweep, now: i64) -> Result<()> {
-    sqlx::query(sql::submit::INSERT_SWEEP)
+async fn insert_sweep(tx: &mut Transaction, sweep: &NewSweep, now: i64) -> Result<()> {
+    query(sql::submit::INSERT_SWEEP)
         .bind(&sweep.id)
-        .bind(&sweep.name)
+        .bind(sweep.name.as_deref())
         .bind(&sweep.owner)
         .bind(&sweep.request_json)
         .bind(sweep.priority)
@@ -376,7 +373,7 @@ async fn insert_sweep(tx: &mut SqliteConnection, sweep: &NewSweep, now: i64) -> 
         .execute(&mut *tx)
         .await?;
     if let Some((key, body_hash)) = &sweep.idempotency_key {
-        sqlx::query(sql::submit::INSERT_IDEMPOTENCY_KEY)
+        query(sql::submit::INSERT_IDEMPOTENCY_KEY)
             .bind(&sweep.owner)
             .bind(key)
             .bind(body_hash.as_slice())
@@ -399,7 +396,7 @@ fn hexadecimal(key: &WorkKey) -> String {
 
 /// The points, those for which fuller work has a result as points of that work.
 async fn with_fuller<'p>(
-    connection: &mut SqliteConnection,
+    connection: &mut Transaction,
     points: &'p [NewPoint],
 ) -> Result<Cow<'p, [NewPoint]>> {
     let mut all = Cow::from(points);
@@ -416,22 +413,21 @@ async fn with_fuller<'p>(
 }
 
 /// Which of the keys belong to work that has a result with all its tables, and is not being recomputed.
-async fn fuller_results<'c>(executor: impl SqliteExecutor<'c>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
+async fn fuller_results<'c>(session: impl Into<Session<'c>>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
     if keys.is_empty() {
         return Ok(HashSet::new());
     }
-    let found: Vec<Vec<u8>> =
-        sqlx::query_scalar(sql::submit::FULLER_RESULTS).bind(list_of(keys)).fetch_all(executor).await?;
+    let found: Vec<Vec<u8>> = query(sql::submit::FULLER_RESULTS).bind(list_of(keys)).scalars(session).await?;
     found.iter().map(|key| work_key(key)).collect()
 }
 
 /// Which of the points have neither a result nor failed, by ordinal.
-async fn not_computed(tx: &mut SqliteConnection, points: &[NewPoint]) -> Result<Vec<i64>> {
+async fn not_computed(tx: &mut Transaction, points: &[NewPoint]) -> Result<Vec<i64>> {
     let mut missing = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {
         let keys = points.iter().map(|point| &point.work_key);
         let known: Vec<Vec<u8>> =
-            sqlx::query_scalar(sql::submit::KNOWN_WORK).bind(list_of(keys)).fetch_all(&mut *tx).await?;
+            query(sql::submit::KNOWN_WORK).bind(list_of(keys)).scalars(&mut *tx).await?;
         let known: HashSet<&[u8]> = known.iter().map(Vec::as_slice).collect();
         let is_missing = |point: &&NewPoint| !known.contains(point.work_key.as_slice());
         missing.extend(points.iter().filter(is_missing).map(|point| point.ordinal));
@@ -440,11 +436,7 @@ async fn not_computed(tx: &mut SqliteConnection, points: &[NewPoint]) -> Result<
 }
 
 /// The points that a sweep has not, each once; those for which fuller work has a result as points of that work.
-async fn lacking(
-    connection: &mut SqliteConnection,
-    sweep_id: &str,
-    points: &[NewPoint],
-) -> Result<Vec<NewPoint>> {
+async fn lacking(connection: &mut Transaction, sweep_id: &str, points: &[NewPoint]) -> Result<Vec<NewPoint>> {
     let points = with_fuller(connection, points).await?;
     let mut seen: HashSet<WorkKey> = points_of(connection, sweep_id, &points)
         .await?
@@ -456,7 +448,7 @@ async fn lacking(
 
 /// Keys of the given points that the sweep has already.
 async fn points_of(
-    connection: &mut SqliteConnection,
+    connection: &mut Transaction,
     sweep_id: &str,
     points: &[NewPoint],
 ) -> Result<Vec<Vec<u8>>> {
@@ -464,10 +456,10 @@ async fn points_of(
     for points in points.chunks(ROWS_AT_ONCE) {
         let keys = points.iter().map(|point| &point.work_key);
         found.extend(
-            sqlx::query_scalar::<_, Vec<u8>>(sql::submit::POINTS_OF)
+            query(sql::submit::POINTS_OF)
                 .bind(sweep_id)
                 .bind(list_of(keys))
-                .fetch_all(&mut *connection)
+                .scalars(&mut *connection)
                 .await?,
         );
     }
@@ -484,23 +476,23 @@ pub(crate) struct Order {
 }
 
 /// Where an owner's order ends; an owner that has had no turn gets the first.
-pub(crate) async fn end_of_order(tx: &mut SqliteConnection, owner: &str) -> Result<Order> {
-    sqlx::query(sql::submit::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
-    let (first, last) = sqlx::query_as(sql::submit::ENDS_OF_ORDER).bind(owner).fetch_one(&mut *tx).await?;
+pub(crate) async fn end_of_order(tx: &mut Transaction, owner: &str) -> Result<Order> {
+    query(sql::submit::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
+    let (first, last) = query(sql::submit::ENDS_OF_ORDER).bind(owner).one(&mut *tx).await?;
     Ok(Order { first, last })
 }
 
 /// Stores a base scenario by the hash of its text, unless it is there.
-async fn insert_base(tx: &mut SqliteConnection, text: &str) -> Result<[u8; 32]> {
+async fn insert_base(tx: &mut Transaction, text: &str) -> Result<[u8; 32]> {
     let hash = *blake3::hash(text.as_bytes()).as_bytes();
-    sqlx::query(sql::submit::INSERT_SCENARIO).bind(hash.as_slice()).bind(text).execute(&mut *tx).await?;
+    query(sql::submit::INSERT_SCENARIO).bind(hash.as_slice()).bind(text).execute(&mut *tx).await?;
     Ok(hash)
 }
 
 /// Stores points of a sweep, the runs that verify some of them, and the work behind both, at the end of its owner's order:
 /// the points first. Each with the base that they change.
 async fn insert(
-    tx: &mut SqliteConnection,
+    tx: &mut Transaction,
     wanted: &Wanted<'_>,
     points: (&str, &[NewPoint]),
     verification: (&str, &[NewPoint]),
@@ -522,7 +514,7 @@ async fn insert(
 }
 
 async fn insert_work(
-    tx: &mut SqliteConnection,
+    tx: &mut Transaction,
     wanted: &Wanted<'_>,
     base: [u8; 32],
     points: &[NewPoint],
@@ -530,7 +522,7 @@ async fn insert_work(
     now: i64,
 ) -> Result<()> {
     let rows = points.iter().map(|point| json!([hexadecimal(&point.work_key), point.changes_json]));
-    sqlx::query(sql::submit::INSERT_WORK)
+    query(sql::submit::INSERT_WORK)
         .bind(rows.collect::<Value>().to_string())
         .bind(place)
         .bind(PLACE_OF_A_POINT)
@@ -547,16 +539,11 @@ async fn insert_work(
     Ok(())
 }
 
-async fn insert_points(
-    tx: &mut SqliteConnection,
-    sweep_id: &str,
-    role: Role,
-    points: &[NewPoint],
-) -> Result<()> {
+async fn insert_points(tx: &mut Transaction, sweep_id: &str, role: Role, points: &[NewPoint]) -> Result<()> {
     let rows = points
         .iter()
         .map(|point| json!([point.ordinal, hexadecimal(&point.work_key), point.parameters_json]));
-    sqlx::query(sql::submit::INSERT_POINTS)
+    query(sql::submit::INSERT_POINTS)
         .bind(sweep_id)
         .bind(matches!(role, Role::Verification))
         .bind(rows.collect::<Value>().to_string())
@@ -566,9 +553,9 @@ async fn insert_points(
 }
 
 /// Counts points of a sweep that are new, or runs that verify points; from then on the counts follow the work.
-async fn count(tx: &mut SqliteConnection, id: &str, role: Role, rows: &[NewPoint], now: i64) -> Result<()> {
+async fn count(tx: &mut Transaction, id: &str, role: Role, rows: &[NewPoint], now: i64) -> Result<()> {
     let ordinals: Value = rows.iter().map(|row| row.ordinal).collect();
-    sqlx::query(sql::submit::COUNT)
+    query(sql::submit::COUNT)
         .bind(id)
         .bind(ordinals.to_string())
         .bind(now)
@@ -579,8 +566,8 @@ async fn count(tx: &mut SqliteConnection, id: &str, role: Role, rows: &[NewPoint
 }
 
 /// Runs a statement about a sweep that is hidden while its points are stored.
-async fn still_hidden(tx: &mut SqliteConnection, statement: &'static str, id: &str) -> Result<()> {
-    match sqlx::query(statement).bind(id).execute(&mut *tx).await?.rows_affected() {
+async fn still_hidden(tx: &mut Transaction, statement: Statement, id: &str) -> Result<()> {
+    match query(statement).bind(id).execute(&mut *tx).await? {
         1 => Ok(()),
         _ => Err(StoreError::TakenAway),
     }

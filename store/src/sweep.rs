@@ -1,10 +1,9 @@
 //! Sweeps: reading, changing, pausing, cancelling, retrying.
 
-use sqlx::sqlite::SqliteRow;
-use sqlx::{Row as _, SqliteConnection};
-
 use crate::connection::Store;
+use crate::database::Transaction;
 use crate::error::Result;
+use crate::query::{Row, query};
 use crate::sql;
 use crate::state::StateCounts;
 use crate::submit::{PLACE_OF_A_POINT, POINTS_AT_ONCE, end_of_order};
@@ -69,8 +68,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
-        let row = sqlx::query(sql::sweep::ONE).bind(id).fetch_optional(&self.pool).await?;
-        row.as_ref().map(SweepRecord::read).transpose()
+        query(sql::sweep::ONE).bind(id).first_record(&self.database, SweepRecord::read).await
     }
 
     /// Sweeps, newest first, those that the filter lets through, before the sweep `before`.
@@ -83,7 +81,7 @@ impl Store {
         before: Option<&str>,
         limit: i64,
     ) -> Result<Vec<SweepRecord>> {
-        let rows = sqlx::query(sql::sweep::LIST)
+        query(sql::sweep::LIST)
             .bind(filter.owner)
             .bind(before)
             .bind(limit)
@@ -91,9 +89,8 @@ impl Store {
             .bind(filter.name)
             .bind(filter.tag)
             .bind(filter.id)
-            .fetch_all(&self.pool)
-            .await?;
-        rows.iter().map(SweepRecord::read).collect()
+            .records(&self.database, SweepRecord::read)
+            .await
     }
 
     /// A number that rises with every change of the sweep's points; none if there is no such sweep.
@@ -101,7 +98,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn sweep_version(&self, id: &str) -> Result<Option<i64>> {
-        Ok(sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&self.pool).await?)
+        query(sql::sweep::VERSION).bind(id).first_scalar(&self.database).await
     }
 
     /// Cancels a sweep: its points that no other live sweep wants are cancelled, and the runs that verify them; those under way as
@@ -112,13 +109,12 @@ impl Store {
     /// When the database fails.
     pub async fn cancel_sweep(&self, id: &str) -> Result<bool> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query(sql::sweep::CANCEL).bind(id).execute(&mut *tx).await?.rows_affected();
+        let changed = query(sql::sweep::CANCEL).bind(id).execute(&mut tx).await?;
         if changed == 0 {
-            let version: Option<i64> =
-                sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&mut *tx).await?;
+            let version: Option<i64> = query(sql::sweep::VERSION).bind(id).first_scalar(&mut tx).await?;
             return Ok(version.is_some());
         }
-        sqlx::query(sql::sweep::STOP_WORK).bind(id).execute(&mut *tx).await?;
+        query(sql::sweep::STOP_WORK).bind(id).execute(&mut tx).await?;
         // From here on the sweep counts as cancelled, and its work follows by and by.
         let mut is_whole = cancel_next(&mut tx, id).await?;
         tx.commit().await?;
@@ -142,12 +138,11 @@ impl Store {
     /// When the database fails.
     pub async fn finish_what_was_begun(&self, silence_ms: i64) -> Result<u64> {
         let hidden: Vec<String> =
-            sqlx::query_scalar(sql::sweep::LEFT_HIDDEN).bind(silence_ms).fetch_all(&self.pool).await?;
+            query(sql::sweep::LEFT_HIDDEN).bind(silence_ms).scalars(&self.database).await?;
         for id in &hidden {
             self.take_away(id).await?;
         }
-        let cancelled: Vec<String> =
-            sqlx::query_scalar(sql::sweep::HALF_CANCELLED).fetch_all(&self.pool).await?;
+        let cancelled: Vec<String> = query(sql::sweep::HALF_CANCELLED).scalars(&self.database).await?;
         for id in &cancelled {
             while !self.go_on_cancelling(id).await? {}
         }
@@ -160,22 +155,17 @@ impl Store {
         let mut deleted_to = 0;
         loop {
             let mut tx = self.write().await?;
-            let is_there =
-                sqlx::query(sql::sweep::HIDE).bind(id).execute(&mut *tx).await?.rows_affected() == 1;
+            let is_there = query(sql::sweep::HIDE).bind(id).execute(&mut tx).await? == 1;
             if !is_there {
                 return Ok(());
             }
             deleted_to += POINTS_AT_ONCE;
-            sqlx::query(sql::sweep::DELETE_POINTS).bind(id).bind(deleted_to).execute(&mut *tx).await?;
-            let events = sqlx::query(sql::sweep::DELETE_EVENTS)
-                .bind(id)
-                .bind(POINTS_AT_ONCE)
-                .execute(&mut *tx)
-                .await?
-                .rows_affected();
-            let points: i64 = sqlx::query_scalar(sql::sweep::LAST_POINT).bind(id).fetch_one(&mut *tx).await?;
+            query(sql::sweep::DELETE_POINTS).bind(id).bind(deleted_to).execute(&mut tx).await?;
+            let events =
+                query(sql::sweep::DELETE_EVENTS).bind(id).bind(POINTS_AT_ONCE).execute(&mut tx).await?;
+            let points: i64 = query(sql::sweep::LAST_POINT).bind(id).scalar(&mut tx).await?;
             if events == 0 && points <= deleted_to {
-                sqlx::query(sql::sweep::DELETE).bind(id).execute(&mut *tx).await?;
+                query(sql::sweep::DELETE).bind(id).execute(&mut tx).await?;
                 return tx.commit().await;
             }
             tx.commit().await?;
@@ -189,12 +179,7 @@ impl Store {
     /// When the database fails.
     pub async fn pause_sweep(&self, id: &str, paused: bool) -> Result<bool> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query(sql::sweep::PAUSE)
-            .bind(id)
-            .bind(i64::from(paused))
-            .execute(&mut *tx)
-            .await?
-            .rows_affected();
+        let changed = query(sql::sweep::PAUSE).bind(id).bind(paused).execute(&mut tx).await?;
         if changed == 1 {
             hold_back(&mut tx, id).await?;
         }
@@ -214,26 +199,24 @@ impl Store {
         expected: Option<i64>,
     ) -> Result<ChangeOutcome> {
         let mut tx = self.write().await?;
-        let changed = sqlx::query(sql::sweep::CHANGE)
+        let changed = query(sql::sweep::CHANGE)
             .bind(id)
             .bind(changes.name.is_some())
             .bind(changes.name.as_ref().and_then(Option::as_deref))
             .bind(changes.priority)
-            .bind(&changes.tags_json)
+            .bind(changes.tags_json.as_deref())
             .bind(changes.is_pinned)
             .bind(changes.expires.is_some())
             .bind(changes.expires.flatten())
             .bind(expected)
-            .execute(&mut *tx)
-            .await?
-            .rows_affected();
+            .execute(&mut tx)
+            .await?;
         if changed == 0 {
-            let version: Option<i64> =
-                sqlx::query_scalar(sql::sweep::VERSION).bind(id).fetch_optional(&mut *tx).await?;
+            let version: Option<i64> = query(sql::sweep::VERSION).bind(id).first_scalar(&mut tx).await?;
             return Ok(version.map_or(ChangeOutcome::NoSuchSweep, |_| ChangeOutcome::OtherRevision));
         }
         if changes.priority.is_some() {
-            sqlx::query(sql::sweep::CHANGE_PRIORITY_OF_WORK).bind(id).execute(&mut *tx).await?;
+            query(sql::sweep::CHANGE_PRIORITY_OF_WORK).bind(id).execute(&mut tx).await?;
         }
         tx.commit().await?;
         Ok(ChangeOutcome::Changed)
@@ -252,10 +235,10 @@ impl Store {
         is_dry_run: bool,
     ) -> Result<DeleteOutcome> {
         let (results, bytes): (i64, i64) =
-            sqlx::query_as(sql::sweep::OWN_RESULTS).bind(id).fetch_one(&self.pool).await?;
+            query(sql::sweep::OWN_RESULTS).bind(id).one(&self.database).await?;
         let mut tx = self.write().await?;
         let sweep: Option<(i64, bool, Option<i64>, i64)> =
-            sqlx::query_as(sql::sweep::DELETABLE).bind(id).fetch_optional(&mut *tx).await?;
+            query(sql::sweep::DELETABLE).bind(id).first(&mut tx).await?;
         let Some((revision, is_pinned, finished, points)) = sweep else {
             return Ok(DeleteOutcome::NoSuchSweep);
         };
@@ -269,8 +252,8 @@ impl Store {
             return Ok(DeleteOutcome::Unfinished);
         }
         if !is_dry_run {
-            sqlx::query(sql::sweep::HIDE).bind(id).execute(&mut *tx).await?;
-            sqlx::query(sql::sweep::FORGET_KEYS).bind(id).execute(&mut *tx).await?;
+            query(sql::sweep::HIDE).bind(id).execute(&mut tx).await?;
+            query(sql::sweep::FORGET_KEYS).bind(id).execute(&mut tx).await?;
             tx.commit().await?;
             self.take_away(id).await?;
         }
@@ -288,20 +271,18 @@ impl Store {
     /// When the database fails.
     pub async fn retry_sweep(&self, id: &str) -> Result<Option<u64>> {
         let mut tx = self.write().await?;
-        let owner: Option<String> =
-            sqlx::query_scalar(sql::sweep::REVIVE).bind(id).fetch_optional(&mut *tx).await?;
+        let owner: Option<String> = query(sql::sweep::REVIVE).bind(id).first_scalar(&mut tx).await?;
         let Some(owner) = owner else { return Ok(None) };
-        sqlx::query(sql::sweep::KEEP_RUNNING_WORK).bind(id).execute(&mut *tx).await?;
-        sqlx::query(sql::sweep::RECOUNT).bind(id).execute(&mut *tx).await?;
+        query(sql::sweep::KEEP_RUNNING_WORK).bind(id).execute(&mut tx).await?;
+        query(sql::sweep::RECOUNT).bind(id).execute(&mut tx).await?;
         let order = end_of_order(&mut tx, &owner).await?;
-        let queued = sqlx::query(sql::sweep::RETRY_WORK)
+        let queued = query(sql::sweep::RETRY_WORK)
             .bind(id)
             .bind(&owner)
             .bind(order.last)
             .bind(PLACE_OF_A_POINT)
-            .execute(&mut *tx)
-            .await?
-            .rows_affected();
+            .execute(&mut tx)
+            .await?;
         hold_back(&mut tx, id).await?;
         tx.commit().await?;
         Ok(Some(queued))
@@ -358,60 +339,59 @@ pub struct SweepChanges {
 }
 
 /// Cancels the work of the next points of a cancelled sweep. True once there is no more.
-async fn cancel_next(tx: &mut SqliteConnection, id: &str) -> Result<bool> {
-    let half: Option<(i64, i64)> =
-        sqlx::query_as(sql::sweep::CANCELLED_TO).bind(id).fetch_optional(&mut *tx).await?;
+async fn cancel_next(tx: &mut Transaction, id: &str) -> Result<bool> {
+    let half: Option<(i64, i64)> = query(sql::sweep::CANCELLED_TO).bind(id).first(&mut *tx).await?;
     let Some((after, points)) = half else { return Ok(true) };
     let last = after + POINTS_AT_ONCE;
-    let run = |statement| sqlx::query(statement).bind(id).bind(after).bind(last);
+    let run = |statement| query(statement).bind(id).bind(after).bind(last);
     run(sql::sweep::CANCEL_WORK).execute(&mut *tx).await?;
-    let left = run(sql::sweep::LEAVE_WORK).execute(&mut *tx).await?.rows_affected();
-    sqlx::query(sql::sweep::COUNT_EVENTS).bind(id).bind(left as i64).execute(&mut *tx).await?;
+    let left = run(sql::sweep::LEAVE_WORK).execute(&mut *tx).await?;
+    query(sql::sweep::COUNT_EVENTS).bind(id).bind(left as i64).execute(&mut *tx).await?;
     run(sql::sweep::HOLD_BACK).execute(&mut *tx).await?;
-    sqlx::query(sql::sweep::CANCEL_TO).bind(id).bind(last).execute(&mut *tx).await?;
+    query(sql::sweep::CANCEL_TO).bind(id).bind(last).execute(&mut *tx).await?;
     Ok(last >= points)
 }
 
 /// Holds back or lets go what a sweep has in the queue: work is held while only paused sweeps want it.
-async fn hold_back(tx: &mut SqliteConnection, id: &str) -> Result<()> {
-    sqlx::query(sql::sweep::HOLD_BACK).bind(id).bind(0).bind(i64::MAX).execute(&mut *tx).await?;
+async fn hold_back(tx: &mut Transaction, id: &str) -> Result<()> {
+    query(sql::sweep::HOLD_BACK).bind(id).bind(0).bind(i64::MAX).execute(&mut *tx).await?;
     Ok(())
 }
 
 impl SweepRecord {
-    fn read(row: &SqliteRow) -> Result<Self> {
+    fn read(row: &Row) -> Result<Self> {
         let counts = StateCounts {
-            total: row.try_get("points")?,
-            queued: row.try_get("points_queued")?,
-            running: row.try_get("points_running")?,
-            done: row.try_get("points_done")?,
-            failed: row.try_get("points_failed")?,
-            cancelled: row.try_get("points_cancelled")?,
+            total: row.get("points")?,
+            queued: row.get("points_queued")?,
+            running: row.get("points_running")?,
+            done: row.get("points_done")?,
+            failed: row.get("points_failed")?,
+            cancelled: row.get("points_cancelled")?,
         };
         let verification = StateCounts {
-            total: row.try_get("verifications")?,
-            queued: row.try_get("verifications_queued")?,
-            running: row.try_get("verifications_running")?,
-            done: row.try_get("verifications_done")?,
-            failed: row.try_get("verifications_failed")?,
-            cancelled: row.try_get("verifications_cancelled")?,
+            total: row.get("verifications")?,
+            queued: row.get("verifications_queued")?,
+            running: row.get("verifications_running")?,
+            done: row.get("verifications_done")?,
+            failed: row.get("verifications_failed")?,
+            cancelled: row.get("verifications_cancelled")?,
         };
-        let running_progress: f64 = row.try_get("running_progress")?;
+        let running_progress: f64 = row.get("running_progress")?;
         Ok(Self {
-            id: row.try_get("id")?,
-            name: row.try_get("name")?,
-            owner: row.try_get("owner")?,
-            request_json: row.try_get("request")?,
-            priority: row.try_get("priority")?,
-            version: row.try_get("version")?,
-            revision: row.try_get("revision")?,
-            is_cancelled: row.try_get("cancelled")?,
-            is_paused: row.try_get("paused")?,
-            is_pinned: row.try_get("pinned")?,
-            expires: row.try_get("expires")?,
-            tags_json: row.try_get("tags")?,
-            created: row.try_get("created")?,
-            finished: row.try_get("finished")?,
+            id: row.get("id")?,
+            name: row.get("name")?,
+            owner: row.get("owner")?,
+            request_json: row.get("request")?,
+            priority: row.get("priority")?,
+            version: row.get("version")?,
+            revision: row.get("revision")?,
+            is_cancelled: row.get("cancelled")?,
+            is_paused: row.get("paused")?,
+            is_pinned: row.get("pinned")?,
+            expires: row.get("expires")?,
+            tags_json: row.get("tags")?,
+            created: row.get("created")?,
+            finished: row.get("finished")?,
             counts,
             verification,
             progress: (counts.final_ones() + verification.final_ones()) as f64 + running_progress,

@@ -1,10 +1,8 @@
 //! Tokens: who may talk to the service, and for what.
 
-use sqlx::Row as _;
-use sqlx::sqlite::SqliteRow;
-
 use crate::connection::Store;
 use crate::error::{Result, StoreError};
+use crate::query::{Row, query};
 use crate::sql;
 
 /// How stale `last_used` may be \[ms\]: it is for people, and not worth a write a request.
@@ -141,14 +139,14 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn create_token(&self, token: &NewToken<'_>) -> Result<()> {
-        sqlx::query(sql::token::CREATE)
+        query(sql::token::CREATE)
             .bind(token.secret.id())
             .bind(token.secret.hash().as_bytes().as_slice())
             .bind(token.owner)
             .bind(token.name)
             .bind(token.scope.as_str())
             .bind(token.lifetime_ms)
-            .execute(&self.pool)
+            .execute(&self.database)
             .await?;
         Ok(())
     }
@@ -158,8 +156,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>> {
-        let rows = sqlx::query(sql::token::LIST).fetch_all(&self.pool).await?;
-        rows.iter().map(TokenRecord::read).collect()
+        query(sql::token::LIST).records(&self.database, TokenRecord::read).await
     }
 
     /// Makes a token void, at once and for good. False if there is no such token.
@@ -167,7 +164,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn revoke_token(&self, id: &str) -> Result<bool> {
-        let changed = sqlx::query(sql::token::REVOKE).bind(id).execute(&self.pool).await?.rows_affected();
+        let changed = query(sql::token::REVOKE).bind(id).execute(&self.database).await?;
         Ok(changed == 1)
     }
 
@@ -176,11 +173,10 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn valid_token(&self, secret: &TokenSecret) -> Result<Option<TokenRecord>> {
-        let row = sqlx::query(sql::token::VALID)
+        query(sql::token::VALID)
             .bind(secret.hash().as_bytes().as_slice())
-            .fetch_optional(&self.pool)
-            .await?;
-        row.as_ref().map(TokenRecord::read).transpose()
+            .first_record(&self.database, TokenRecord::read)
+            .await
     }
 
     /// Notes that a token was used, unless that was noted within the hour.
@@ -192,7 +188,7 @@ impl Store {
         if token.last_used.is_some_and(|last| now - last < LAST_USED_STEP_MS) {
             return Ok(());
         }
-        sqlx::query(sql::token::TOUCH).bind(&token.id).bind(now).execute(&self.pool).await?;
+        query(sql::token::TOUCH).bind(&token.id).bind(now).execute(&self.database).await?;
         Ok(())
     }
 
@@ -201,7 +197,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn tokens_present(&self) -> Result<TokensPresent> {
-        let (number, valid): (i64, i64) = sqlx::query_as(sql::token::PRESENT).fetch_one(&self.pool).await?;
+        let (number, valid): (i64, i64) = query(sql::token::PRESENT).one(&self.database).await?;
         Ok(match (number, valid) {
             (0, _) => TokensPresent::None,
             (_, 0) => TokensPresent::OnlyVoid,
@@ -211,16 +207,16 @@ impl Store {
 }
 
 impl TokenRecord {
-    fn read(row: &SqliteRow) -> Result<Self> {
+    fn read(row: &Row) -> Result<Self> {
         Ok(Self {
-            id: row.try_get("id")?,
-            owner: row.try_get("owner")?,
-            name: row.try_get("name")?,
-            scope: TokenScope::parse(row.try_get("scope")?)?,
-            created: row.try_get("created")?,
-            expires: row.try_get("expires")?,
-            revoked: row.try_get("revoked")?,
-            last_used: row.try_get("last_used")?,
+            id: row.get("id")?,
+            owner: row.get("owner")?,
+            name: row.get("name")?,
+            scope: TokenScope::parse(&row.get::<String>("scope")?)?,
+            created: row.get("created")?,
+            expires: row.get("expires")?,
+            revoked: row.get("revoked")?,
+            last_used: row.get("last_used")?,
         })
     }
 }

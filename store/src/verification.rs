@@ -2,6 +2,7 @@
 
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::query;
 use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 
@@ -31,8 +32,7 @@ impl Store {
     /// When the database fails.
     pub async fn verifications(&self, sweep_id: &str) -> Result<Vec<VerificationRecord>> {
         type Row = (i64, String, Option<String>, Vec<u8>, String, Option<String>, Option<String>);
-        let rows: Vec<Row> =
-            sqlx::query_as(sql::verification::LIST).bind(sweep_id).fetch_all(&self.pool).await?;
+        let rows: Vec<Row> = query(sql::verification::LIST).bind(sweep_id).rows(&self.database).await?;
         rows.into_iter()
             .map(|(ordinal, parameters_json, summary_json, key, state, error_json, reference_json)| {
                 Ok(VerificationRecord {

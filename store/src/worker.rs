@@ -1,10 +1,8 @@
 //! The register of workers.
 
-use sqlx::Row as _;
-use sqlx::sqlite::SqliteRow;
-
 use crate::connection::Store;
 use crate::error::Result;
+use crate::query::{Row, query};
 use crate::sql;
 
 /// A worker process as it registered itself.
@@ -32,13 +30,13 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn register_worker(&self, worker: &WorkerRecord) -> Result<()> {
-        sqlx::query(sql::worker::REGISTER)
+        query(sql::worker::REGISTER)
             .bind(&worker.id)
             .bind(&worker.host)
             .bind(worker.process)
             .bind(&worker.version)
             .bind(worker.physics_version)
-            .execute(&self.pool)
+            .execute(&self.database)
             .await?;
         Ok(())
     }
@@ -48,7 +46,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn remove_worker(&self, id: &str) -> Result<()> {
-        sqlx::query(sql::worker::REMOVE).bind(id).execute(&self.pool).await?;
+        query(sql::worker::REMOVE).bind(id).execute(&self.database).await?;
         Ok(())
     }
 
@@ -58,14 +56,13 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn bury_worker(&self, host: &str, process: i64, note: Option<&str>) -> Result<u64> {
-        let ended = sqlx::query(sql::worker::END_LEASES)
+        let ended = query(sql::worker::END_LEASES)
             .bind(host)
             .bind(process)
             .bind(note)
-            .execute(&self.pool)
-            .await?
-            .rows_affected();
-        sqlx::query(sql::worker::REMOVE_PROCESS).bind(host).bind(process).execute(&self.pool).await?;
+            .execute(&self.database)
+            .await?;
+        query(sql::worker::REMOVE_PROCESS).bind(host).bind(process).execute(&self.database).await?;
         Ok(ended)
     }
 
@@ -75,21 +72,20 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
-        let rows = sqlx::query(sql::worker::LIST).bind(within_ms).fetch_all(&self.pool).await?;
-        rows.iter().map(WorkerRecord::read).collect()
+        query(sql::worker::LIST).bind(within_ms).records(&self.database, WorkerRecord::read).await
     }
 }
 
 impl WorkerRecord {
-    fn read(row: &SqliteRow) -> Result<Self> {
+    fn read(row: &Row) -> Result<Self> {
         Ok(Self {
-            id: row.try_get("id")?,
-            host: row.try_get("host")?,
-            process: row.try_get("process")?,
-            version: row.try_get("version")?,
-            physics_version: row.try_get("physics_version")?,
-            started: row.try_get("started")?,
-            last_seen: row.try_get("last_seen")?,
+            id: row.get("id")?,
+            host: row.get("host")?,
+            process: row.get("process")?,
+            version: row.get("version")?,
+            physics_version: row.get("physics_version")?,
+            started: row.get("started")?,
+            last_seen: row.get("last_seen")?,
         })
     }
 }

@@ -65,6 +65,11 @@ pub(crate) fn object_name(blob: &str) -> String {
     format!("{}/{}/{blob}", &blob[..2], &blob[2..4])
 }
 
+/// What a JSON text says: engines write it with and without spaces.
+pub(crate) fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap()
+}
+
 /// A work key that sorts against the order of its number, so that an order by key cannot pass for one by time.
 pub(crate) fn key(number: u32) -> WorkKey {
     let mut key = [0x5a; 32];

@@ -8,8 +8,8 @@ use drillsweep_store::{
 };
 
 use crate::bench::{
-    Engine, PHYSICS, addition, claim, claim_or_none, finish, key, point_record, scenario, states, submit,
-    sweep, sweep_record,
+    Engine, PHYSICS, addition, claim, claim_or_none, finish, json, key, point_record, scenario, states,
+    submit, sweep, sweep_record,
 };
 
 const LONG_AGO: Duration = Duration::from_secs(86_400);
@@ -246,21 +246,21 @@ pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
     finish_with(&store, "first", r#"{"radius":1}"#, b"orbit", true).await;
     submit(&store, &refresh("same")).await;
     finish_with(&store, "second", r#"{"radius":1}"#, b"orbit", true).await;
-    assert_eq!(provenance().await, r#"{"worker":"second"}"#);
+    assert_eq!(json(&provenance().await), json(r#"{"worker":"second"}"#));
     assert_eq!(disagreements().await, 0);
 
     submit(&store, &refresh("summary")).await;
     finish_with(&store, "third", r#"{"radius":2}"#, b"orbit", true).await;
     let told = r#"{"worker":"third","disagreement":{"differs":"summary","earlier":{"worker":"second"}}}"#;
-    assert_eq!(provenance().await, told);
+    assert_eq!(json(&provenance().await), json(told));
     submit(&store, &refresh("history")).await;
     finish_with(&store, "fourth", r#"{"radius":2}"#, b"another orbit", true).await;
     let disagreement = r#""disagreement":{"differs":"history","earlier":{"worker":"third"}}"#;
-    assert_eq!(provenance().await, format!(r#"{{"worker":"fourth",{disagreement}}}"#));
+    assert_eq!(json(&provenance().await), json(&format!(r#"{{"worker":"fourth",{disagreement}}}"#)));
     // That the last two agree does not make it good.
     submit(&store, &refresh("again")).await;
     finish_with(&store, "fifth", r#"{"radius":2}"#, b"another orbit", true).await;
-    assert_eq!(provenance().await, format!(r#"{{"worker":"fifth",{disagreement}}}"#));
+    assert_eq!(json(&provenance().await), json(&format!(r#"{{"worker":"fifth",{disagreement}}}"#)));
     assert_eq!(disagreements().await, 1, "results, not times");
     assert_eq!(point_record(&store, "s", 1).await.summary_json.as_deref(), Some(r#"{"radius":2}"#));
 }

@@ -3,7 +3,7 @@
 use drillsweep_store::{NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
 
 use crate::bench::{
-    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep,
+    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, json, key, point_record, states, submit, sweep,
     sweep_record,
 };
 
@@ -138,8 +138,8 @@ pub(crate) async fn a_point_whose_workers_die_three_times_is_dead<E: Engine>() {
     assert_eq!(record.counts, StateCounts { total: 1, failed: 1, ..StateCounts::default() });
     assert!(record.finished.is_some());
     assert_eq!(
-        point_record(&store, "s", 1).await.error_json.as_deref(),
-        Some(r#"{"class":"crash","reason":"3 workers went silent while they simulated it"}"#)
+        point_record(&store, "s", 1).await.error_json.as_deref().map(json),
+        Some(json(r#"{"class":"crash","reason":"3 workers went silent while they simulated it"}"#))
     );
 
     // A retry begins to count anew.
@@ -166,10 +166,10 @@ pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
     let end = engine.after(4 * LEASE_MS + 1).await;
     end.reap_expired().await.unwrap();
     assert_eq!(
-        reason(&end).await.as_deref(),
-        Some(
+        reason(&end).await.as_deref().map(json),
+        Some(json(
             r#"{"class":"crash","reason":"3 workers went silent while they simulated it; the last one was ended by signal 9"}"#
-        )
+        ))
     );
     // What was known of an earlier one is forgotten with the next claim.
     assert_eq!(end.retry_sweep("s").await.unwrap(), Some(1));

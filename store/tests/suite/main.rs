@@ -162,13 +162,17 @@ mod check;
 mod concurrency;
 mod control;
 mod counts;
+mod directory;
 mod failure;
 mod fairness;
 mod large;
 mod lease;
+mod postgres;
 mod probe;
 mod repair;
 mod retention;
+#[path = "../servers/mod.rs"]
+mod servers;
 mod sqlite;
 mod state;
 mod submit;

@@ -1,13 +1,13 @@
 //! The embedded engine: a SQLite file and a directory of objects.
 
-use std::os::unix::fs::MetadataExt as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use tempfile::TempDir;
 
 use crate::bench::{Engine, Object};
+use crate::directory;
 
 /// A directory that does not exist yet, in a temporary one.
 struct Sqlite {
@@ -36,30 +36,23 @@ impl Engine for Sqlite {
     }
 
     fn objects(&self) -> Vec<Object> {
-        let mut found = Vec::new();
-        collect_objects(&self.blobs(), "", &mut found);
-        found.sort();
-        found
+        directory::objects(&self.blobs())
     }
 
     fn write_object(&self, name: &str, content: &[u8]) {
-        let path = self.blobs().join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, content).unwrap();
+        directory::write_object(&self.blobs(), name, content);
     }
 
     fn delete_object(&self, name: &str) {
-        std::fs::remove_file(self.blobs().join(name)).unwrap();
+        directory::delete_object(&self.blobs(), name);
     }
 
     fn abandon_upload(&self, content: &[u8]) {
-        // As `object_store` writes them: beside the object, with a number.
-        self.write_object("ab/cd/abcd0123#1", content);
+        directory::abandon_upload(&self.blobs(), content);
     }
 
     fn refuse_scratch_objects(&self) {
-        // A file where the folder should be stops every user; permissions would not stop root.
-        self.write_object("probe", b"");
+        directory::refuse_scratch_objects(&self.blobs());
     }
 
     fn database_holds(&self, bytes: &[u8]) -> bool {
@@ -67,21 +60,6 @@ impl Engine for Sqlite {
             let file = std::fs::read(self.directory().join(format!("drillsweep.sqlite{suffix}"))).unwrap();
             file.windows(bytes.len()).any(|window| window == bytes)
         })
-    }
-}
-
-fn collect_objects(directory: &Path, prefix: &str, found: &mut Vec<Object>) {
-    for entry in std::fs::read_dir(directory).unwrap() {
-        let entry = entry.unwrap();
-        let name = format!("{prefix}{}", entry.file_name().to_str().unwrap());
-        let metadata = entry.metadata().unwrap();
-        if metadata.is_dir() {
-            collect_objects(&entry.path(), &format!("{name}/"), found);
-        } else {
-            // A file that is written anew is another one, or was changed later.
-            let version = format!("{} {:?}", metadata.ino(), metadata.modified().unwrap());
-            found.push(Object { name, bytes: metadata.len(), version });
-        }
     }
 }
 

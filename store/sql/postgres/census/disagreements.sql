@@ -1,0 +1,2 @@
+-- Counts the results that were recomputed and differ.
+SELECT count(*) FROM result WHERE disagrees

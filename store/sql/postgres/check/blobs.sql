@@ -1,0 +1,3 @@
+-- The blobs that results name.
+-- Gives: the blob's name, its size.
+SELECT blob, max(bytes) FROM artifact WHERE expired IS NULL GROUP BY blob ORDER BY blob

@@ -1,0 +1,2 @@
+-- Counts the results.
+SELECT count(*) FROM result

@@ -1,0 +1,2 @@
+-- The time: milliseconds since the epoch.
+SELECT now FROM clock

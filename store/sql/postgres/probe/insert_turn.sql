@@ -1,0 +1,2 @@
+-- The turn of an owner that nobody is.
+INSERT INTO owner_turn (owner, vtime) VALUES ('', 0)

@@ -1,0 +1,3 @@
+-- Deletes old idempotency keys.
+-- $1 time up to which.
+DELETE FROM idempotency WHERE created <= $1

@@ -1,0 +1,3 @@
+-- Removes a worker.
+-- $1 worker.
+DELETE FROM worker WHERE id = $1

@@ -1,0 +1,111 @@
+//! The engine behind the store: a SQLite file, or a PostgreSQL server.
+//!
+//! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
+//! failure) runs beside others of its kind: it takes its locks in one order, the work item, the turn of its owner, the sweeps that
+//! have it by their identifiers. All that changes several (submitting, cancelling, pausing, collecting garbage) runs alone, as
+//! everything does on SQLite, by a lock that the former share; triggers take the shared lock, so that no statement can forget it.
+
+mod location;
+pub(crate) mod postgres;
+pub(crate) mod sqlite;
+
+use sqlx::{PgPool, PgTransaction, SqlitePool, SqliteTransaction};
+use tokio::sync::OwnedMutexGuard;
+
+pub use self::location::DatabaseLocation;
+pub(crate) use self::sqlite::Writers;
+use crate::error::Result;
+use crate::query::Session;
+
+/// Connections to an engine. Cheap to clone.
+#[derive(Debug, Clone)]
+pub(crate) enum Database {
+    /// A file, and whose turn it is to write.
+    Sqlite(SqlitePool, Writers),
+    /// A server.
+    Postgres(PgPool),
+}
+
+/// A transaction. It is undone unless it is committed.
+pub(crate) enum Transaction {
+    Sqlite {
+        transaction: SqliteTransaction<'static>,
+        /// Given up after the transaction: fields are dropped in their order.
+        _turn: Option<OwnedMutexGuard<()>>,
+    },
+    Postgres(PgTransaction<'static>),
+}
+
+impl Database {
+    /// A transaction that sees one state of the database and changes nothing.
+    pub(crate) async fn read(&self) -> Result<Transaction> {
+        Ok(match self {
+            Database::Sqlite(pool, _) => {
+                Transaction::Sqlite { transaction: pool.begin_with("BEGIN").await?, _turn: None }
+            }
+            Database::Postgres(pool) => Transaction::Postgres(
+                pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?,
+            ),
+        })
+    }
+
+    /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
+    pub(crate) async fn write(&self) -> Result<Transaction> {
+        match self {
+            Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
+            Database::Postgres(pool) => postgres::write_alone(pool).await,
+        }
+    }
+
+    /// A transaction that changes the state of one work item and what belongs to it, beside others that do so.
+    pub(crate) async fn write_one(&self) -> Result<Transaction> {
+        match self {
+            Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
+            Database::Postgres(pool) => postgres::write_beside_others(pool).await,
+        }
+    }
+
+    /// Closes all connections.
+    pub(crate) async fn close(&self) {
+        match self {
+            Database::Sqlite(pool, _) => pool.close().await,
+            Database::Postgres(pool) => pool.close().await,
+        }
+    }
+}
+
+impl Transaction {
+    pub(crate) async fn commit(self) -> Result<()> {
+        match self {
+            Transaction::Sqlite { transaction, .. } => transaction.commit().await?,
+            Transaction::Postgres(transaction) => transaction.commit().await?,
+        }
+        Ok(())
+    }
+
+    pub(crate) async fn rollback(self) -> Result<()> {
+        match self {
+            Transaction::Sqlite { transaction, .. } => transaction.rollback().await?,
+            Transaction::Postgres(transaction) => transaction.rollback().await?,
+        }
+        Ok(())
+    }
+}
+
+impl<'c> From<&'c Database> for Session<'c> {
+    fn from(database: &'c Database) -> Self {
+        match database {
+            Database::Sqlite(pool, _) => Session::SqlitePool(pool),
+            Database::Postgres(pool) => Session::PostgresPool(pool),
+        }
+    }
+}
+
+impl<'c> From<&'c mut Transaction> for Session<'c> {
+    fn from(transaction: &'c mut Transaction) -> Self {
+        match transaction {
+            Transaction::Sqlite { transaction, .. } => Session::Sqlite(transaction),
+            Transaction::Postgres(transaction) => Session::Postgres(transaction),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! PostgreSQL: a team's engine, for many machines.
+
+use std::time::Duration;
+
+use sqlx::postgres::{PgConnectOptions, PgPool, PgPoolOptions};
+use sqlx::{AssertSqlSafe, Executor as _};
+
+use crate::connection::Role;
+use crate::database::{Database, Transaction};
+use crate::error::Result;
+use crate::migration;
+
+/// How long a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
+/// holds nobody up for longer.
+const LOCK_TIMEOUT: &str = "30s";
+
+/// How long a new connection may take.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// Names the lock of writers among the advisory locks of the database; a number that nobody else takes by chance.
+const WRITERS: i64 = 0x6472_696c_6c73_7765;
+
+/// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
+pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms: i64) -> Result<Database> {
+    let mut options = options.clone().application_name("drillsweep").options([
+        ("lock_timeout", LOCK_TIMEOUT),
+        ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
+        ("default_transaction_isolation", "read committed"),
+    ]);
+    if let Role::Worker = role {
+        // What is lost with a crash of the server is computed again.
+        options = options.options([("synchronous_commit", "off")]);
+    }
+    let connections = match role {
+        Role::Server => 16,
+        Role::Worker => 2,
+    };
+    let pool = PgPoolOptions::new()
+        .max_connections(connections)
+        .acquire_timeout(CONNECT_TIMEOUT)
+        .after_connect(move |connection, _| {
+            Box::pin(async move {
+                if clock_offset_ms != 0 {
+                    // On this connection the name stands for this view, before the schema's, which need not be there yet.
+                    let clock = format!(
+                        "CREATE TEMP VIEW clock AS SELECT
+                         floor(extract(epoch FROM statement_timestamp()) * 1000)::bigint + {clock_offset_ms} AS now"
+                    );
+                    connection.execute(AssertSqlSafe(clock)).await?;
+                }
+                Ok(())
+            })
+        })
+        .connect_with(options)
+        .await?;
+    if !migration::is_current(&pool).await? {
+        migration::postgres().run(&pool).await?;
+    }
+    Ok(Database::Postgres(pool))
+}
+
+/// Connects to a server to look at what it has: nothing of it is made or changed.
+pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Database> {
+    let options =
+        options.clone().application_name("drillsweep").options([("default_transaction_read_only", "on")]);
+    let pool = PgPoolOptions::new()
+        .max_connections(1)
+        .acquire_timeout(CONNECT_TIMEOUT)
+        .connect_with(options)
+        .await?;
+    Ok(Database::Postgres(pool))
+}
+
+/// A transaction that waits until no other writer of any kind is left, and lets none begin.
+pub(crate) async fn write_alone(pool: &PgPool) -> Result<Transaction> {
+    let mut transaction = pool.begin_with("BEGIN").await?;
+    sqlx::query("SELECT pg_advisory_xact_lock($1)").bind(WRITERS).execute(&mut *transaction).await?;
+    Ok(Transaction::Postgres(transaction))
+}
+
+/// A transaction that runs beside others of its kind. The statements of the schema's triggers take the same lock.
+pub(crate) async fn write_beside_others(pool: &PgPool) -> Result<Transaction> {
+    let mut transaction = pool.begin_with("BEGIN").await?;
+    sqlx::query("SELECT pg_advisory_xact_lock_shared($1)").bind(WRITERS).execute(&mut *transaction).await?;
+    Ok(Transaction::Postgres(transaction))
+}

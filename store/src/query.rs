@@ -1,0 +1,313 @@
+//! Statements with their parameters, run on whichever engine there is.
+//!
+//! A statement has a text for each engine, and the same parameters and columns on all of them. Both engines are compiled in: which
+//! one it is, is known only when the store is opened.
+
+use sqlx::postgres::{PgArguments, PgQueryResult, PgRow};
+use sqlx::sqlite::{SqliteArguments, SqliteQueryResult, SqliteRow};
+use sqlx::{
+    Arguments as _, Decode, FromRow, PgConnection, PgPool, Postgres, Row as _, Sqlite, SqliteConnection,
+    SqlitePool, Type,
+};
+
+use crate::error::Result;
+
+/// A statement in the words of each engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Statement {
+    pub(crate) sqlite: &'static str,
+    pub(crate) postgres: &'static str,
+}
+
+/// Begins a query; its parameters follow in the order of their numbers.
+pub(crate) fn query(statement: Statement) -> Query {
+    Query { statement, parameters: Vec::new() }
+}
+
+/// A statement and its parameters.
+#[derive(Debug)]
+pub(crate) struct Query {
+    statement: Statement,
+    parameters: Vec<Value>,
+}
+
+/// Where a query runs.
+pub(crate) enum Session<'c> {
+    Sqlite(&'c mut SqliteConnection),
+    /// On any connection, in a transaction of its own.
+    SqlitePool(&'c SqlitePool),
+    Postgres(&'c mut PgConnection),
+    /// On any connection, in a transaction of its own.
+    PostgresPool(&'c PgPool),
+}
+
+/// A parameter. What is absent still has a type: PostgreSQL wants to know it.
+#[derive(Debug, Clone)]
+pub(crate) enum Value {
+    Integer(Option<i64>),
+    Real(f64),
+    Flag(Option<bool>),
+    Text(Option<String>),
+    Bytes(Vec<u8>),
+}
+
+/// A row of either engine, whose columns are read by name.
+pub(crate) enum Row {
+    Sqlite(SqliteRow),
+    Postgres(PgRow),
+}
+
+/// What a row can be read as on either engine: a tuple of columns.
+pub(crate) trait Record:
+    for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
+{
+}
+
+impl<T> Record for T where T: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin {}
+
+/// What a column can be read as on either engine.
+pub(crate) trait Column:
+    for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
+{
+}
+
+impl<T> Column for T where
+    T: for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
+{
+}
+
+/// Makes one of sqlx's queries for the session's engine, and runs it.
+macro_rules! run {
+    ($query:expr, $session:expr, $make:path, $method:ident, $then:expr) => {{
+        let Query { statement, parameters } = $query;
+        match $session.into() {
+            Session::Sqlite(connection) => {
+                let query = $make(statement.sqlite, sqlite_arguments(parameters)?);
+                $then(query.$method(connection).await?)
+            }
+            Session::SqlitePool(pool) => {
+                let query = $make(statement.sqlite, sqlite_arguments(parameters)?);
+                $then(query.$method(pool).await?)
+            }
+            Session::Postgres(connection) => {
+                let query = $make(statement.postgres, postgres_arguments(parameters)?);
+                $then(query.$method(connection).await?)
+            }
+            Session::PostgresPool(pool) => {
+                let query = $make(statement.postgres, postgres_arguments(parameters)?);
+                $then(query.$method(pool).await?)
+            }
+        }
+    }};
+}
+
+impl Query {
+    /// Adds the next parameter.
+    pub(crate) fn bind(mut self, parameter: impl Into<Value>) -> Self {
+        self.parameters.push(parameter.into());
+        self
+    }
+
+    /// Runs it, and tells how many rows it changed.
+    pub(crate) async fn execute<'c>(self, session: impl Into<Session<'c>>) -> Result<u64> {
+        Ok(run!(self, session, sqlx::query_with, execute, Changed::rows))
+    }
+
+    /// Runs it and gives its rows. All of them are fetched, so that the statement runs to its commit and an error of that is seen.
+    pub(crate) async fn rows<'c, T: Record>(self, session: impl Into<Session<'c>>) -> Result<Vec<T>> {
+        Ok(run!(self, session, sqlx::query_as_with, fetch_all, std::convert::identity))
+    }
+
+    /// Runs it and gives its rows, each read by the names of its columns.
+    pub(crate) async fn records<'c, T>(
+        self,
+        session: impl Into<Session<'c>>,
+        read: impl Fn(&Row) -> Result<T>,
+    ) -> Result<Vec<T>> {
+        let rows = run!(self, session, sqlx::query_with, fetch_all, Row::all);
+        rows.iter().map(read).collect()
+    }
+
+    /// Runs a statement that gives one row, or none: the first, read by the names of its columns.
+    pub(crate) async fn first_record<'c, T>(
+        self,
+        session: impl Into<Session<'c>>,
+        read: impl Fn(&Row) -> Result<T>,
+    ) -> Result<Option<T>> {
+        Ok(self.records(session, read).await?.into_iter().next())
+    }
+
+    /// Runs a statement that gives one row, or none: the first.
+    pub(crate) async fn first<'c, T: Record>(self, session: impl Into<Session<'c>>) -> Result<Option<T>> {
+        Ok(self.rows(session).await?.into_iter().next())
+    }
+
+    /// Runs a statement that gives one row.
+    pub(crate) async fn one<'c, T: Record>(self, session: impl Into<Session<'c>>) -> Result<T> {
+        self.first(session).await?.ok_or_else(|| sqlx::Error::RowNotFound.into())
+    }
+
+    /// Runs it and gives the first column of its rows.
+    pub(crate) async fn scalars<'c, T>(self, session: impl Into<Session<'c>>) -> Result<Vec<T>>
+    where
+        (T,): Record,
+    {
+        Ok(self.rows::<(T,)>(session).await?.into_iter().map(|(value,)| value).collect())
+    }
+
+    /// Runs a statement that gives one row, or none: the first column of the first.
+    pub(crate) async fn first_scalar<'c, T>(self, session: impl Into<Session<'c>>) -> Result<Option<T>>
+    where
+        (T,): Record,
+    {
+        Ok(self.first::<(T,)>(session).await?.map(|(value,)| value))
+    }
+
+    /// Runs a statement that gives one row: its first column.
+    pub(crate) async fn scalar<'c, T>(self, session: impl Into<Session<'c>>) -> Result<T>
+    where
+        (T,): Record,
+    {
+        Ok(self.one::<(T,)>(session).await?.0)
+    }
+}
+
+impl Row {
+    /// A column by its name.
+    pub(crate) fn get<T: Column>(&self, name: &'static str) -> Result<T> {
+        Ok(match self {
+            Row::Sqlite(row) => row.try_get(name)?,
+            Row::Postgres(row) => row.try_get(name)?,
+        })
+    }
+
+    fn all<R: Into<Row>>(rows: Vec<R>) -> Vec<Row> {
+        rows.into_iter().map(Into::into).collect()
+    }
+}
+
+impl From<SqliteRow> for Row {
+    fn from(row: SqliteRow) -> Self {
+        Row::Sqlite(row)
+    }
+}
+
+impl From<PgRow> for Row {
+    fn from(row: PgRow) -> Self {
+        Row::Postgres(row)
+    }
+}
+
+/// What a statement without rows gives.
+trait Changed {
+    /// How many rows it changed.
+    fn rows(self) -> u64;
+}
+
+impl Changed for SqliteQueryResult {
+    fn rows(self) -> u64 {
+        self.rows_affected()
+    }
+}
+
+impl Changed for PgQueryResult {
+    fn rows(self) -> u64 {
+        self.rows_affected()
+    }
+}
+
+fn sqlite_arguments(parameters: Vec<Value>) -> Result<SqliteArguments> {
+    let mut arguments = SqliteArguments::default();
+    for parameter in parameters {
+        match parameter {
+            Value::Integer(value) => arguments.add(value),
+            Value::Real(value) => arguments.add(value),
+            Value::Flag(value) => arguments.add(value),
+            Value::Text(value) => arguments.add(value),
+            Value::Bytes(value) => arguments.add(value),
+        }
+        .map_err(sqlx::Error::Encode)?;
+    }
+    Ok(arguments)
+}
+
+fn postgres_arguments(parameters: Vec<Value>) -> Result<PgArguments> {
+    let mut arguments = PgArguments::default();
+    for parameter in parameters {
+        match parameter {
+            Value::Integer(value) => arguments.add(value),
+            Value::Real(value) => arguments.add(value),
+            Value::Flag(value) => arguments.add(value),
+            Value::Text(value) => arguments.add(value),
+            Value::Bytes(value) => arguments.add(value),
+        }
+        .map_err(sqlx::Error::Encode)?;
+    }
+    Ok(arguments)
+}
+
+impl From<i64> for Value {
+    fn from(value: i64) -> Self {
+        Value::Integer(Some(value))
+    }
+}
+
+impl From<Option<i64>> for Value {
+    fn from(value: Option<i64>) -> Self {
+        Value::Integer(value)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Value::Real(value)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(value: bool) -> Self {
+        Value::Flag(Some(value))
+    }
+}
+
+impl From<Option<bool>> for Value {
+    fn from(value: Option<bool>) -> Self {
+        Value::Flag(value)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(value: &str) -> Self {
+        Value::Text(Some(value.to_owned()))
+    }
+}
+
+impl From<&String> for Value {
+    fn from(value: &String) -> Self {
+        Value::Text(Some(value.clone()))
+    }
+}
+
+impl From<String> for Value {
+    fn from(value: String) -> Self {
+        Value::Text(Some(value))
+    }
+}
+
+impl From<Option<&str>> for Value {
+    fn from(value: Option<&str>) -> Self {
+        Value::Text(value.map(str::to_owned))
+    }
+}
+
+impl From<Option<String>> for Value {
+    fn from(value: Option<String>) -> Self {
+        Value::Text(value)
+    }
+}
+
+impl From<&[u8]> for Value {
+    fn from(value: &[u8]) -> Self {
+        Value::Bytes(value.to_owned())
+    }
+}

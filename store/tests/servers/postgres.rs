@@ -1,0 +1,155 @@
+//! A PostgreSQL server of a test's own.
+
+use std::net::TcpListener;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+/// Names the directory of PostgreSQL's programs where they are in none of the usual places.
+const PROGRAMS: &str = "DRILLSWEEP_POSTGRES_BIN";
+
+/// How long a server may take to start or to stop.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The settings of all servers: small, and without a copy of what goes to the disk. A server that is killed loses nothing: the system
+/// keeps what a process has written.
+const SETTINGS: &[&str] = &[
+    "listen_addresses=127.0.0.1",
+    "fsync=off",
+    "full_page_writes=off",
+    "shared_buffers=32MB",
+    "max_wal_size=256MB",
+    "max_connections=60",
+    "log_min_messages=warning",
+];
+
+/// A running server with an empty database; it ends with the value, and with the test's process.
+pub(crate) struct Server {
+    directory: TempDir,
+    process: Option<Child>,
+    port: u16,
+}
+
+impl Server {
+    /// Makes a server and starts it.
+    pub(crate) fn start() -> Self {
+        let directory = TempDir::new().unwrap();
+        // The server's user is not the one that the directory belongs to.
+        run(Command::new("chmod").arg("0777").arg(directory.path()));
+        let mut server = Self { directory, process: None, port: free_port() };
+        run(program("initdb")
+            .args(["--auth=trust", "--username=drillsweep", "--encoding=UTF8", "--no-locale", "--no-sync"])
+            .args(["--wal-segsize=1", "--pgdata"])
+            .arg(server.data()));
+        server.resume();
+        server
+    }
+
+    /// The directory of its files.
+    pub(crate) fn data(&self) -> PathBuf {
+        self.directory.path().join("data")
+    }
+
+    /// The URL of its database.
+    pub(crate) fn url(&self) -> String {
+        format!("postgres://drillsweep@127.0.0.1:{}/postgres", self.port)
+    }
+
+    /// Starts it again after it was ended, on the same files and the same port.
+    pub(crate) fn resume(&mut self) {
+        let deadline = Instant::now() + PATIENCE;
+        while !self.is_ready() {
+            let log = std::fs::read_to_string(self.directory.path().join("log")).unwrap_or_default();
+            assert!(Instant::now() < deadline, "PostgreSQL did not start:\n{log}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Ends it at once, as a crash does: what it had not written is lost.
+    #[allow(dead_code, reason = "not all that use this module crash a server")]
+    pub(crate) fn kill(&mut self) {
+        self.end("KILL");
+    }
+
+    fn spawn(&mut self) {
+        let mut command = program("postgres");
+        command.arg("-D").arg(self.data()).arg("-k").arg(self.directory.path());
+        command.arg("-p").arg(self.port.to_string());
+        for setting in SETTINGS {
+            command.args(["-c", setting]);
+        }
+        let log = std::fs::File::options()
+            .create(true)
+            .append(true)
+            .open(self.directory.path().join("log"))
+            .unwrap();
+        self.process = Some(command.stdout(log.try_clone().unwrap()).stderr(log).spawn().unwrap());
+    }
+
+    fn end(&mut self, signal: &str) {
+        if let Some(mut process) = self.process.take() {
+            run(Command::new("kill").arg(format!("-{signal}")).arg(process.id().to_string()));
+            process.wait().unwrap();
+        }
+    }
+
+    fn is_ready(&mut self) -> bool {
+        // A server that was killed leaves processes behind for a moment, beside which another one does not start.
+        if self.process.as_mut().is_none_or(|process| process.try_wait().unwrap().is_some()) {
+            self.spawn();
+        }
+        program("pg_isready")
+            .args(["--host=127.0.0.1", "--quiet", "--port"])
+            .arg(self.port.to_string())
+            .status()
+            .is_ok_and(|status| status.success())
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.end("QUIT");
+    }
+}
+
+/// One of PostgreSQL's programs. They refuse to run as root: then they run as the user of the package. What they start ends with the
+/// test's thread, however that ends.
+fn program(name: &str) -> Command {
+    let mut command = Command::new("setpriv");
+    command.args(["--pdeathsig", "QUIT"]);
+    // Safe to ask in a test: whose process this is does not change.
+    if std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0) {
+        command.args(["--reuid=postgres", "--regid=postgres", "--clear-groups"]);
+    }
+    command.arg(programs().join(name)).current_dir("/");
+    command
+}
+
+/// The directory of PostgreSQL's programs: of the latest version where there are several.
+fn programs() -> PathBuf {
+    if let Some(directory) = std::env::var_os(PROGRAMS) {
+        return PathBuf::from(directory);
+    }
+    let installed = std::fs::read_dir("/usr/lib/postgresql").into_iter().flatten().filter_map(Result::ok);
+    let version = |path: &PathBuf| path.file_name()?.to_str()?.parse::<u32>().ok();
+    let latest = installed.map(|entry| entry.path()).max_by_key(version).map(|path| path.join("bin"));
+    let on_path =
+        || std::env::split_paths(&std::env::var_os("PATH")?).find(|path| path.join("initdb").exists());
+    latest.filter(|path| path.join("initdb").exists()).or_else(on_path).unwrap_or_else(|| {
+        panic!("the tests need a PostgreSQL server: install one (Debian: postgresql), or name the directory of its programs in {PROGRAMS}")
+    })
+}
+
+/// Runs a program to its end.
+fn run(command: &mut Command) {
+    let output = command.stdin(Stdio::null()).output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// A port that nobody listened on a moment ago.
+fn free_port() -> u16 {
+    TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
+}

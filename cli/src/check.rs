@@ -6,8 +6,8 @@ use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_store::{RepairReport, Role, Store};
 use serde_json::json;
 
+use crate::data::DataArguments;
 use crate::print;
-use crate::service::DataArguments;
 
 #[derive(Args)]
 pub(crate) struct CheckArguments {

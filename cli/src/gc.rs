@@ -8,8 +8,8 @@ use drillsweep_server::Retaining;
 use drillsweep_store::{Garbage, RetentionPolicy, Role, Store};
 use drillsweep_table::quantity::tables::HISTORY;
 
+use crate::data::DataArguments;
 use crate::print;
-use crate::service::DataArguments;
 
 const DAY: Duration = Duration::from_secs(86_400);
 

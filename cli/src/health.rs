@@ -8,8 +8,8 @@ use drillsweep_api::Health;
 use drillsweep_store::{Role, Store};
 
 use crate::client::{Client, ServerArguments};
+use crate::data::DataArguments;
 use crate::print;
-use crate::service::DataArguments;
 
 #[derive(Args)]
 pub(crate) struct HealthArguments {

@@ -3,6 +3,7 @@
 mod check;
 mod client;
 mod cost;
+mod data;
 mod fetch;
 mod gc;
 mod health;

@@ -16,13 +16,13 @@ use drillsweep_api::time_span;
 use drillsweep_server::{Config, ConnectionLimits, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
 use drillsweep_store::{Role, Store, StoreConfig};
 use drillsweep_worker::{WorkerConfig, host_name};
-use rustix::fs::Mode;
 use rustix::process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit};
 use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
 
+use crate::data::DataArguments;
 use crate::gc::RetentionArguments;
 use crate::token;
 
@@ -31,14 +31,6 @@ const WORKER_NICENESS: i32 = 10;
 
 /// How long children may take to give their points back.
 const CHILD_GRACE: Duration = Duration::from_secs(15);
-
-/// Where the data lies.
-#[derive(Args, Clone)]
-pub(crate) struct DataArguments {
-    /// Directory of the database and the object store.
-    #[arg(long, env = "DRILLSWEEP_DATA", default_value = "data")]
-    data: PathBuf,
-}
 
 /// Where the server listens, and what it allows.
 #[derive(Args, Clone)]
@@ -139,26 +131,11 @@ pub(crate) struct WorkerArguments {
 impl ScratchArguments {
     /// The directory, which is made where it is not there.
     fn directory(&self, data: &DataArguments) -> anyhow::Result<PathBuf> {
-        let directory = self.scratch.clone().unwrap_or_else(|| data.data.join("scratch"));
+        let directory = self.scratch.clone().unwrap_or_else(|| data.scratch());
         // For this user alone, as all data are.
         let make = DirBuilder::new().recursive(true).mode(0o700).create(&directory);
         make.with_context(|| format!("cannot make {}", directory.display()))?;
         Ok(directory)
-    }
-}
-
-impl DataArguments {
-    pub(crate) fn store(&self, role: Role) -> StoreConfig {
-        // Whoever may read the files needs no token: what is made from here on is for this user alone.
-        rustix::process::umask(Mode::RWXG | Mode::RWXO);
-        StoreConfig::in_directory(&self.data, role)
-    }
-
-    /// The same for commands that look at what there is: they make no store where there is none.
-    pub(crate) fn existing_store(&self, role: Role) -> anyhow::Result<StoreConfig> {
-        let config = self.store(role);
-        anyhow::ensure!(config.exists(), "there is no store in {}", self.data.display());
-        Ok(config)
     }
 }
 
@@ -198,7 +175,7 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         point_timeout: arguments.point_timeout,
         pace: arguments.pace,
         scratch: arguments.scratch.directory(&arguments.data)?,
-        ..WorkerConfig::new(arguments.data.store(Role::Worker))
+        ..WorkerConfig::new(arguments.data.store(Role::Worker)?)
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?).await?) })
@@ -273,7 +250,7 @@ async fn serve_until(
     arguments: &ListenArguments,
     stop: watch::Receiver<bool>,
 ) -> anyhow::Result<()> {
-    let store = Store::open(&data.store(Role::Server)).await?;
+    let store = Store::open(&data.store(Role::Server)?).await?;
     if let Some(path) = &arguments.admin_token_file {
         token::register(&store, path).await?;
     }
@@ -332,7 +309,7 @@ async fn keep_workers(
     let keepers = (0..number).map(|_| {
         let command = worker_command(arguments);
         let (stop, store) = (stop.clone(), arguments.data.store(Role::Server));
-        tokio::spawn(async move { keep_worker(command?, &store, stop).await })
+        tokio::spawn(async move { keep_worker(command?, &store?, stop).await })
     });
     for keeper in keepers.collect::<Vec<_>>() {
         keeper.await??;
@@ -342,11 +319,9 @@ async fn keep_workers(
 
 fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
     let mut command = Command::new(std::env::current_exe()?);
+    command.arg("worker").arg("--with-parent");
+    arguments.data.hand_on(&mut command);
     command
-        .arg("worker")
-        .arg("--with-parent")
-        .arg("--data")
-        .arg(&arguments.data.data)
         .arg("--lease-seconds")
         .arg(arguments.lease_seconds.to_string())
         .args(

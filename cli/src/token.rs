@@ -10,8 +10,8 @@ use drillsweep_api::{LIMITS, time_span};
 use drillsweep_store::{NewToken, Role, Store, TokenRecord, TokenScope, TokenSecret};
 use serde_json::json;
 
+use crate::data::DataArguments;
 use crate::print;
-use crate::service::DataArguments;
 
 #[derive(Subcommand)]
 pub(crate) enum TokenCommand {
@@ -110,7 +110,7 @@ async fn create(arguments: &CreateArguments) -> anyhow::Result<()> {
         Scope::Submit => TokenScope::Submit,
         Scope::Admin => TokenScope::Admin,
     };
-    let store = Store::open(&data.store(Role::Server)).await?;
+    let store = Store::open(&data.store(Role::Server)?).await?;
     let secret = TokenSecret::generate()?;
     let token = NewToken { secret: &secret, owner, name: name.as_deref(), scope, lifetime_ms: expires.0 };
     store.create_token(&token).await?;

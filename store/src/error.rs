@@ -2,6 +2,7 @@
 
 use std::error::Error as _;
 use std::io::{self, ErrorKind};
+use std::path::PathBuf;
 
 use crate::blob::BlobId;
 
@@ -40,6 +41,17 @@ pub enum StoreError {
     /// A text says neither where a database nor where an object store is.
     #[error("{0}")]
     Location(String),
+    /// SQLite's locks do not reach other machines: on a file system that several have it would damage its file.
+    #[error(
+        "{} is on {name}, a network file system, on which SQLite would damage its file: put it on a disk of this machine, or give --database postgres://... for several",
+        path.display()
+    )]
+    NetworkFileSystem {
+        /// The file.
+        path: PathBuf,
+        /// What people call the file system.
+        name: &'static str,
+    },
     /// A file outside the store, which is to be stored or fetched into, cannot be read or written.
     #[error("a local file: {0}")]
     LocalFile(#[source] io::Error),
@@ -64,11 +76,13 @@ impl StoreError {
     /// True where the disk has no room: the same call succeeds once it has.
     pub fn is_full(&self) -> bool {
         if let StoreError::Database(sqlx::Error::Database(error)) = self {
-            // SQLITE_FULL with its extended codes.
-            return error
-                .code()
-                .and_then(|code| code.parse::<i64>().ok())
-                .is_some_and(|code| code & 0xff == 13);
+            return match engine_code(error.as_ref()) {
+                // SQLITE_FULL with its extended codes.
+                EngineCode::Sqlite(code) => code & 0xff == 13,
+                // disk_full.
+                EngineCode::Postgres(code) => code == "53100",
+                EngineCode::None => false,
+            };
         }
         self.io_error()
             .is_some_and(|error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded))
@@ -102,11 +116,19 @@ impl StoreError {
     pub fn is_busy(&self) -> bool {
         match self {
             StoreError::Database(sqlx::Error::Database(error)) => {
-                // SQLITE_BUSY and SQLITE_LOCKED with their extended codes.
-                error
-                    .code()
-                    .and_then(|code| code.parse::<i64>().ok())
-                    .is_some_and(|code| matches!(code & 0xff, 5 | 6))
+                match engine_code(error.as_ref()) {
+                    // SQLITE_BUSY and SQLITE_LOCKED with their extended codes.
+                    EngineCode::Sqlite(code) => matches!(code & 0xff, 5 | 6),
+                    // Conflicts of transactions, waits for locks that took too long, and a server that starts, stops or has no
+                    // connection left.
+                    EngineCode::Postgres(code) => {
+                        matches!(
+                            code.as_str(),
+                            "40001" | "40P01" | "55P03" | "53300" | "57P01" | "57P02" | "57P03"
+                        )
+                    }
+                    EngineCode::None => false,
+                }
             }
             StoreError::Database(sqlx::Error::PoolTimedOut)
             | StoreError::Arriving
@@ -114,4 +136,22 @@ impl StoreError {
             _ => false,
         }
     }
+}
+
+/// An engine's own word for what went wrong.
+enum EngineCode {
+    /// SQLite's extended result code.
+    Sqlite(i64),
+    /// PostgreSQL's five characters of SQLSTATE.
+    Postgres(String),
+    /// None of these.
+    None,
+}
+
+fn engine_code(error: &dyn sqlx::error::DatabaseError) -> EngineCode {
+    let Some(code) = error.code() else { return EngineCode::None };
+    if error.try_downcast_ref::<sqlx::sqlite::SqliteError>().is_some() {
+        return code.parse().map_or(EngineCode::None, EngineCode::Sqlite);
+    }
+    EngineCode::Postgres(code.into_owned())
 }

@@ -1,5 +1,6 @@
 //! Where the database is.
 
+use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -17,6 +18,27 @@ pub enum DatabaseLocation {
     Sqlite(PathBuf),
     /// A server; what its URL leaves out comes from the environment variables that libpq reads, a password from its file, too.
     Postgres(Box<PgConnectOptions>),
+}
+
+impl DatabaseLocation {
+    /// The same with a password; none for a file, which has no password.
+    #[must_use]
+    pub fn with_password(&self, password: &str) -> Option<Self> {
+        match self {
+            DatabaseLocation::Sqlite(_) => None,
+            DatabaseLocation::Postgres(options) => {
+                Some(DatabaseLocation::Postgres(Box::new(options.as_ref().clone().password(password))))
+            }
+        }
+    }
+
+    /// As text, with the password: for a process of the same user.
+    pub fn with_secrets(&self) -> OsString {
+        match self {
+            DatabaseLocation::Sqlite(path) => path.clone().into_os_string(),
+            DatabaseLocation::Postgres(options) => options.to_url_lossy().as_str().into(),
+        }
+    }
 }
 
 impl FromStr for DatabaseLocation {
@@ -54,6 +76,32 @@ impl fmt::Display for DatabaseLocation {
                 }
                 formatter.write_str(url.path())
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_url_is_a_server_and_all_else_a_file() {
+        for url in [
+            "postgres://anne:secret@db.example:6432/sweeps",
+            "postgresql://anne:secret@db.example:6432/sweeps",
+        ] {
+            let location: DatabaseLocation = url.parse().unwrap();
+            assert_eq!(location.to_string(), "postgres://db.example:6432/sweeps");
+            assert!(
+                location.with_secrets().to_str().unwrap().contains("anne:secret@"),
+                "a child must get in, too"
+            );
+        }
+        let file: DatabaseLocation = "some/where.sqlite".parse().unwrap();
+        assert_eq!(file.to_string(), "some/where.sqlite");
+        assert!(file.with_password("secret").is_none());
+        for other in ["", "mysql://host/name", "postgres://host:port/name"] {
+            assert!(matches!(other.parse::<DatabaseLocation>(), Err(StoreError::Location(_))), "{other:?}");
         }
     }
 }

@@ -57,6 +57,7 @@ pub(crate) async fn open(path: &Path, role: Role, clock_offset_ms: i64) -> Resul
                 Role::Worker => WORKER_CACHE,
             },
         );
+    refuse_network_file_system(path)?;
     let connections = match role {
         Role::Server => 4,
         Role::Worker => 2,
@@ -84,6 +85,39 @@ pub(crate) async fn open(path: &Path, role: Role, clock_offset_ms: i64) -> Resul
     migration::sqlite().run(&pool).await?;
     drop(opening);
     Ok(Database::Sqlite(pool, Writers::default()))
+}
+
+/// Refuses a file that other machines have, too: SQLite's locks and its shared memory do not reach them, and the file would be damaged.
+fn refuse_network_file_system(path: &Path) -> Result<()> {
+    let directory = path.parent().filter(|path| !path.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let kind = rustix::fs::statfs(directory)
+        .map_err(|error| StoreError::Directory {
+            path: directory.display().to_string(),
+            source: error.into(),
+        })?
+        .f_type;
+    match network_file_system(kind as u64) {
+        Some(name) => Err(StoreError::NetworkFileSystem { path: path.to_owned(), name }),
+        None => Ok(()),
+    }
+}
+
+/// The network file system that Linux reports as this number in `statfs`; none where it is on a disk of this machine. From linux/magic.h
+/// and the file systems' own sources.
+fn network_file_system(kind: u64) -> Option<&'static str> {
+    Some(match kind & 0xffff_ffff {
+        0x6969 => "NFS",
+        0xff53_4d42 | 0xfe53_4d42 | 0x517b => "SMB",
+        0x00c3_6400 => "Ceph",
+        0x0bd0_0bd0 => "Lustre",
+        0x4750_4653 => "GPFS",
+        0x1983_0326 => "BeeGFS",
+        0x5346_414f | 0x6b41_4653 => "AFS",
+        0x0102_1997 => "9P",
+        0x7461_636f => "OCFS2",
+        0x0116_1970 => "GFS2",
+        _ => return None,
+    })
 }
 
 /// Opens the file to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
@@ -136,5 +170,23 @@ async fn lock_opening(database: &Path) -> Result<File> {
             Err(TryLockError::WouldBlock) => return Ok(file),
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disk_of_this_machine_is_taken_and_a_network_is_not() {
+        let directory = tempfile::tempdir().unwrap();
+        refuse_network_file_system(&directory.path().join("drillsweep.sqlite")).unwrap();
+        // ext4, tmpfs, overlayfs, XFS, btrfs.
+        for local in [0xef53, 0x0102_1994, 0x794c_7630, 0x5846_5342, 0x9123_683e] {
+            assert_eq!(network_file_system(local), None, "{local:x}");
+        }
+        assert_eq!(network_file_system(0x6969), Some("NFS"));
+        // On some machines the number is signed.
+        assert_eq!(network_file_system(0xff53_4d42_u32 as i32 as u64), Some("SMB"));
     }
 }

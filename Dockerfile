@@ -9,6 +9,8 @@ RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,targe
 FROM debian:bookworm-slim
 RUN useradd --system --uid 10001 --no-create-home drillsweep && install --directory --owner=drillsweep /data
 COPY --from=build /usr/local/bin/drillsweep /usr/local/bin/drillsweep
+# Whom an object store's certificate may be from.
+COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt
 USER 10001
 ENV DRILLSWEEP_DATA=/data
 VOLUME /data

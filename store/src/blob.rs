@@ -1,29 +1,27 @@
 //! Arrays, by the hash of their bytes.
 
+mod backend;
+mod location;
+
 use std::fs::File;
 use std::io::Write;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::UNIX_EPOCH;
 
 use bytes::Bytes;
 use futures::TryStreamExt;
-use object_store::local::LocalFileSystem;
 use object_store::path::Path as ObjectPath;
-use object_store::{ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
+use object_store::{ObjectMeta, ObjectStoreExt, PutMode, PutOptions, PutPayload};
 
+use self::backend::Backend;
+pub use self::location::{LocationError, ObjectsLocation};
 use crate::error::{Result, StoreError};
 use crate::hash_tree::{self, HashTree, HashTreeBuilder, HashTrees};
 
 /// Bytes of a large file that are in memory at once.
 const PART: usize = 8 << 20;
-
-/// Bytes that are read at once where a content is read from its beginning to its end. The object store's own stream hands out 8 KiB at a
-/// time, each from another thread, which takes longer than hashing them.
-const STRETCH: u64 = 1 << 20;
 
 /// The folder of scratch objects.
 const SCRATCH: &str = "probe";
@@ -32,12 +30,14 @@ const SCRATCH: &str = "probe";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BlobId(blake3::Hash);
 
-/// Content-addressed objects in a local directory. A blob is written before the row that names it. Writing the same bytes
-/// again changes nothing, unless they were damaged meanwhile: then it mends them.
+/// Content-addressed objects in a local directory or a bucket. A blob is written before the row that names it. Writing the
+/// same bytes again changes nothing, unless they were damaged meanwhile: then it mends them.
+///
+/// A service that does not answer is tried again: for 10 s by what reads, for 60 s by [`put`](Self::put) and
+/// [`put_file`](Self::put_file). Then the error [says so](StoreError::is_unavailable).
 #[derive(Debug, Clone)]
 pub struct BlobStore {
-    objects: Arc<dyn ObjectStore>,
-    directory: PathBuf,
+    backend: Backend,
     trees: Arc<HashTrees>,
 }
 
@@ -58,11 +58,12 @@ impl StoredObject {
 }
 
 impl BlobStore {
-    pub(crate) fn open(directory: &Path) -> Result<Self> {
-        std::fs::create_dir_all(directory)
-            .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
-        let objects = LocalFileSystem::new_with_prefix(directory)?.with_fsync(true);
-        Ok(Self { objects: Arc::new(objects), directory: directory.to_owned(), trees: Arc::default() })
+    /// Opens what is at a location; a directory is made where there is none. Whether a bucket is there is not tried.
+    ///
+    /// # Errors
+    /// When a directory cannot be made, or what the environment says of the service is wrong or not enough.
+    pub fn open(location: &ObjectsLocation) -> Result<Self> {
+        Ok(Self { backend: Backend::open(location)?, trees: Arc::default() })
     }
 
     /// Writes a blob, durably, unless it is there. What is there under its name is read, and replaced in one step where it
@@ -74,11 +75,13 @@ impl BlobStore {
         let id = BlobId::of(&bytes);
         let payload = PutPayload::from(bytes);
         match self.write(id, payload.clone(), PutMode::Create).await {
-            Err(object_store::Error::AlreadyExists { .. }) => {}
-            written => return Ok(written.map(|()| id)?),
+            Ok(()) => return Ok(id),
+            Err(StoreError::Blob(object_store::Error::AlreadyExists { .. })) => {}
+            // A request that breaks off may have been carried out, and is not sent again by itself.
+            Err(error) if error.is_unavailable() => {}
+            Err(error) => return Err(error),
         }
-        if let Err(error) = self.verify(id).await {
-            tracing::warn!(%error, blob = %id, "a stored blob is replaced");
+        if self.is_to_be_written(id).await? {
             self.write(id, payload, PutMode::Overwrite).await?;
         }
         Ok(id)
@@ -108,33 +111,54 @@ impl BlobStore {
             part = read(hasher.count()).await?;
         }
         let (id, bytes) = (BlobId(hasher.finalize()), hasher.count());
-        if self.contains(id).await? {
-            match self.verify(id).await {
-                Ok(_) => return Ok((id, bytes)),
-                Err(error) => tracing::warn!(%error, blob = %id, "a stored blob is replaced"),
-            }
+        if !self.is_to_be_written(id).await? {
+            return Ok((id, bytes));
         }
-        let mut upload = self.objects.put_multipart(&id.path()).await?;
+        let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
         let mut written = 0;
         while written < bytes {
             let part = read(written).await?;
             written += part.len() as u64;
-            let is_changed = part.is_empty();
-            let sent = if is_changed { Ok(()) } else { upload.put_part(PutPayload::from(part)).await };
-            if is_changed || sent.is_err() {
-                // What cannot be taken back is left to the collector.
-                let _ = upload.abort().await;
-                sent?;
-                return Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")));
+            let sent = if part.is_empty() {
+                Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")))
+            } else {
+                upload.put_part(PutPayload::from(part)).await.map_err(StoreError::from)
+            };
+            if let Err(error) = sent {
+                // What cannot be taken back is left to the collector, or to the bucket's rule. A service that was waited for in vain
+                // is not waited for again.
+                if !error.is_unavailable() {
+                    let _ = upload.abort().await;
+                }
+                return Err(error);
             }
         }
-        upload.complete().await?;
+        if let Err(error) = upload.complete().await {
+            // The answer may have been lost. Asked again, the service knows no such upload.
+            if self.is_to_be_written(id).await? {
+                return Err(error.into());
+            }
+        }
         Ok((id, bytes))
     }
 
-    async fn write(&self, id: BlobId, payload: PutPayload, mode: PutMode) -> object_store::Result<()> {
+    async fn write(&self, id: BlobId, payload: PutPayload, mode: PutMode) -> Result<()> {
         let options = PutOptions { mode, ..PutOptions::default() };
-        self.objects.put_opts(&id.path(), payload, options).await.map(drop)
+        self.backend.uploads.put_opts(&id.path(), payload, options).await?;
+        Ok(())
+    }
+
+    /// Whether a blob is not there or not whole.
+    async fn is_to_be_written(&self, id: BlobId) -> Result<bool> {
+        match self.verify(id).await {
+            Ok(_) => Ok(false),
+            Err(error) if error.is_unavailable() => Err(error),
+            Err(StoreError::Blob(object_store::Error::NotFound { .. })) => Ok(true),
+            Err(error) => {
+                tracing::warn!(%error, blob = %id, "a stored blob is replaced");
+                Ok(true)
+            }
+        }
     }
 
     /// Reads a blob without keeping it, and gives its size \[bytes\].
@@ -143,7 +167,7 @@ impl BlobStore {
     /// As [`get`](Self::get).
     pub async fn verify(&self, id: BlobId) -> Result<u64> {
         let mut hasher = blake3::Hasher::new();
-        let length = self.objects.head(&id.path()).await?.size;
+        let length = self.length(id).await?;
         self.read_through(id, length, |bytes| {
             hasher.update(bytes);
         })
@@ -159,7 +183,7 @@ impl BlobStore {
     /// # Errors
     /// When it is not there or is not what was written, or the object store fails.
     pub async fn get(&self, id: BlobId) -> Result<Bytes> {
-        let content = self.objects.get(&id.path()).await?.bytes().await?;
+        let content = self.backend.objects.get(&id.path()).await?.bytes().await?;
         if BlobId::of(&content) != id {
             return Err(StoreError::BlobDamaged(id));
         }
@@ -171,7 +195,7 @@ impl BlobStore {
     /// # Errors
     /// As [`get`](Self::get), and when the file cannot be written.
     pub async fn get_into(&self, id: BlobId, mut file: File) -> Result<File> {
-        let length = self.objects.head(&id.path()).await?.size;
+        let length = self.length(id).await?;
         let (mut hasher, mut written) = (blake3::Hasher::new(), Ok(()));
         let take = |bytes: &[u8]| {
             hasher.update(bytes);
@@ -201,10 +225,16 @@ impl BlobStore {
             return Ok(cut(&whole, range.ok_or(StoreError::NoSuchRange(id))?));
         };
         let groups = tree.whole_groups(&bytes).ok_or(StoreError::NoSuchRange(id))?;
-        let content = match self.objects.get_range(&id.path(), groups.clone()).await {
+        let content = match self.backend.objects.get_range(&id.path(), groups.clone()).await {
             Ok(content) => content,
-            // A file that is too short has no such range.
-            Err(error) => return Err(self.verify(id).await.err().unwrap_or(error.into())),
+            Err(error) => {
+                let error = StoreError::from(error);
+                if error.is_unavailable() {
+                    return Err(error);
+                }
+                // An object that is too short has no such range.
+                return Err(self.verify(id).await.err().unwrap_or(error));
+            }
         };
         if content.len() as u64 != groups.end - groups.start || !tree.holds(groups.start, &content) {
             return Err(StoreError::BlobDamaged(id));
@@ -217,7 +247,7 @@ impl BlobStore {
         if let Some(tree) = self.trees.get(id) {
             return Ok(Some(tree));
         }
-        let length = self.objects.head(&id.path()).await?.size;
+        let length = self.length(id).await?;
         if length <= hash_tree::GROUP {
             return Ok(None);
         }
@@ -231,15 +261,29 @@ impl BlobStore {
     /// Reads an object of so many bytes from its beginning to its end.
     async fn read_through(&self, id: BlobId, length: u64, mut take: impl FnMut(&[u8])) -> Result<()> {
         let path = id.path();
-        for start in (0..length).step_by(STRETCH as usize) {
-            take(&self.objects.get_range(&path, start..length.min(start + STRETCH)).await?);
+        let mut start = 0;
+        while start < length {
+            let end = length.min(start + self.backend.stretch);
+            take(&self.backend.objects.get_range(&path, start..end).await?);
+            start = end;
         }
         Ok(())
     }
 
+    /// Size of a blob \[bytes\].
+    async fn length(&self, id: BlobId) -> Result<u64> {
+        let path = id.path();
+        match self.backend.objects.head(&path).await {
+            Ok(meta) => Ok(meta.size),
+            // The answer to this request has no body that would tell a missing object from a missing bucket.
+            Err(object_store::Error::NotFound { .. }) => Ok(self.backend.objects.get(&path).await?.meta.size),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// Whether a blob is there.
     pub(crate) async fn contains(&self, id: BlobId) -> Result<bool> {
-        match self.objects.head(&id.path()).await {
+        match self.backend.objects.head(&id.path()).await {
             Ok(_) => Ok(true),
             Err(object_store::Error::NotFound { .. }) => Ok(false),
             Err(error) => Err(error.into()),
@@ -254,35 +298,29 @@ impl BlobStore {
             let is_ours = object.blob().is_some() || object.path.prefix_matches(&ObjectPath::from(SCRATCH));
             Ok((is_ours && meta.last_modified.timestamp_millis() < cutoff).then_some(object))
         };
-        Ok(self.objects.list(None).try_filter_map(is_old).try_collect().await?)
+        Ok(self.backend.objects.list(None).try_filter_map(is_old).try_collect().await?)
     }
 
     /// Deletes an object; one that is gone already is no matter.
     pub(crate) async fn delete(&self, object: &StoredObject) -> Result<()> {
-        match self.objects.delete(&object.path).await {
+        match self.backend.objects.delete(&object.path).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }
 
-    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished, as a
-    /// killed worker leaves them; they are deleted if so wanted. The object store does not list them.
+    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished; they are deleted if so
+    /// wanted. None of a bucket, whose own rule deletes them.
     pub(crate) async fn unfinished_uploads(&self, cutoff: i64, is_deleting: bool) -> Result<Vec<u64>> {
-        let directory = self.directory.clone();
-        let failed = |source| StoreError::Directory { path: self.directory.display().to_string(), source };
-        let walking = tokio::task::spawn_blocking(move || {
-            let mut sizes = Vec::new();
-            visit_unfinished(&directory, cutoff, is_deleting, &mut sizes).map(|()| sizes)
-        });
-        walking.await.map_err(std::io::Error::other).flatten().map_err(failed)
+        self.backend.unfinished_uploads(cutoff, is_deleting).await
     }
 
     /// Writes, reads and deletes a scratch object: a full or read-only disk shows here.
     pub(crate) async fn probe(&self, content: Bytes) -> Result<()> {
         let path = ObjectPath::from(format!("{SCRATCH}/{}", blake3::hash(&content).to_hex()));
-        self.objects.put(&path, PutPayload::from(content.clone())).await?;
-        let read = self.objects.get(&path).await?.bytes().await?;
-        self.objects.delete(&path).await?;
+        self.backend.objects.put(&path, PutPayload::from(content.clone())).await?;
+        let read = self.backend.objects.get(&path).await?.bytes().await?;
+        self.backend.objects.delete(&path).await?;
         if read != content {
             return Err(StoreError::Corrupt("a scratch object came back changed".to_owned()));
         }
@@ -308,36 +346,6 @@ fn read_part(file: &File, from: u64) -> std::io::Result<Vec<u8>> {
 fn cut(bytes: &Bytes, range: Range<u64>) -> Bytes {
     let place = |at: u64| usize::try_from(at).unwrap_or(usize::MAX).min(bytes.len());
     bytes.slice(place(range.start)..place(range.end))
-}
-
-fn visit_unfinished(
-    directory: &Path,
-    cutoff: i64,
-    is_deleting: bool,
-    sizes: &mut Vec<u64>,
-) -> std::io::Result<()> {
-    for entry in std::fs::read_dir(directory)? {
-        let entry = entry?;
-        let metadata = entry.metadata()?;
-        if metadata.is_dir() {
-            visit_unfinished(&entry.path(), cutoff, is_deleting, sizes)?;
-            continue;
-        }
-        let modified = metadata.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default();
-        let is_old = i64::try_from(modified.as_millis()).is_ok_and(|modified| modified < cutoff);
-        // `object_store` uploads to the object's path with `#` and a number after it.
-        let name = entry.file_name();
-        let is_upload = name.to_str().and_then(|name| name.rsplit_once('#')).is_some_and(|(_, number)| {
-            !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-        });
-        if is_old && is_upload {
-            if is_deleting {
-                std::fs::remove_file(entry.path())?;
-            }
-            sizes.push(metadata.len());
-        }
-    }
-    Ok(())
 }
 
 impl BlobId {

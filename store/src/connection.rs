@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::blob::BlobStore;
+use crate::blob::{BlobStore, ObjectsLocation};
 use crate::database::{Database, DatabaseLocation, Transaction, postgres, sqlite};
 use crate::error::Result;
 use crate::query::query;
@@ -13,8 +13,8 @@ use crate::sql;
 pub struct StoreConfig {
     /// The queue and the index of results.
     pub database: DatabaseLocation,
-    /// The directory of the object store.
-    pub blob_directory: PathBuf,
+    /// The object store.
+    pub objects: ObjectsLocation,
     /// Who opens it.
     pub role: Role,
     /// Added to the database's clock \[ms\]: zero but in tests of what time does.
@@ -26,7 +26,7 @@ impl StoreConfig {
     pub fn in_directory(directory: &Path, role: Role) -> Self {
         Self {
             database: DatabaseLocation::Sqlite(directory.join("drillsweep.sqlite")),
-            blob_directory: directory.join("blobs"),
+            objects: ObjectsLocation::Directory(directory.join("blobs")),
             role,
             clock_offset_ms: 0,
         }
@@ -91,7 +91,7 @@ impl Store {
             DatabaseLocation::Sqlite(path) => Some(path.clone()),
             DatabaseLocation::Postgres(_) => None,
         };
-        Ok(Self { database, database_path, blobs: BlobStore::open(&config.blob_directory)? })
+        Ok(Self { database, database_path, blobs: BlobStore::open(&config.objects)? })
     }
 
     /// The object store.

@@ -4,6 +4,8 @@ use std::error::Error as _;
 use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
+use object_store::client::HttpError;
+
 use crate::blob::BlobId;
 
 /// The store's results.
@@ -73,7 +75,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// True where the disk has no room: the same call succeeds once it has.
+    /// True where the disk or the object store has no room: the same call succeeds once it has.
     pub fn is_full(&self) -> bool {
         if let StoreError::Database(sqlx::Error::Database(error)) = self {
             return match engine_code(error.as_ref()) {
@@ -84,8 +86,23 @@ impl StoreError {
                 EngineCode::None => false,
             };
         }
-        self.io_error()
-            .is_some_and(|error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded))
+        /// What services of the S3 protocol say: Ceph and SeaweedFS (a quota), MinIO, and others by the status 507.
+        const FULL: [&str; 3] = ["<Code>QuotaExceeded<", "<Code>XMinioStorageFull<", "status code: 507"];
+        self.answer_has(&FULL)
+            || self.cause(|error: &io::Error| {
+                matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
+            })
+    }
+
+    /// True where the object store did not answer, broke off, or said that it cannot now: the same call may succeed later.
+    /// A blob that was asked for is not lost.
+    pub fn is_unavailable(&self) -> bool {
+        /// Errors of the service, and too many requests: in the status or in the body of a success.
+        const UNABLE: [&str; 4] =
+            ["status code: 5", "status code: 429", "status code: 408", "returned error response: "];
+        matches!(self, StoreError::Blob(_))
+            && !self.is_full()
+            && (self.cause(|_: &HttpError| true) || self.answer_has(&UNABLE))
     }
 
     /// True where a blob is lost: it is not there, is not what was written, or lies on a part of the disk that cannot be read.
@@ -94,22 +111,35 @@ impl StoreError {
         /// The errno of a failed read on Linux and other Unix systems.
         const EIO: i32 = 5;
         match self {
-            StoreError::BlobDamaged(_) | StoreError::Blob(object_store::Error::NotFound { .. }) => true,
-            StoreError::Blob(_) => self.io_error().and_then(io::Error::raw_os_error) == Some(EIO),
+            StoreError::BlobDamaged(_) => true,
+            // A bucket that is not there is the wrong one, and an upload that is not there was ended: nothing is lost.
+            StoreError::Blob(object_store::Error::NotFound { .. }) => {
+                !self.answer_has(&["<Code>NoSuchBucket<", "<Code>NoSuchUpload<"])
+            }
+            StoreError::Blob(_) => self.cause(|error: &io::Error| error.raw_os_error() == Some(EIO)),
             _ => false,
         }
     }
 
-    /// What the system said, where that is behind it.
-    fn io_error(&self) -> Option<&io::Error> {
+    /// Whether an error of some type that is behind it is such a one.
+    fn cause<E: std::error::Error + 'static>(&self, is_such: impl Fn(&E) -> bool) -> bool {
         let mut cause = self.source();
         while let Some(error) = cause {
-            if let Some(error) = error.downcast_ref() {
-                return Some(error);
+            if error.downcast_ref().is_some_and(&is_such) {
+                return true;
             }
             cause = error.source();
         }
-        None
+        false
+    }
+
+    /// Whether what a service answered has any of these texts. `object_store` does not hand out status and body otherwise.
+    fn answer_has(&self, texts: &[&str]) -> bool {
+        let StoreError::Blob(error) = self else {
+            return false;
+        };
+        let text = error.to_string();
+        texts.iter().any(|part| text.contains(part))
     }
 
     /// True where the same call may succeed a moment later: the database was busy.

@@ -29,7 +29,7 @@ mod token;
 mod verification;
 mod worker;
 
-pub use blob::{BlobId, BlobStore};
+pub use blob::{BlobId, BlobStore, LocationError, ObjectsLocation};
 pub use census::Census;
 pub use check::CheckReport;
 pub use connection::{Role, Store, StoreConfig};

@@ -1,0 +1,161 @@
+//! What the objects lie on.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, UNIX_EPOCH};
+
+use object_store::aws::{AmazonS3, AmazonS3Builder, AmazonS3ConfigKey, S3ConditionalPut};
+use object_store::client::ClientConfigKey;
+use object_store::local::LocalFileSystem;
+use object_store::prefix::PrefixStore;
+use object_store::{BackoffConfig, ObjectStore, RetryConfig};
+
+use super::location::ObjectsLocation;
+use crate::error::{Result, StoreError};
+
+/// Bytes that are read at once of an object in a directory where it is read from its beginning to its end. The object store's own
+/// stream hands out 8 KiB at a time, each from another thread, which takes longer than hashing them.
+const DIRECTORY_STRETCH: u64 = 1 << 20;
+
+/// The same in a bucket, where each is a request.
+const S3_STRETCH: u64 = 8 << 20;
+
+/// A request that is never done: what bounds it is how long nothing comes.
+const NO_TIMEOUT: &str = "365days";
+
+/// How long a service is waited for.
+struct Patience {
+    /// How long a request is sent again that failed.
+    retry: Duration,
+    /// Longest wait between two tries.
+    pause: Duration,
+    /// How long nothing may come of an answer, counted from the beginning of the request.
+    silence: &'static str,
+}
+
+/// Of those who read: somebody waits for the answer.
+const SHORT: Patience =
+    Patience { retry: Duration::from_secs(10), pause: Duration::from_secs(1), silence: "10s" };
+
+/// Of those who write what took minutes to compute: a service that is restarted meanwhile costs nothing.
+const LONG: Patience =
+    Patience { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
+
+/// What the objects lie on, with as much of it as differs. Both stores are the same one but for their patience.
+#[derive(Debug, Clone)]
+pub(super) struct Backend {
+    /// For what somebody waits for.
+    pub(super) objects: Arc<dyn ObjectStore>,
+    /// For writing what was computed.
+    pub(super) uploads: Arc<dyn ObjectStore>,
+    /// Bytes that are read at once where an object is read from its beginning to its end.
+    pub(super) stretch: u64,
+    /// None of a bucket.
+    directory: Option<PathBuf>,
+}
+
+impl Backend {
+    /// # Errors
+    /// When a directory cannot be made, or the settings of a service are wrong. Whether it answers is not tried.
+    pub(super) fn open(location: &ObjectsLocation) -> Result<Self> {
+        match location {
+            ObjectsLocation::Directory(path) => Self::in_directory(path),
+            ObjectsLocation::S3 { bucket, prefix, settings } => Self::in_bucket(bucket, prefix, settings),
+        }
+    }
+
+    fn in_directory(directory: &Path) -> Result<Self> {
+        std::fs::create_dir_all(directory)
+            .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
+        let objects: Arc<dyn ObjectStore> =
+            Arc::new(LocalFileSystem::new_with_prefix(directory)?.with_fsync(true));
+        Ok(Self {
+            uploads: objects.clone(),
+            objects,
+            stretch: DIRECTORY_STRETCH,
+            directory: Some(directory.to_owned()),
+        })
+    }
+
+    fn in_bucket(bucket: &str, prefix: &str, settings: &BTreeMap<String, String>) -> Result<Self> {
+        // An error says that there is one already, which will do.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let open = |patience: &Patience| -> Result<Arc<dyn ObjectStore>> {
+            Ok(Arc::new(PrefixStore::new(s3(bucket, settings, patience)?, prefix)))
+        };
+        Ok(Self { objects: open(&SHORT)?, uploads: open(&LONG)?, stretch: S3_STRETCH, directory: None })
+    }
+
+    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished, as a killed
+    /// worker leaves them in a directory; they are deleted if so wanted. The object store does not list them. Those in a bucket are
+    /// for the bucket's rule about incomplete uploads to delete (`AbortIncompleteMultipartUpload`).
+    pub(super) async fn unfinished_uploads(&self, cutoff: i64, is_deleting: bool) -> Result<Vec<u64>> {
+        let Some(directory) = self.directory.clone() else {
+            return Ok(Vec::new());
+        };
+        let path = directory.display().to_string();
+        let walking = tokio::task::spawn_blocking(move || {
+            let mut sizes = Vec::new();
+            visit_unfinished(&directory, cutoff, is_deleting, &mut sizes).map(|()| sizes)
+        });
+        let walked = walking.await.map_err(std::io::Error::other).flatten();
+        walked.map_err(|source| StoreError::Directory { path, source })
+    }
+}
+
+/// A bucket, with what the environment says of it.
+fn s3(bucket: &str, settings: &BTreeMap<String, String>, patience: &Patience) -> Result<AmazonS3> {
+    let retry = RetryConfig {
+        backoff: BackoffConfig {
+            init_backoff: Duration::from_millis(100),
+            max_backoff: patience.pause,
+            base: 2.0,
+        },
+        // The time decides.
+        max_retries: usize::MAX,
+        retry_timeout: patience.retry,
+    };
+    let mut builder = AmazonS3Builder::from_env()
+        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::Timeout), NO_TIMEOUT)
+        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::ReadTimeout), patience.silence)
+        .with_retry(retry)
+        .with_conditional_put(S3ConditionalPut::ETagMatch)
+        // Objects are deleted one at a time, which every service knows how to do.
+        .with_disable_bulk_delete(true)
+        .with_bucket_name(bucket);
+    for (name, value) in settings {
+        builder = builder.with_config(name.parse()?, value);
+    }
+    Ok(builder.build()?)
+}
+
+fn visit_unfinished(
+    directory: &Path,
+    cutoff: i64,
+    is_deleting: bool,
+    sizes: &mut Vec<u64>,
+) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(directory)? {
+        let entry = entry?;
+        let metadata = entry.metadata()?;
+        if metadata.is_dir() {
+            visit_unfinished(&entry.path(), cutoff, is_deleting, sizes)?;
+            continue;
+        }
+        let modified = metadata.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default();
+        let is_old = i64::try_from(modified.as_millis()).is_ok_and(|modified| modified < cutoff);
+        // `object_store` uploads to the object's path with `#` and a number after it.
+        let name = entry.file_name();
+        let is_upload = name.to_str().and_then(|name| name.rsplit_once('#')).is_some_and(|(_, number)| {
+            !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+        });
+        if is_old && is_upload {
+            if is_deleting {
+                std::fs::remove_file(entry.path())?;
+            }
+            sizes.push(metadata.len());
+        }
+    }
+    Ok(())
+}

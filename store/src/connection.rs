@@ -32,6 +32,12 @@ impl StoreConfig {
         }
     }
 
+    /// The same with the blobs somewhere else.
+    #[must_use]
+    pub fn with_objects(self, objects: ObjectsLocation) -> Self {
+        Self { objects, ..self }
+    }
+
     /// Whether there is a store already; opening makes one where there is none. Of a server that is found out by opening it.
     pub fn exists(&self) -> bool {
         match &self.database {

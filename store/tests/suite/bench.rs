@@ -5,6 +5,8 @@ use drillsweep_store::{
     Role, ScenarioText, Store, StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 
+use crate::place::Object;
+
 pub(crate) const PHYSICS: i64 = 1;
 pub(crate) const LEASE_MS: i64 = 60_000;
 
@@ -26,11 +28,17 @@ pub(crate) trait Engine {
     /// Deletes an object.
     fn delete_object(&self, name: &str);
 
-    /// Leaves what a writer leaves that is killed before it has written an object of this content.
-    fn abandon_upload(&self, content: &[u8]);
+    /// Leaves what a writer leaves in a directory that is killed before it has written an object of this content: `object_store` writes
+    /// beside the object, with a number.
+    fn abandon_upload(&self, content: &[u8]) {
+        self.write_object("ab/cd/abcd0123#1", content);
+    }
 
-    /// From now on no object can be written whose name begins with `probe/`.
-    fn refuse_scratch_objects(&self);
+    /// From now on no object can be written to a directory whose name begins with `probe/`: a file where the folder should be stops
+    /// every user; permissions would not stop root.
+    fn refuse_scratch_objects(&self) {
+        self.write_object("probe", b"");
+    }
 
     /// Whether the database has these bytes anywhere on its disk, whatever column they are in.
     fn database_holds(&self, bytes: &[u8]) -> bool;
@@ -49,20 +57,6 @@ pub(crate) trait Engine {
     fn bytes_of_objects(&self) -> u64 {
         self.objects().iter().map(|object| object.bytes).sum()
     }
-}
-
-/// An object of the object store.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Object {
-    pub(crate) name: String,
-    pub(crate) bytes: u64,
-    /// Another one after every write, whatever is written.
-    pub(crate) version: String,
-}
-
-/// The name of a blob's object.
-pub(crate) fn object_name(blob: &str) -> String {
-    format!("{}/{}/{blob}", &blob[..2], &blob[2..4])
 }
 
 /// What a JSON text says: engines write it with and without spaces.

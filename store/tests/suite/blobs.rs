@@ -4,12 +4,12 @@ use std::io::{Read as _, Seek as _, Write as _};
 
 use drillsweep_store::{BlobId, StoreError};
 
-use crate::bench::{Engine, object_name};
+use crate::place::{Bucket, Directory, Place, object_name};
 
-pub(crate) async fn the_name_is_the_blake3_hash_of_the_content<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
-    let id = store.blobs().put(Vec::new()).await.unwrap();
+async fn the_name_is_the_blake3_hash_of_the_content<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
+    let id = blobs.put(Vec::new()).await.unwrap();
     // The first test vector of BLAKE3: empty input.
     let hash = "af1349b9f5f9a1a6a0404dea36dcc9499bcb25c9adc112b7cc9a93cae41f3262";
     assert_eq!(id.to_string(), hash);
@@ -17,125 +17,145 @@ pub(crate) async fn the_name_is_the_blake3_hash_of_the_content<E: Engine>() {
     assert!(matches!("af13".parse::<BlobId>(), Err(StoreError::Corrupt(_))));
 }
 
-pub(crate) async fn the_same_content_is_stored_once_and_never_rewritten<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
+async fn the_same_content_is_stored_once_and_never_rewritten<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
     let content = b"orbit".repeat(1_000);
-    let id = store.blobs().put(content.clone()).await.unwrap();
-    let written = engine.objects();
+    let id = blobs.put(content.clone()).await.unwrap();
+    let written = place.objects();
     assert_eq!(written.len(), 1);
     assert_eq!((&written[0].name, written[0].bytes), (&object_name(&id.to_string()), 5_000));
 
-    let (again, at_once) =
-        tokio::join!(store.blobs().put(content.clone()), store.blobs().put(content.clone()));
+    let (again, at_once) = tokio::join!(blobs.put(content.clone()), blobs.put(content.clone()));
     assert_eq!((again.unwrap(), at_once.unwrap()), (id, id));
-    assert_eq!(engine.objects(), written);
+    assert_eq!(place.objects(), written);
 
-    let other = store.blobs().put(b"spectrum".to_vec()).await.unwrap();
+    let other = blobs.put(b"spectrum".to_vec()).await.unwrap();
     assert_ne!(other, id);
     // Another process on the same store reads what was written.
-    let reader = engine.open().await;
-    assert_eq!(reader.blobs().get(id).await.unwrap(), content);
-    assert_eq!(reader.blobs().get(other).await.unwrap(), b"spectrum".as_slice());
+    let reader = place.open();
+    assert_eq!(reader.get(id).await.unwrap(), content);
+    assert_eq!(reader.get(other).await.unwrap(), b"spectrum".as_slice());
 }
 
-pub(crate) async fn a_range_is_cut_from_the_content<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
+async fn a_range_is_cut_from_the_content<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
     let content: Vec<u8> = (0..=255).collect();
-    let id = store.blobs().put(content.clone()).await.unwrap();
-    assert_eq!(store.blobs().get_range(id, 10..20).await.unwrap(), content[10..20]);
-    assert_eq!(store.blobs().get_range(id, 250..1_000).await.unwrap(), content[250..]);
+    let id = blobs.put(content.clone()).await.unwrap();
+    assert_eq!(blobs.get_range(id, 10..20).await.unwrap(), content[10..20]);
+    assert_eq!(blobs.get_range(id, 250..1_000).await.unwrap(), content[250..]);
     let missing: BlobId = "0".repeat(64).parse().unwrap();
-    for error in [
-        store.blobs().get(missing).await.unwrap_err(),
-        store.blobs().get_range(missing, 0..1).await.unwrap_err(),
-    ] {
+    for error in [blobs.get(missing).await.unwrap_err(), blobs.get_range(missing, 0..1).await.unwrap_err()] {
         assert!(error.is_damage(), "{error}");
     }
     for beyond in [256..300, 20..20] {
-        let error = store.blobs().get_range(id, beyond).await.unwrap_err();
+        let error = blobs.get_range(id, beyond).await.unwrap_err();
         assert!(matches!(error, StoreError::NoSuchRange(_)) && !error.is_damage(), "{error}");
     }
 }
 
-pub(crate) async fn what_is_damaged_is_replaced_when_it_is_written_again<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
+async fn what_is_damaged_is_replaced_when_it_is_written_again<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
     let content = b"orbit".repeat(1_000);
-    let id = store.blobs().put(content.clone()).await.unwrap();
+    let id = blobs.put(content.clone()).await.unwrap();
     let name = object_name(&id.to_string());
     let mut flipped = content.clone();
     flipped[4_321] ^= 4;
     let longer = [content.as_slice(), b"x"].concat();
     for damaged in [b"".as_slice(), &content[..2_500], &flipped, &longer] {
-        engine.write_object(&name, damaged);
-        assert!(store.blobs().get(id).await.unwrap_err().is_damage());
-        assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
-        assert_eq!(store.blobs().get(id).await.unwrap(), content);
+        place.write_object(&name, damaged);
+        assert!(blobs.get(id).await.unwrap_err().is_damage());
+        assert_eq!(blobs.put(content.clone()).await.unwrap(), id);
+        assert_eq!(blobs.get(id).await.unwrap(), content);
     }
-    engine.delete_object(&name);
-    assert!(store.blobs().get(id).await.unwrap_err().is_damage());
-    assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
-    assert_eq!(store.blobs().get(id).await.unwrap(), content);
-    assert_eq!(engine.objects().len(), 1);
+    place.delete_object(&name);
+    assert!(blobs.get(id).await.unwrap_err().is_damage());
+    assert_eq!(blobs.put(content.clone()).await.unwrap(), id);
+    assert_eq!(blobs.get(id).await.unwrap(), content);
+    assert_eq!(place.objects().len(), 1);
 }
 
-pub(crate) async fn no_range_of_a_damaged_blob_is_handed_out<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
+async fn no_range_of_a_damaged_blob_is_handed_out<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
     let content: Vec<u8> = (0..1_000_000_u32).map(|index| (index % 251) as u8).collect();
-    let id = store.blobs().put(content.clone()).await.unwrap();
+    let id = blobs.put(content.clone()).await.unwrap();
     let name = object_name(&id.to_string());
     let mut flipped = content.clone();
     flipped[700_000] ^= 1;
 
     // Found at the first range, wherever that lies.
-    engine.write_object(&name, &flipped);
-    let error = store.blobs().get_range(id, 0..10).await.unwrap_err();
+    place.write_object(&name, &flipped);
+    let error = blobs.get_range(id, 0..10).await.unwrap_err();
     assert!(matches!(error, StoreError::BlobDamaged(damaged) if damaged == id), "{error}");
 
-    engine.write_object(&name, &content);
+    place.write_object(&name, &content);
     for range in [0..10, 999_990..2_000_000, 100_000..900_000] {
         let expected = &content[range.start as usize..(range.end as usize).min(content.len())];
-        assert_eq!(store.blobs().get_range(id, range).await.unwrap(), expected);
+        assert_eq!(blobs.get_range(id, range).await.unwrap(), expected);
     }
     // Found at a later one too, and only what is damaged is refused.
-    engine.write_object(&name, &flipped);
-    assert_eq!(store.blobs().get_range(id, 0..10).await.unwrap(), content[..10]);
+    place.write_object(&name, &flipped);
+    assert_eq!(blobs.get_range(id, 0..10).await.unwrap(), content[..10]);
     for range in [700_000..700_001, 600_000..600_010, 0..1_000_000] {
-        let error = store.blobs().get_range(id, range).await.unwrap_err();
+        let error = blobs.get_range(id, range).await.unwrap_err();
         assert!(matches!(error, StoreError::BlobDamaged(_)), "{error}");
     }
-    engine.write_object(&name, &content[..999_999]);
-    assert!(store.blobs().get_range(id, 999_990..1_000_000).await.unwrap_err().is_damage());
+    place.write_object(&name, &content[..999_999]);
+    assert!(blobs.get_range(id, 999_990..1_000_000).await.unwrap_err().is_damage());
 }
 
-pub(crate) async fn a_file_is_the_blob_of_its_bytes<E: Engine>() {
-    let engine = E::new();
-    let store = engine.open().await;
+async fn a_file_is_the_blob_of_its_bytes<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
     // None, less than a part of an upload, exactly one, and some more.
     for length in [0, 1_000, 8 << 20, (16 << 20) + 5] {
         let content: Vec<u8> =
             (0..length).map(|k: usize| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&content).unwrap();
-        let (id, bytes) = store.blobs().put_file(&file).await.unwrap();
+        let (id, bytes) = blobs.put_file(&file).await.unwrap();
         assert_eq!(bytes, length as u64);
-        let stored = engine.objects();
-        assert_eq!(store.blobs().put(content.clone()).await.unwrap(), id);
-        assert_eq!(store.blobs().put_file(&file).await.unwrap().0, id);
-        assert_eq!(engine.objects(), stored, "what is there is not written again");
+        let stored = place.objects();
+        assert_eq!(blobs.put(content.clone()).await.unwrap(), id);
+        assert_eq!(blobs.put_file(&file).await.unwrap().0, id);
+        assert_eq!(place.objects(), stored, "what is there is not written again");
 
         // What is damaged is replaced, and not handed out before.
-        engine.write_object(&object_name(&id.to_string()), b"damaged");
-        let fetched = store.blobs().get_into(id, tempfile::tempfile().unwrap()).await;
+        place.write_object(&object_name(&id.to_string()), b"damaged");
+        let fetched = blobs.get_into(id, tempfile::tempfile().unwrap()).await;
         assert!(fetched.unwrap_err().is_damage());
-        store.blobs().put_file(&file).await.unwrap();
-        let mut fetched = store.blobs().get_into(id, tempfile::tempfile().unwrap()).await.unwrap();
+        blobs.put_file(&file).await.unwrap();
+        let mut fetched = blobs.get_into(id, tempfile::tempfile().unwrap()).await.unwrap();
         let mut read = Vec::new();
         fetched.rewind().unwrap();
         fetched.read_to_end(&mut read).unwrap();
         assert!(read == content, "{length} bytes");
     }
+}
+
+macro_rules! in_every_place {
+    ($($test:ident,)+) => {
+        in_every_place!(directory: Directory, $($test,)+);
+        in_every_place!(bucket: Bucket, $($test,)+);
+    };
+    ($module:ident: $place:ident, $($test:ident,)+) => {
+        mod $module {
+            $(#[tokio::test]
+            async fn $test() {
+                super::$test::<super::$place>().await;
+            })+
+        }
+    };
+}
+
+in_every_place! {
+    the_name_is_the_blake3_hash_of_the_content,
+    the_same_content_is_stored_once_and_never_rewritten,
+    a_range_is_cut_from_the_content,
+    what_is_damaged_is_replaced_when_it_is_written_again,
+    a_file_is_the_blob_of_its_bytes,
+    no_range_of_a_damaged_blob_is_handed_out,
 }

@@ -2,7 +2,8 @@
 
 use drillsweep_store::StoreError;
 
-use crate::bench::{Engine, claim, finish, object_name, submit, sweep};
+use crate::bench::{Engine, claim, finish, submit, sweep};
+use crate::place::object_name;
 
 pub(crate) async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named<E: Engine>() {
     let engine = E::new();

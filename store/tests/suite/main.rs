@@ -2,21 +2,14 @@
 //! store with a later clock.
 //!
 //! The tests know an engine by the trait [`bench::Engine`] alone. `conformance!` runs all of them for one engine, in that
-//! engine's module; a test that it does not list is a function that nobody calls, which the lints refuse.
+//! engine's module; a test that it does not list is a function that nobody calls, which the lints refuse. What concerns blobs alone
+//! knows a place for objects by the trait [`place::Place`].
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 macro_rules! conformance {
     ($engine:ident) => {
         conformance! { $engine:
-            blobs {
-                the_name_is_the_blake3_hash_of_the_content,
-                the_same_content_is_stored_once_and_never_rewritten,
-                a_range_is_cut_from_the_content,
-                what_is_damaged_is_replaced_when_it_is_written_again,
-                a_file_is_the_blob_of_its_bytes,
-                no_range_of_a_damaged_blob_is_handed_out,
-            }
             cancel {
                 queued_points_end_at_once_and_running_ones_at_their_next_renewal,
                 work_that_another_live_sweep_wants_goes_on,
@@ -157,16 +150,18 @@ macro_rules! conformance {
 
 mod bench;
 mod blobs;
+mod bucket;
 mod cancel;
 mod check;
 mod concurrency;
 mod control;
 mod counts;
-mod directory;
 mod failure;
 mod fairness;
+mod faults;
 mod large;
 mod lease;
+mod place;
 mod postgres;
 mod probe;
 mod repair;

@@ -1,63 +1,53 @@
 //! The engine for many machines: a PostgreSQL server, and a directory of objects.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
 use sqlx::postgres::PgPool;
 use tempfile::TempDir;
 
-use crate::bench::{Engine, Object};
-use crate::directory;
+use crate::bench::Engine;
+use crate::place::{Directory, Object, Place};
 use crate::servers::postgres::Server;
 
-/// A server with nothing in it.
-struct Postgres {
+/// A server with nothing in it, and a place for the objects.
+pub(crate) struct Postgres<P = Directory> {
     server: Server,
     temporary: TempDir,
+    place: P,
 }
 
-impl Postgres {
-    fn blobs(&self) -> PathBuf {
-        self.temporary.path().join("blobs")
-    }
-
+impl<P> Postgres<P> {
     /// The database past the store.
     async fn database(&self) -> PgPool {
         PgPool::connect(&self.server.url()).await.unwrap()
     }
 }
 
-impl Engine for Postgres {
+impl<P: Place> Engine for Postgres<P> {
     fn new() -> Self {
-        Postgres { server: Server::start(), temporary: TempDir::new().unwrap() }
+        Postgres { server: Server::start(), temporary: TempDir::new().unwrap(), place: P::new() }
     }
 
     fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig {
         let mut config = StoreConfig::in_directory(self.temporary.path(), role);
         config.database = self.server.url().parse().unwrap();
+        config.objects = self.place.location();
         config.clock_offset_ms = clock_offset_ms;
         config
     }
 
     fn objects(&self) -> Vec<Object> {
-        directory::objects(&self.blobs())
+        self.place.objects()
     }
 
     fn write_object(&self, name: &str, content: &[u8]) {
-        directory::write_object(&self.blobs(), name, content);
+        self.place.write_object(name, content);
     }
 
     fn delete_object(&self, name: &str) {
-        directory::delete_object(&self.blobs(), name);
-    }
-
-    fn abandon_upload(&self, content: &[u8]) {
-        directory::abandon_upload(&self.blobs(), content);
-    }
-
-    fn refuse_scratch_objects(&self) {
-        directory::refuse_scratch_objects(&self.blobs());
+        self.place.delete_object(name);
     }
 
     fn database_holds(&self, bytes: &[u8]) -> bool {
@@ -85,7 +75,7 @@ async fn insert_work(database: &PgPool, key: &str, state: &str) -> sqlx::Result<
 
 #[tokio::test]
 async fn the_schema_has_the_states_stages_and_transitions_of_work() {
-    let engine = Postgres::new();
+    let engine = <Postgres>::new();
     engine.open().await.close().await;
     let database = engine.database().await;
     for other in ["", "running", "Queued"] {
@@ -123,7 +113,7 @@ async fn a_database_with_another_schema_is_refused() {
         "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)
          VALUES (999, 'of a later build', true, '', 0)",
     ] {
-        let engine = Postgres::new();
+        let engine = <Postgres>::new();
         engine.open().await.close().await;
         engine.open().await.close().await;
         sqlx::query(change).execute(&engine.database().await).await.unwrap();
@@ -137,7 +127,7 @@ type Columns = Vec<(String, String, bool)>;
 
 #[tokio::test]
 async fn both_engines_have_the_same_tables_columns_and_indexes() {
-    let engine = Postgres::new();
+    let engine = <Postgres>::new();
     engine.open().await.close().await;
     let postgres = engine.database().await;
     let file = TempDir::new().unwrap();

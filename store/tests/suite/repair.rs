@@ -3,9 +3,9 @@
 use drillsweep_store::{BlobId, Claim, Repair, RepairReport, Store, WorkState};
 
 use crate::bench::{
-    Engine, PHYSICS, claim, claim_or_none, finish, key, object_name, point_record, states, submit, sweep,
-    sweep_record,
+    Engine, PHYSICS, claim, claim_or_none, finish, key, point_record, states, submit, sweep, sweep_record,
 };
+use crate::place::object_name;
 
 /// The blob of the only table of [`finish`], damaged after the work item was done.
 async fn damaged<E: Engine>(engine: &E, store: &Store, number: u32) -> BlobId {

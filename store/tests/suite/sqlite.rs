@@ -1,4 +1,4 @@
-//! The embedded engine: a SQLite file and a directory of objects.
+//! The embedded engine: a SQLite file.
 
 use std::path::PathBuf;
 
@@ -6,53 +6,43 @@ use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use tempfile::TempDir;
 
-use crate::bench::{Engine, Object};
-use crate::directory;
+use crate::bench::Engine;
+use crate::place::{Directory, Object, Place};
 
-/// A directory that does not exist yet, in a temporary one.
-struct Sqlite {
+/// A SQLite file in a directory that does not exist yet, and a place for the objects.
+pub(crate) struct Sqlite<P = Directory> {
     temporary: TempDir,
+    place: P,
 }
 
-impl Sqlite {
+impl<P> Sqlite<P> {
     fn directory(&self) -> PathBuf {
         self.temporary.path().join("data")
     }
-
-    fn blobs(&self) -> PathBuf {
-        self.directory().join("blobs")
-    }
 }
 
-impl Engine for Sqlite {
+impl<P: Place> Engine for Sqlite<P> {
     fn new() -> Self {
-        Sqlite { temporary: TempDir::new().unwrap() }
+        Sqlite { temporary: TempDir::new().unwrap(), place: P::new() }
     }
 
     fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig {
-        let mut config = StoreConfig::in_directory(&self.directory(), role);
+        let mut config =
+            StoreConfig::in_directory(&self.directory(), role).with_objects(self.place.location());
         config.clock_offset_ms = clock_offset_ms;
         config
     }
 
     fn objects(&self) -> Vec<Object> {
-        directory::objects(&self.blobs())
+        self.place.objects()
     }
 
     fn write_object(&self, name: &str, content: &[u8]) {
-        directory::write_object(&self.blobs(), name, content);
+        self.place.write_object(name, content);
     }
 
     fn delete_object(&self, name: &str) {
-        directory::delete_object(&self.blobs(), name);
-    }
-
-    fn abandon_upload(&self, content: &[u8]) {
-        directory::abandon_upload(&self.blobs(), content);
-    }
-
-    fn refuse_scratch_objects(&self) {
-        directory::refuse_scratch_objects(&self.blobs());
+        self.place.delete_object(name);
     }
 
     fn database_holds(&self, bytes: &[u8]) -> bool {
@@ -78,7 +68,7 @@ async fn insert_work(database: &SqlitePool, key: &str, state: &str) -> sqlx::Res
 
 #[tokio::test]
 async fn the_schema_has_the_states_stages_and_transitions_of_work() {
-    let engine = Sqlite::new();
+    let engine = Sqlite::<Directory>::new();
     engine.open().await.close().await;
     let database = database(&engine).await;
     for other in ["", "running", "Queued"] {
@@ -116,7 +106,7 @@ async fn a_database_with_another_schema_is_refused() {
         "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)
          VALUES (999, 'of a later build', true, zeroblob(48), 0)",
     ] {
-        let engine = Sqlite::new();
+        let engine = Sqlite::<Directory>::new();
         engine.open().await.close().await;
         engine.open().await.close().await;
         sqlx::query(change).execute(&database(&engine).await).await.unwrap();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
-use drillsweep_store::{DatabaseLocation, Role, StoreConfig};
+use drillsweep_store::{DatabaseLocation, ObjectsLocation, Role, StoreConfig};
 use rustix::fs::Mode;
 use tokio::process::Command;
 
@@ -18,6 +18,11 @@ pub(crate) struct DataArguments {
     /// `drillsweep.sqlite` in the data directory unless given.
     #[arg(long, env = "DRILLSWEEP_DATABASE", hide_env_values = true)]
     database: Option<DatabaseLocation>,
+    /// Object store, for the tables of results: `s3://BUCKET/PREFIX`, with credentials and endpoint from the environment
+    /// (AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT_URL, AWS_ALLOW_HTTP), or a directory; `blobs` in the data
+    /// directory unless given.
+    #[arg(long, env = "DRILLSWEEP_OBJECTS")]
+    objects: Option<ObjectsLocation>,
     /// File with the password for the PostgreSQL database.
     #[arg(long, env = "DRILLSWEEP_DATABASE_PASSWORD_FILE")]
     database_password_file: Option<PathBuf>,
@@ -30,6 +35,9 @@ impl DataArguments {
         let mut config = StoreConfig::in_directory(&self.data, role);
         if let Some(database) = &self.database {
             config.database = database.clone();
+        }
+        if let Some(objects) = &self.objects {
+            config.objects = objects.clone();
         }
         if let Some(path) = &self.database_password_file {
             let password = std::fs::read_to_string(path)
@@ -61,6 +69,9 @@ impl DataArguments {
         command.arg("--data").arg(&self.data);
         if let Some(database) = &self.database {
             command.env("DRILLSWEEP_DATABASE", database.with_secrets());
+        }
+        if let Some(objects) = &self.objects {
+            command.arg("--objects").arg(objects.to_string());
         }
         if let Some(path) = &self.database_password_file {
             command.arg("--database-password-file").arg(path);

@@ -315,6 +315,29 @@ CREATE TRIGGER work_changes_state AFTER UPDATE OF state, cancel_requested ON wor
 WHEN (NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled)
 EXECUTE FUNCTION tell_the_sweeps();
 
+-- Those who wait are told of changes when they are committed, once for each transaction (store/src/wake.rs).
+CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    NOTIFY drillsweep_work;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER work_is_inserted AFTER INSERT ON work FOR EACH STATEMENT EXECUTE FUNCTION tell_of_work();
+
+CREATE TRIGGER work_is_queued AFTER UPDATE OF state, held ON work FOR EACH ROW
+WHEN (NEW.state = 'queued' AND NOT NEW.held AND (OLD.state <> 'queued' OR OLD.held))
+EXECUTE FUNCTION tell_of_work();
+
+CREATE FUNCTION tell_of_sweeps() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    NOTIFY drillsweep_sweeps;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER sweep_changes AFTER UPDATE OF version ON sweep FOR EACH STATEMENT EXECUTE FUNCTION tell_of_sweeps();
+
 -- What came of it.
 
 CREATE TABLE result (
@@ -349,6 +372,19 @@ CREATE TABLE artifact (
 );
 
 CREATE INDEX artifact_by_blob ON artifact (blob);
+
+-- Blobs that are being written, or found to be there, for a row to come: they are not deleted before it is there. A row stays until it
+-- has run out, for another worker may have reserved the same blob.
+CREATE TABLE upload (
+    blob    TEXT COLLATE "C" NOT NULL PRIMARY KEY,
+    expires BIGINT NOT NULL
+);
+
+-- Blobs that are being deleted: nobody reserves one meanwhile.
+CREATE TABLE removal (
+    blob    TEXT COLLATE "C" NOT NULL PRIMARY KEY,
+    expires BIGINT NOT NULL
+);
 
 -- Who computes, and who may ask.
 

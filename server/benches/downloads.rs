@@ -128,7 +128,7 @@ async fn finished(store: &Store) -> String {
             media_type: "application/vnd.apache.parquet".to_owned(),
             bytes: bytes.len().try_into().expect("small"),
             row_count: table.rows().try_into().expect("few"),
-            blob: store.blobs().put(bytes).await.expect("stored"),
+            blob: store.put_blob(bytes).await.expect("stored"),
         });
     }
     let result =

@@ -64,7 +64,7 @@ fn sweep_of(number: i64, points: i64) -> NewSweep {
 fn claim_renew_finish(bencher: Bencher, role: Role) {
     let queue = queue(role);
     queue.runtime.block_on(queue.store.submit_sweep(&sweep(1))).expect("submitted");
-    let blob = queue.runtime.block_on(queue.store.blobs().put(b"history".to_vec())).expect("written");
+    let blob = queue.runtime.block_on(queue.store.put_blob(b"history".to_vec())).expect("written");
     let artifacts = ["profile", "statics", "history", "contacts", "energy"].map(|name| NewArtifact {
         name: name.to_owned(),
         media_type: "application/vnd.apache.parquet".to_owned(),

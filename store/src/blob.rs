@@ -281,15 +281,6 @@ impl BlobStore {
         }
     }
 
-    /// Whether a blob is there.
-    pub(crate) async fn contains(&self, id: BlobId) -> Result<bool> {
-        match self.backend.objects.head(&id.path()).await {
-            Ok(_) => Ok(true),
-            Err(object_store::Error::NotFound { .. }) => Ok(false),
-            Err(error) => Err(error.into()),
-        }
-    }
-
     /// Blobs and scratch objects that were written before a time \[ms since the epoch\]. Files of others are not among
     /// them.
     pub(crate) async fn objects_before(&self, cutoff: i64) -> Result<Vec<StoredObject>> {

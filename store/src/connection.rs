@@ -7,6 +7,7 @@ use crate::database::{Database, DatabaseLocation, Transaction, postgres, sqlite}
 use crate::error::Result;
 use crate::query::query;
 use crate::sql;
+use crate::wake::Listening;
 
 /// Where the store lies and who opens it.
 #[derive(Debug, Clone)]
@@ -62,6 +63,7 @@ pub struct Store {
     pub(crate) database: Database,
     /// The file of the embedded engine.
     pub(crate) database_path: Option<PathBuf>,
+    pub(crate) listening: Listening,
     blobs: BlobStore,
 }
 
@@ -97,7 +99,12 @@ impl Store {
             DatabaseLocation::Sqlite(path) => Some(path.clone()),
             DatabaseLocation::Postgres(_) => None,
         };
-        Ok(Self { database, database_path, blobs: BlobStore::open(&config.objects)? })
+        Ok(Self {
+            database,
+            database_path,
+            listening: Listening::default(),
+            blobs: BlobStore::open(&config.objects)?,
+        })
     }
 
     /// The object store.
@@ -107,6 +114,7 @@ impl Store {
 
     /// Closes all connections; a write-ahead log is folded in.
     pub async fn close(&self) {
+        self.listening.stop().await;
         self.database.close().await;
     }
 

@@ -26,7 +26,9 @@ mod state;
 mod submit;
 mod sweep;
 mod token;
+mod upload;
 mod verification;
+mod wake;
 mod worker;
 
 pub use blob::{BlobId, BlobStore, LocationError, ObjectsLocation};
@@ -46,4 +48,5 @@ pub use submit::{Addition, AppendOutcome, CachePolicy, NewPoint, NewSweep, NewVe
 pub use sweep::{ChangeOutcome, DeleteOutcome, SweepChanges, SweepFilter, SweepRecord};
 pub use token::{NewToken, TokenRecord, TokenScope, TokenSecret, TokensPresent};
 pub use verification::VerificationRecord;
+pub use wake::Changes;
 pub use worker::WorkerRecord;

@@ -13,6 +13,7 @@ type File = (i64, &'static str, &'static str);
 const SQLITE: &[File] = &[
     (1, "schema", include_str!("../../migrations/sqlite/0001_schema.sql")),
     (2, "worker note", include_str!("../../migrations/sqlite/0002_worker_note.sql")),
+    (3, "uploads", include_str!("../../migrations/sqlite/0003_uploads.sql")),
 ];
 
 const POSTGRES: &[File] = &[(1, "schema", include_str!("../../migrations/postgres/0001_schema.sql"))];

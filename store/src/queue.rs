@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use crate::blob::BlobId;
 use crate::connection::Store;
 use crate::database::Transaction;
-use crate::error::{Result, StoreError};
+use crate::error::Result;
 use crate::point::ScenarioText;
 use crate::query::{Session, Statement, query};
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 use crate::submit::ROWS_AT_ONCE;
+use crate::upload::require_reserved;
 
 /// Deaths of workers after which a point is given up: a poison point must not kill a fleet.
 const CRASH_LIMIT: i64 = 3;
@@ -211,11 +212,8 @@ impl Store {
             .bind(now)
             .execute(&mut tx)
             .await?;
+        require_reserved(&mut tx, result.artifacts.iter().map(|artifact| artifact.blob)).await?;
         for artifact in result.artifacts {
-            // Under the lock that blobs are deleted under: it stays.
-            if !self.blobs().contains(artifact.blob).await? {
-                return Err(StoreError::BlobMissing(artifact.blob.to_string()));
-            }
             query(sql::queue::INSERT_ARTIFACT)
                 .bind(key)
                 .bind(&artifact.name)
@@ -267,7 +265,17 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn keep_checkpoint(&self, lease: &Lease, blob: BlobId) -> Result<bool> {
-        self.leave(sql::queue::KEEP_CHECKPOINT, lease, &blob.to_string()).await
+        let mut tx = self.write_one().await?;
+        require_reserved(&mut tx, [blob]).await?;
+        let changed = query(sql::queue::KEEP_CHECKPOINT)
+            .bind(lease.key.as_slice())
+            .bind(lease.fencing_token)
+            .bind(&lease.worker)
+            .bind(blob.to_string())
+            .execute(&mut tx)
+            .await?;
+        tx.commit().await?;
+        Ok(changed == 1)
     }
 
     /// Notes what is known of the worker of a lease, for those who look for the reason when it is heard of no more: what follows "the

@@ -1,11 +1,11 @@
 //! What is kept, for how long, and how its space comes back.
 //!
-//! Rows say what is wanted; blobs that no row names are deleted after a grace time. Every deletion and every row that
-//! names a blob happens under the database's write lock, and a result is stored only if its blobs are there: so a blob
-//! that a worker has just found to exist cannot vanish behind its back.
+//! Rows say what is wanted; blobs that no row names, and that nobody has reserved for a row to come, are deleted after a grace time. That a
+//! blob is about to be deleted is noted under the lock under which it is looked whether it may be; deleted it is after that, for an object
+//! store may be slow. Nobody reserves it meanwhile: so a blob that a worker has found to exist cannot vanish behind its back.
 
 use std::collections::{BTreeMap, HashSet};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -16,8 +16,14 @@ use crate::error::Result;
 use crate::query::query;
 use crate::sql;
 
-/// Blobs that are deleted under one hold of the write lock.
+/// Blobs that are looked up under one hold of the write lock.
 const BATCH: usize = 100;
+
+/// How long the note holds that blobs are being deleted \[ms\].
+const REMOVAL_MS: i64 = 600_000;
+
+/// How long a collector that has made such a note may delete: one that was stopped for longer deletes no more.
+const REMOVAL_TIME: Duration = Duration::from_millis(REMOVAL_MS as u64 / 2);
 
 /// How long an idempotency key holds \[ms\].
 const IDEMPOTENCY_MS: i64 = 24 * 3_600_000;
@@ -167,19 +173,33 @@ impl Store {
         self.write().await
     }
 
-    /// Deletes those of the objects that no row names now, under the lock that rows are written under.
+    /// Deletes those of the objects that no row names now, and that nobody has reserved for one.
     async fn delete_unnamed(&self, objects: &[StoredObject]) -> Result<Vec<StoredObject>> {
+        let began = Instant::now();
+        let mut unwanted = Vec::new();
         let mut tx = self.write().await?;
-        let mut deleted = Vec::new();
         for object in objects {
-            let is_named: bool =
-                query(sql::retention::IS_BLOB_IN_USE).bind(object.blob()).scalar(&mut tx).await?;
-            if !is_named {
-                self.blobs().delete(object).await?;
-                deleted.push(object.clone());
+            let Some(blob) = object.blob() else {
+                unwanted.push(object);
+                continue;
+            };
+            if !query(sql::retention::IS_BLOB_IN_USE).bind(&blob).scalar::<bool>(&mut tx).await? {
+                query(sql::retention::BEGIN_REMOVAL).bind(blob).bind(REMOVAL_MS).execute(&mut tx).await?;
+                unwanted.push(object);
             }
         }
-        tx.rollback().await?;
+        tx.commit().await?;
+        let mut deleted = Vec::new();
+        for object in unwanted {
+            if began.elapsed() > REMOVAL_TIME {
+                break;
+            }
+            self.blobs().delete(object).await?;
+            deleted.push(object.clone());
+            if let Some(blob) = object.blob() {
+                query(sql::retention::END_REMOVAL).bind(blob).execute(&self.database).await?;
+            }
+        }
         Ok(deleted)
     }
 }
@@ -229,6 +249,8 @@ async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i6
     ] {
         query(statement).bind(now - age).execute(&mut *tx).await?;
     }
+    query(sql::retention::DELETE_UPLOADS).execute(&mut *tx).await?;
+    query(sql::retention::DELETE_REMOVALS).execute(&mut *tx).await?;
     query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
     Ok(events)
 }

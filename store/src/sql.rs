@@ -130,15 +130,19 @@ statements! {
     }
     retention {
         ARTIFACT_NAMES = "artifact_names",
+        BEGIN_REMOVAL = "begin_removal",
         BLOBS_IN_USE = "blobs_in_use",
         DELETE_EVENTS = "delete_events",
         DELETE_IDEMPOTENCY_KEYS = "delete_idempotency_keys",
+        DELETE_REMOVALS = "delete_removals",
         DELETE_RESULTS = "delete_results",
         DELETE_SCENARIOS = "delete_scenarios",
         DELETE_SWEEPS = "delete_sweeps",
         DELETE_TURNS = "delete_turns",
+        DELETE_UPLOADS = "delete_uploads",
         DELETE_WORK = "delete_work",
         DELETE_WORKERS = "delete_workers",
+        END_REMOVAL = "end_removal",
         EXPIRE_ARTIFACTS = "expire_artifacts",
         IS_BLOB_IN_USE = "is_blob_in_use",
         TRUNCATE_LOG = "truncate_log",
@@ -203,6 +207,11 @@ statements! {
         TOUCH = "touch",
         VALID = "valid",
     }
+    upload {
+        BEING_REMOVED = "being_removed",
+        RESERVE = "reserve",
+        UNRESERVED = "unreserved",
+    }
     verification {
         LIST = "list",
     }
@@ -259,12 +268,15 @@ mod tests {
         ("check/without_result", "work"),
         ("retention/artifact_names", "artifact"),
         ("retention/blobs_in_use", "artifact"),
+        ("retention/blobs_in_use", "upload"),
         ("retention/blobs_in_use", "work"),
         ("retention/delete_events", "event"),
         ("retention/delete_idempotency_keys", "idempotency"),
+        ("retention/delete_removals", "removal"),
         ("retention/delete_results", "result"),
         ("retention/delete_scenarios", "scenario"),
         ("retention/delete_sweeps", "sweep"),
+        ("retention/delete_uploads", "upload"),
         ("retention/delete_work", "work"),
         ("retention/expire_artifacts", "result"),
         ("retention/is_blob_in_use", "work"),

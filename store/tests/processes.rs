@@ -86,7 +86,7 @@ async fn work(directory: &Path, clock: i64, name: &str) {
             media_type: "application/octet-stream".to_owned(),
             bytes: content.len() as i64,
             row_count: 1,
-            blob: store.blobs().put(content).await.unwrap(),
+            blob: store.put_blob(content).await.unwrap(),
         };
         if hang == "stored" && count == hang_at {
             hang_until_killed();

@@ -141,6 +141,7 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
     store.register_worker(&record).await?;
     keep_speed(&store, &record.host).await;
     let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease)?;
+    let mut changes = store.work_changes().await;
     tracing::info!(worker = %id, "worker ready");
     while !*stop.borrow() {
         let lease_ms = config.lease.as_millis() as i64;
@@ -157,7 +158,10 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
                 worker.work_on(claim, &mut stop).instrument(span).await;
             }
             Ok(None) if config.drain => break,
-            Ok(None) => idle(config.poll_interval, &mut stop).await,
+            Ok(None) => tokio::select! {
+                () = changes.wait(config.poll_interval) => {}
+                () = stopped(&mut stop) => {}
+            },
             Err(error) => {
                 tracing::warn!(%error, "no work can be claimed");
                 idle(config.poll_interval * 4, &mut stop).await;
@@ -187,15 +191,16 @@ fn stop_after(time: Duration, mut stop: watch::Receiver<bool>) -> watch::Receive
 }
 
 async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
-    // A closed channel means that nobody can ask for a stop any more; the pause holds all the same.
-    let stopped = async {
-        if stop.wait_for(|stop| *stop).await.is_err() {
-            std::future::pending::<()>().await;
-        }
-    };
     tokio::select! {
         () = tokio::time::sleep(time) => {}
-        () = stopped => {}
+        () = stopped(stop) => {}
+    }
+}
+
+/// Returns once a stop is asked for. A closed channel means that nobody can ask for one any more.
+async fn stopped(stop: &mut watch::Receiver<bool>) {
+    if stop.wait_for(|stop| *stop).await.is_err() {
+        std::future::pending::<()>().await;
     }
 }
 
@@ -216,12 +221,12 @@ impl Worker<'_> {
             Err(problem) => {
                 let error = ComputeError::Invalid(problem.to_string());
                 let ended = Ended::Computed(Err(error));
-                end(store, &lease, ended, StopReason::None, Halt::No).await;
+                end(store, &lease, config.lease, ended, StopReason::None, Halt::No).await;
                 return;
             }
         };
         if let Some(error) = too_large(&scenario) {
-            end(store, &lease, Ended::Computed(Err(error)), StopReason::None, Halt::No).await;
+            end(store, &lease, config.lease, Ended::Computed(Err(error)), StopReason::None, Halt::No).await;
             return;
         }
         let control = Arc::new(config.pace.map_or_else(Control::new, paced));
@@ -279,7 +284,9 @@ impl Worker<'_> {
             Ok(result) => Ended::Computed(result),
             Err(error) => Ended::Panicked(panic_text(error)),
         };
-        end(store, &lease, ended, verdict.get(), halt).instrument(tracing::info_span!("store")).await;
+        end(store, &lease, config.lease, ended, verdict.get(), halt)
+            .instrument(tracing::info_span!("store"))
+            .await;
         heartbeat.watch(None);
     }
 }
@@ -320,23 +327,36 @@ async fn read_suspended(store: &Store, blob: Option<BlobId>, scratch: &Path) -> 
         .ok()
 }
 
-/// Writes how a point ended. The store being out of reach is tried again until the lease must be gone.
-async fn end(store: &Store, lease: &Lease, mut ended: Ended, reason: StopReason, halt: Halt) {
-    const TRIES: u32 = 5;
-    for tries in 0..TRIES {
+/// Writes how a point ended. The store being out of reach is tried again for as long as the lease was renewed at the latest: after that
+/// the point is somebody else's.
+async fn end(
+    store: &Store,
+    lease: &Lease,
+    length: Duration,
+    mut ended: Ended,
+    reason: StopReason,
+    halt: Halt,
+) {
+    /// The longest wait between two tries.
+    const LONGEST: Duration = Duration::from_secs(4);
+    let deadline = Instant::now() + length;
+    let mut pause = Duration::from_millis(250);
+    loop {
         match write_end(store, lease, &mut ended, reason, halt).await {
             Ok(true) => return,
             Ok(false) => {
                 tracing::warn!("lease lost, result dropped");
                 return;
             }
-            Err(error) => {
-                tracing::warn!(%error, "the end of a point cannot be stored");
-                tokio::time::sleep(Duration::from_millis(250) * 2_u32.pow(tries)).await;
-            }
+            Err(error) => tracing::warn!(%error, "the end of a point cannot be stored"),
         }
+        if Instant::now() + pause > deadline {
+            // The lease runs out by itself, and the point is taken over.
+            return;
+        }
+        tokio::time::sleep(pause).await;
+        pause = LONGEST.min(2 * pause);
     }
-    // The lease runs out by itself, and the point is taken over.
 }
 
 async fn write_end(
@@ -361,6 +381,8 @@ async fn write_end(
                     };
                     store.finish_done(lease, &result).await
                 }
+                // The database, by which blobs are reserved: the whole is tried again.
+                Err(error @ StoreError::Database(_)) => Err(error),
                 Err(error) => {
                     tracing::warn!(%error, "artifacts cannot be written");
                     let error = PointError::new(FailureClass::Infrastructure, error.to_string());
@@ -428,7 +450,7 @@ async fn write_suspended(store: &Store, suspended: Option<&mut Suspended>) -> Op
     let suspended = suspended?;
     let write = async {
         let file = suspended.to_file().map_err(SuspendedError::from)?;
-        Ok::<_, KeepError>(store.blobs().put_file(file).await?.0)
+        Ok::<_, KeepError>(store.put_blob_file(file).await?.0)
     };
     write
         .await
@@ -453,7 +475,7 @@ enum KeepError {
 async fn upload(store: &Store, artifacts: &[EncodedArtifact]) -> Result<Vec<NewArtifact>, StoreError> {
     let mut stored = Vec::new();
     for EncodedArtifact { name, media_type, row_count, file } in artifacts {
-        let (blob, bytes) = store.blobs().put_file(file).await?;
+        let (blob, bytes) = store.put_blob_file(file).await?;
         stored.push(NewArtifact {
             name: (*name).to_owned(),
             media_type: (*media_type).to_owned(),

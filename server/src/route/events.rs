@@ -9,6 +9,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{PointEvent, Sweep};
+use drillsweep_store::Changes;
 use serde::Deserialize;
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
@@ -91,8 +92,10 @@ pub(crate) async fn follow(
     let Ok(permit) = app.streams.clone().try_acquire_owned() else {
         return Err(Error::unavailable("all event streams are in use"));
     };
+    let changes = app.store.sweep_changes().await;
     let follower = Follower {
         app,
+        changes,
         id,
         sequence,
         seen: None,
@@ -109,6 +112,7 @@ pub(crate) async fn follow(
 /// the next event when the client has taken the last: a slow client costs nothing but its place.
 struct Follower {
     app: App,
+    changes: Changes,
     id: String,
     /// The number of the last event that was sent.
     sequence: i64,
@@ -143,7 +147,7 @@ impl Follower {
             }
             if self.pending.is_empty() && !self.has_ended {
                 tokio::select! {
-                    () = tokio::time::sleep(self.app.config.poll_interval) => {}
+                    () = self.changes.wait(self.app.config.poll_interval) => {}
                     // An error means that the service is gone.
                     _ = stopping.wait_for(|stopping| *stopping) => return None,
                 }

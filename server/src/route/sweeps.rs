@@ -389,6 +389,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
     let start = Instant::now();
     let deadline = start + wait.min(Duration::from_secs(LIMITS.wait_seconds));
     let mut stopping = app.stopping.clone();
+    let mut changes = app.store.sweep_changes().await;
     let seen = |sweep: &Sweep| {
         let verification = sweep.verification.as_ref().map(|verification| verification.counts);
         (sweep.state, sweep.counts, verification, sweep.progress.to_bits())
@@ -400,7 +401,8 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
             break;
         }
         tokio::select! {
-            () = tokio::time::sleep_until((now + app.config.poll_interval).min(deadline)) => {}
+            () = changes.wait(app.config.poll_interval) => {}
+            () = tokio::time::sleep_until(deadline) => {}
             // An error means that the service is gone.
             _ = stopping.wait_for(|stopping| *stopping) => break,
         }

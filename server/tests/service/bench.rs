@@ -152,7 +152,7 @@ impl Bench {
                 media_type: "application/vnd.apache.parquet".to_owned(),
                 bytes: bytes.len().try_into().unwrap(),
                 row_count: table.rows().try_into().unwrap(),
-                blob: self.store.blobs().put(bytes).await.unwrap(),
+                blob: self.store.put_blob(bytes).await.unwrap(),
             });
         }
         let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual, "resolved_hz": 200.0});

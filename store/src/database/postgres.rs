@@ -26,14 +26,17 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
         ("lock_timeout", LOCK_TIMEOUT),
         ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
         ("default_transaction_isolation", "read committed"),
+        // Migrations tell of what is there already.
+        ("client_min_messages", "warning"),
     ]);
     if let Role::Worker = role {
         // What is lost with a crash of the server is computed again.
         options = options.options([("synchronous_commit", "off")]);
     }
+    // One of them listens for changes.
     let connections = match role {
         Role::Server => 16,
-        Role::Worker => 2,
+        Role::Worker => 3,
     };
     let pool = PgPoolOptions::new()
         .max_connections(connections)

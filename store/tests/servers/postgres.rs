@@ -1,9 +1,8 @@
 //! A PostgreSQL server of a test's own.
 
-use std::net::TcpListener;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -36,14 +35,22 @@ pub(crate) struct Server {
 impl Server {
     /// Makes a server and starts it.
     pub(crate) fn start() -> Self {
-        let directory = TempDir::new().unwrap();
+        let directory = TempDir::new().expect("a temporary directory");
         // The server's user is not the one that the directory belongs to.
-        run(Command::new("chmod").arg("0777").arg(directory.path()));
-        let mut server = Self { directory, process: None, port: free_port() };
-        run(program("initdb")
-            .args(["--auth=trust", "--username=drillsweep", "--encoding=UTF8", "--no-locale", "--no-sync"])
-            .args(["--wal-segsize=1", "--pgdata"])
-            .arg(server.data()));
+        super::run(Command::new("chmod").arg("0777").arg(directory.path()));
+        let mut server = Self { directory, process: None, port: super::free_ports::<1>()[0] };
+        super::run(
+            program("initdb")
+                .args([
+                    "--auth=trust",
+                    "--username=drillsweep",
+                    "--encoding=UTF8",
+                    "--no-locale",
+                    "--no-sync",
+                ])
+                .args(["--wal-segsize=1", "--pgdata"])
+                .arg(server.data()),
+        );
         server.resume();
         server
     }
@@ -85,20 +92,22 @@ impl Server {
             .create(true)
             .append(true)
             .open(self.directory.path().join("log"))
-            .unwrap();
-        self.process = Some(command.stdout(log.try_clone().unwrap()).stderr(log).spawn().unwrap());
+            .expect("a log file");
+        self.process = Some(
+            command.stdout(log.try_clone().expect("another handle")).stderr(log).spawn().expect("setpriv"),
+        );
     }
 
     fn end(&mut self, signal: &str) {
         if let Some(mut process) = self.process.take() {
-            run(Command::new("kill").arg(format!("-{signal}")).arg(process.id().to_string()));
-            process.wait().unwrap();
+            super::run(Command::new("kill").arg(format!("-{signal}")).arg(process.id().to_string()));
+            process.wait().expect("it ends");
         }
     }
 
     fn is_ready(&mut self) -> bool {
         // A server that was killed leaves processes behind for a moment, beside which another one does not start.
-        if self.process.as_mut().is_none_or(|process| process.try_wait().unwrap().is_some()) {
+        if self.process.as_mut().is_none_or(|process| process.try_wait().expect("its state").is_some()) {
             self.spawn();
         }
         program("pg_isready")
@@ -141,15 +150,4 @@ fn programs() -> PathBuf {
     latest.filter(|path| path.join("initdb").exists()).or_else(on_path).unwrap_or_else(|| {
         panic!("the tests need a PostgreSQL server: install one (Debian: postgresql), or name the directory of its programs in {PROGRAMS}")
     })
-}
-
-/// Runs a program to its end.
-fn run(command: &mut Command) {
-    let output = command.stdin(Stdio::null()).output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// A port that nobody listened on a moment ago.
-fn free_port() -> u16 {
-    TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
 }

@@ -148,7 +148,7 @@ pub(crate) async fn finish(store: &Store, claim: &Claim) -> bool {
     let artifact = NewArtifact {
         name: "history".to_owned(),
         media_type: "application/vnd.apache.parquet".to_owned(),
-        blob: store.blobs().put(claim.lease.key.to_vec()).await.unwrap(),
+        blob: store.put_blob(claim.lease.key.to_vec()).await.unwrap(),
         bytes: 32,
         row_count: 7,
     };

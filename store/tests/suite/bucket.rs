@@ -18,6 +18,7 @@ conformance! { InBucket:
     }
     retention {
         a_blob_that_no_row_names_goes_after_its_grace,
+                a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
         an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
         no_row_names_a_blob_that_is_gone,
     }

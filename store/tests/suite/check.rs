@@ -14,7 +14,7 @@ pub(crate) async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named<E
         let claim = claim(&store, "w").await;
         assert!(finish(&store, &claim).await);
         contents.push(claim.lease.key);
-        blobs.push(store.blobs().put(claim.lease.key.to_vec()).await.unwrap().to_string());
+        blobs.push(store.put_blob(claim.lease.key.to_vec()).await.unwrap().to_string());
     }
     let report = store.check().await.unwrap();
     assert_eq!((report.results, report.blobs, report.bytes), (3, 3, 96));

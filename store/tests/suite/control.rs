@@ -223,7 +223,7 @@ async fn finish_with(store: &Store, worker: &str, summary: &str, history: &[u8],
     let artifact = NewArtifact {
         name: "history".to_owned(),
         media_type: "application/octet-stream".to_owned(),
-        blob: store.blobs().put(history.to_vec()).await.unwrap(),
+        blob: store.put_blob(history.to_vec()).await.unwrap(),
         bytes: history.len() as i64,
         row_count: 1,
     };
@@ -339,7 +339,7 @@ pub(crate) async fn a_refresh_begins_at_the_beginning<E: Engine>() {
     let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
     let running = claim(&store, "first").await;
-    let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
+    let blob = store.put_blob(b"half of it".to_vec()).await.unwrap();
     assert!(store.keep_checkpoint(&running.lease, blob).await.unwrap());
     assert!(store.finish_failed(&running.lease, "{}").await.unwrap());
     submit(&store, &refresh("new")).await;

@@ -72,7 +72,7 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
         assert!(!store.finish_cancelled(&late.lease, "{}").await.unwrap());
         assert!(!store.release(&late.lease).await.unwrap());
         assert!(!store.crashed(&late.lease, "{}").await.unwrap());
-        let blob = store.blobs().put(b"late".to_vec()).await.unwrap();
+        let blob = store.put_blob(b"late".to_vec()).await.unwrap();
         assert!(!store.keep_checkpoint(&late.lease, blob).await.unwrap());
         assert!(!store.retry_later(&late.lease, "{}").await.unwrap());
         assert_eq!(store.sweep_version("s").await.unwrap(), version);
@@ -254,7 +254,7 @@ pub(crate) async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_don
     submit(&store, &sweep("s", [1])).await;
     let first = claim(&store, "first").await;
     assert_eq!(first.checkpoint, None);
-    let blob = store.blobs().put(b"half of it".to_vec()).await.unwrap();
+    let blob = store.put_blob(b"half of it".to_vec()).await.unwrap();
     assert!(store.keep_checkpoint(&first.lease, blob).await.unwrap());
     assert!(store.release(&first.lease).await.unwrap());
     assert_eq!(point_record(&store, "s", 1).await.attempts, 0);

@@ -103,6 +103,7 @@ macro_rules! conformance {
             }
             retention {
                 a_blob_that_no_row_names_goes_after_its_grace,
+                a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
                 what_a_killed_upload_left_goes_too_and_strange_files_stay,
                 an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
                 a_sweep_goes_at_its_time_and_leaves_what_others_have,

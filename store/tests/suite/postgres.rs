@@ -7,7 +7,7 @@ use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
 use sqlx::postgres::PgPool;
 use tempfile::TempDir;
 
-use crate::bench::Engine;
+use crate::bench::{Engine, claim, submit, sweep};
 use crate::place::{Directory, Object, Place};
 use crate::servers::postgres::Server;
 
@@ -120,6 +120,26 @@ async fn a_database_with_another_schema_is_refused() {
         let opened = Store::open(&engine.config(Role::Worker, 0)).await;
         assert!(matches!(opened, Err(StoreError::Migration(_))), "{change}");
     }
+}
+
+#[tokio::test]
+async fn who_waits_hears_of_work_and_of_changes_that_another_process_makes() {
+    let engine = <Postgres>::new();
+    let (waiting, other) = (engine.open().await, engine.open().await);
+    let (mut work, mut sweeps) = (waiting.work_changes().await, waiting.sweep_changes().await);
+    // Nobody looks by himself within this time: what ends the wait is that somebody tells.
+    let look = std::time::Duration::from_secs(36_000);
+    let mut heard = Box::pin(async { tokio::join!(work.wait(look), sweeps.wait(look)) });
+    let mut number = 0;
+    // Again and again, for it takes a moment until somebody listens.
+    while tokio::time::timeout(std::time::Duration::from_millis(100), &mut heard).await.is_err() {
+        number += 1;
+        assert!(number < 300, "nobody heard of anything");
+        submit(&other, &sweep(&format!("s{number}"), [number])).await;
+        claim(&other, "w").await;
+    }
+    drop(heard);
+    waiting.close().await;
 }
 
 /// A table's columns: name, type, whether it may be absent.

@@ -42,12 +42,27 @@ pub(crate) async fn a_blob_that_no_row_names_goes_after_its_grace<E: Engine>() {
     submit(&store, &sweep("s", [1])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
     let named = engine.bytes_of_objects();
-    let orphan = store.blobs().put(vec![7; 1_000]).await.unwrap();
+    let orphan = store.put_blob(vec![7; 1_000]).await.unwrap();
     assert_eq!(collect(&engine.after(DAY_MS / 2).await).await, Garbage::default());
     let found = collect(&engine.after(DAY_MS + 60_000).await).await;
     assert_eq!(found, Garbage { blobs: 1, blob_bytes: 1_000, ..Garbage::default() });
     assert!(store.blobs().get(orphan).await.is_err());
     assert_eq!(engine.bytes_of_objects(), named);
+}
+
+pub(crate) async fn a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour<E: Engine>() {
+    const HOUR_MS: i64 = 3_600_000;
+    let engine = E::new();
+    let blob = engine.open().await.put_blob(vec![7; 1_000]).await.unwrap();
+    // Two days later it is garbage; but another worker has the same to store, and finds it there.
+    let later = engine.after(2 * DAY_MS).await;
+    assert_eq!(later.put_blob(vec![7; 1_000]).await.unwrap(), blob);
+    assert_eq!(collect(&engine.after(2 * DAY_MS + HOUR_MS - 60_000).await).await, Garbage::default());
+    let found = collect(&engine.after(2 * DAY_MS + HOUR_MS + 60_000).await).await;
+    assert_eq!(found, Garbage { blobs: 1, blob_bytes: 1_000, ..Garbage::default() });
+    // What has been deleted can be written again.
+    let blob = later.put_blob(vec![7; 1_000]).await.unwrap();
+    assert_eq!(later.blobs().get(blob).await.unwrap().len(), 1_000);
 }
 
 pub(crate) async fn what_a_killed_upload_left_goes_too_and_strange_files_stay<E: Engine>() {
@@ -164,7 +179,7 @@ pub(crate) async fn no_row_names_a_blob_that_is_gone<E: Engine>() {
     submit(&store, &sweep("s", [1])).await;
     // The worker finds the blob of an earlier result, and the collector takes it before the row is written.
     let claim = claim(&store, "w").await;
-    let blob = store.blobs().put(claim.lease.key.to_vec()).await.unwrap();
+    let blob = store.put_blob(claim.lease.key.to_vec()).await.unwrap();
     assert_eq!(engine.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap().blobs, 1);
     let artifact = drillsweep_store::NewArtifact {
         name: "history".to_owned(),

@@ -1,0 +1,112 @@
+//! Blobs for rows to come.
+//!
+//! A blob is written before the row that names it, and no lock is held while it is: an object store may be slow, and everybody would wait
+//! for it. Instead the blob is reserved, for an hour. The collector deletes what no row names and nobody has reserved, and notes that it
+//! is about to; whoever wants to reserve such a blob waits until it is gone, and writes it again.
+
+use std::fs::File;
+use std::os::unix::fs::FileExt as _;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::blob::BlobId;
+use crate::connection::Store;
+use crate::database::Transaction;
+use crate::error::{Result, StoreError};
+use crate::query::query;
+use crate::sql;
+
+/// How long a reservation holds \[ms\]: from before a blob is written until the row that names it is stored.
+const RESERVED_MS: i64 = 3_600_000;
+
+/// How often it is looked whether a blob has been deleted.
+const POLL: Duration = Duration::from_millis(50);
+
+impl Store {
+    /// Writes a blob for a result or a checkpoint that is about to be stored, as [`BlobStore::put`](crate::BlobStore::put) does. It is
+    /// kept for an hour, and from then on as long as a row names it.
+    ///
+    /// # Errors
+    /// When the database or the object store fails.
+    pub async fn put_blob(&self, bytes: Vec<u8>) -> Result<BlobId> {
+        self.reserve(BlobId::of(&bytes)).await?;
+        self.blobs().put(bytes).await
+    }
+
+    /// The same of a file; a large one is never in memory as a whole. Gives its size \[bytes\], too.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or the database or the object store fails.
+    pub async fn put_blob_file(&self, file: &File) -> Result<(BlobId, u64)> {
+        let file = file.try_clone().map_err(StoreError::LocalFile)?;
+        let hashed = tokio::task::spawn_blocking(move || hash(&file).map(|hash| (file, hash))).await;
+        let (file, id) = hashed.map_err(std::io::Error::other).flatten().map_err(StoreError::LocalFile)?;
+        self.reserve(id).await?;
+        self.blobs().put_file(&file).await
+    }
+
+    /// Reserves a blob, once nobody is deleting it.
+    async fn reserve(&self, blob: BlobId) -> Result<()> {
+        loop {
+            let mut tx = self.write_one().await?;
+            let name = blob.to_string();
+            if !query(sql::upload::BEING_REMOVED).bind(&name).scalar::<bool>(&mut tx).await? {
+                query(sql::upload::RESERVE).bind(&name).bind(RESERVED_MS).execute(&mut tx).await?;
+                return tx.commit().await;
+            }
+            tx.rollback().await?;
+            // Until the note of it runs out, if whoever was deleting it has died.
+            tokio::time::sleep(POLL).await;
+        }
+    }
+}
+
+/// Fails unless all of these blobs are reserved, and so are there, until the end of the transaction.
+pub(crate) async fn require_reserved(
+    tx: &mut Transaction,
+    blobs: impl IntoIterator<Item = BlobId>,
+) -> Result<()> {
+    let names: Value = blobs.into_iter().map(|blob| blob.to_string()).collect();
+    let missing: Vec<String> =
+        query(sql::upload::UNRESERVED).bind(names.to_string()).scalars(&mut *tx).await?;
+    match missing.into_iter().next() {
+        Some(blob) => Err(StoreError::BlobMissing(blob)),
+        None => Ok(()),
+    }
+}
+
+/// The name of a file's content, whatever the file's own position is; that stays as it is.
+fn hash(file: &File) -> std::io::Result<BlobId> {
+    let mut hasher = blake3::Hasher::new();
+    let mut part = vec![0; 1 << 20];
+    loop {
+        match file.read_at(&mut part, hasher.count())? {
+            0 => return Ok(hasher.finalize().into()),
+            read => {
+                hasher.update(&part[..read]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connection::{Role, StoreConfig};
+
+    #[tokio::test]
+    async fn who_wants_a_blob_that_is_being_deleted_waits_and_writes_it_again() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Worker)).await.unwrap();
+        let blob = BlobId::of(b"history");
+        let note = query(sql::retention::BEGIN_REMOVAL).bind(blob.to_string()).bind(600_000);
+        note.execute(&store.database).await.unwrap();
+        let mut writing = Box::pin(store.put_blob(b"history".to_vec()));
+        assert!(tokio::time::timeout(4 * POLL, &mut writing).await.is_err(), "it may vanish at any time");
+        let end = query(sql::retention::END_REMOVAL).bind(blob.to_string());
+        end.execute(&store.database).await.unwrap();
+        assert_eq!(writing.await.unwrap(), blob);
+        assert!(store.blobs().get(blob).await.is_ok());
+    }
+}

@@ -80,7 +80,7 @@ impl From<StoreError> for Error {
                 tracing::error!(%error, "the disk is full");
                 Error::new(ProblemKind::StorageFull, "the service's disk is full; nothing was stored")
             }
-            error if error.is_busy() => Error::unavailable(&error),
+            error if error.is_busy() || error.is_unavailable() => Error::unavailable(&error),
             error => Error::internal(&error),
         }
     }

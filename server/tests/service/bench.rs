@@ -9,7 +9,7 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use axum::response::Response;
 use drillsweep_server::{Config, router};
-use drillsweep_store::{Claim, NewArtifact, NewResult, Role, Store, StoreConfig};
+use drillsweep_store::{Claim, NewArtifact, NewResult, ObjectsLocation, Role, Store, StoreConfig};
 use drillsweep_table::{Column, Table, parquet};
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
@@ -70,6 +70,25 @@ impl Bench {
     /// Serves the same store by another configuration.
     pub(crate) fn reconfigure(&mut self, config: Config) {
         self.routes = router(self.store.clone(), config, self.stop.subscribe());
+    }
+
+    /// From now on the blobs are in a bucket of a service that does not run.
+    pub(crate) async fn lose_object_store(&mut self) {
+        // No service has this port.
+        let settings = [
+            ("endpoint", "http://127.0.0.1:1"),
+            ("allow_http", "true"),
+            ("access_key_id", "tests"),
+            ("secret_access_key", "tests"),
+        ];
+        let objects = ObjectsLocation::S3 {
+            bucket: "tests".to_owned(),
+            prefix: String::new(),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_owned())).into(),
+        };
+        let config = StoreConfig::in_directory(self.directory.path(), Role::Server).with_objects(objects);
+        self.store = Store::open(&config).await.unwrap();
+        self.reconfigure(Config::default());
     }
 
     pub(crate) async fn send(&self, request: Request<Body>) -> Answer {

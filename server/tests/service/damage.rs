@@ -56,6 +56,17 @@ async fn a_reader_of_a_damaged_table_has_it_computed_again() {
 }
 
 #[tokio::test]
+async fn a_table_on_an_object_store_that_does_not_answer_is_not_damaged() {
+    let mut bench = Bench::new().await;
+    let path = finished(&bench).await;
+    bench.lose_object_store().await;
+    let answer = bench.get(&format!("{path}/points/1/artifacts/history")).await;
+    answer.problem(503, "unavailable");
+    assert_eq!(answer.headers["retry-after"], "1");
+    assert_eq!(bench.get(&path).await.json()["counts"]["succeeded"], 2, "nothing is computed again");
+}
+
+#[tokio::test]
 async fn no_range_of_a_damaged_file_is_served() {
     let bench = Bench::new().await;
     let path = finished(&bench).await;

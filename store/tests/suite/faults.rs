@@ -136,6 +136,19 @@ async fn what_an_overloaded_server_refuses_is_asked_again() {
     assert_unavailable(read.expect("within its patience"));
 }
 
+#[tokio::test]
+async fn a_server_that_says_nothing_is_not_waited_for_forever() {
+    let server = Seaweed::shared();
+    let proxy = Proxy::before(&server.address());
+    let blobs = open(server, &proxy);
+    let id = blobs.put(b"profile".to_vec()).await.unwrap();
+    proxy.set(Behaviour::StallAfter(0));
+    let read = tokio::time::timeout(Duration::from_secs(40), blobs.get(id)).await;
+    assert_unavailable(read.expect("within its patience"));
+    proxy.set(Behaviour::Pass);
+    assert_eq!(blobs.get(id).await.unwrap(), b"profile".as_slice());
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn what_was_written_is_known_though_the_answer_was_lost() {
     let server = Seaweed::shared();

@@ -79,14 +79,15 @@ pub fn profile(
     Ok(plot.drawing())
 }
 
-/// The columns of a history that its picture shows, out of its `layout`: the time, and u and v and the rate of twist of the lowest node, or
-/// the `fields` that are given.
+/// The columns of a history that its picture shows, out of its `layout`: the time, and u and v, and rotation speed and torque of the lowest
+/// node, or the `fields` that are given.
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them.
 pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, Box<ProblemDetails>> {
-    let twist = rate_of_twist(layout).filter(|_| fields.is_none());
-    let lines = lines_of_history(layout, fields).into_iter().chain(twist);
+    let rotation =
+        ROTATION.iter().filter(|_| fields.is_none()).filter_map(|quantity| lowest(layout, quantity));
+    let lines = lines_of_history(layout, fields).into_iter().chain(rotation);
     let mut names: Vec<String> = lines.map(str::to_owned).collect();
     names.push(TIME.name.to_owned());
     layout.select(&names).map_err(|missing| Box::new(ProblemDetails::no_such_column(layout, &missing)))
@@ -103,8 +104,8 @@ pub struct Place {
     pub low_side: Option<f64>,
 }
 
-/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, the rate
-/// of twist of the lowest node stands below. The legend says of each line where its node lies and which way the motion goes, for
+/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, the
+/// rotation speed and the torque of the lowest node stand below. The legend says of each line where its node lies and which way the motion goes, for
 /// nodes that are among the `places`.
 ///
 /// # Errors
@@ -118,22 +119,29 @@ pub fn history(
     let names = lines_of_history(table, fields);
     let shown = Shown::of(table, &names)?;
     let y_label = shown.label();
-    let lateral = over_time(table, shown, &y_label, places, [title, &node_of(table)])?;
-    match twisting(table).filter(|_| fields.is_none()) {
-        None => Ok(lateral),
-        Some(name) => {
-            // As drillers read it.
-            let unit = units::ANGULAR_SPEED.field;
-            let shown = Shown::within(table, &[name], Some(unit))?;
-            let y_label = format!("{RATE_OF_TWIST} [{}]", unit.symbol);
-            let subtitle = "on top of the rotation imposed at the top";
-            Ok(lateral.above(over_time(table, shown, &y_label, places, ["", subtitle])?))
-        }
+    let mut drawing = over_time(table, shown, &y_label, places, [title, &node_of(table)])?;
+    if fields.is_some() {
+        return Ok(drawing);
     }
+    for quantity in ROTATION {
+        let Some(name) = lowest(table, quantity).filter(|name| varies(table, name)) else { continue };
+        // Drillers read rotation speeds in rpm.
+        let unit = match quantity.units {
+            Some(units) if *units == units::ANGULAR_SPEED => Some(units.field),
+            _ => shown_in(name),
+        };
+        let shown = Shown::within(table, &[name], unit)?;
+        let y_label = match unit {
+            Some(unit) => format!("{} [{}]", quantity.label, unit.symbol),
+            None => quantity.label.to_owned(),
+        };
+        drawing = drawing.above(over_time(table, shown, &y_label, places, ["", ""])?);
+    }
+    Ok(drawing)
 }
 
-/// What pictures call the rate of theta_z.
-const RATE_OF_TWIST: &str = "rate of twist";
+/// What stands below the lateral motion of a string that twists.
+const ROTATION: [&Quantity; 2] = [&ROTATION_SPEED, &TORQUE];
 
 fn over_time(
     table: &Table,
@@ -159,20 +167,19 @@ fn over_time(
     Ok(plot.drawing())
 }
 
-/// The rate of twist of the lowest node that has one.
-fn rate_of_twist(table: &Table) -> Option<&str> {
-    let rates = table.columns.keys().filter_map(|name| {
+/// The column of a quantity of the lowest node that has one.
+fn lowest<'t>(table: &'t Table, quantity: &Quantity) -> Option<&'t str> {
+    let columns = table.columns.keys().filter_map(|name| {
         let parsed = Name::parse(name)?;
-        (parsed.quantity == &THETA_Z_RATE && parsed.variant == Variant::Value).then_some((parsed.node?, name))
+        (parsed.quantity == quantity && parsed.variant == Variant::Value).then_some((parsed.node?, name))
     });
-    rates.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
+    columns.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
 }
 
-/// The same; none where it is zero throughout.
-fn twisting(table: &Table) -> Option<&str> {
-    let name = rate_of_twist(table)?;
-    let moves = table.columns[name].numbers()?.iter().any(|rate| *rate != 0.0);
-    moves.then_some(name)
+/// Whether the numbers of a column are not all the same.
+fn varies(table: &Table, name: &str) -> bool {
+    let values = table.columns.get(name).and_then(Column::numbers);
+    values.is_some_and(|values| values.iter().any(|value| *value != values[0]))
 }
 
 /// What a column of a node is, where the node lies, and which way it moves.
@@ -181,7 +188,7 @@ fn at_place(name: &str, places: &[Place]) -> String {
     let Some(place) = places.iter().find(|place| Some(place.node as usize) == parsed.node) else {
         return words(name);
     };
-    let what = if parsed.quantity == &THETA_Z_RATE { RATE_OF_TWIST } else { parsed.quantity.label };
+    let what = parsed.quantity.label;
     let direction = direction(parsed.quantity, place.low_side);
     format!("{what} at {} m MD{direction}", grouped(place.measured_depth))
 }
@@ -873,26 +880,36 @@ mod tests {
     }
 
     #[test]
-    fn a_history_of_a_string_that_twists_shows_the_rate_of_twist_of_its_lowest_node() {
-        let table = |rate: f64| {
+    fn a_history_of_a_string_that_twists_shows_rotation_speed_and_torque_of_its_lowest_node() {
+        let table = |speed: f64, torque: f64| {
             Table::default()
                 .with("time", column(&[0.0, 1.0]))
                 .with("u_10", column(&[0.0, 1e-3]))
-                .with("theta_z_rate_10", column(&[0.0, 0.0]))
-                .with("theta_z_rate_49", column(&[0.0, rate]))
+                .with("rotation_speed_10", column(&[12.0, 12.0]))
+                .with("torque_10", column(&[5.0, 6.0]))
+                .with("rotation_speed_49", column(&[0.0, speed]))
+                .with("torque_49", column(&[-1e3, torque]))
         };
         let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
-        let still = history(&table(0.0), None, &places, "").unwrap();
-        let twisting = history(&table(60.0 * std::f64::consts::TAU / 60.0), None, &places, "").unwrap();
-        assert!(!still.svg().contains("twist") && twisting.height() > 1.8 * still.height());
+        let picture = |table: &Table| history(table, None, &places, "").unwrap();
+        let still = picture(&table(0.0, -1e3));
+        let torque_alone = picture(&table(0.0, -4e3));
+        let twisting = picture(&table(60.0 * std::f64::consts::TAU / 60.0, -4e3));
+        assert!(!still.svg().contains("torque") && !still.svg().contains("speed"));
+        assert!(torque_alone.svg().contains(">torque [kN m]<") && !torque_alone.svg().contains("speed"));
+        assert!(torque_alone.height() > 1.8 * still.height() && twisting.height() > 2.7 * still.height());
         let svg = twisting.svg();
         assert!(
-            svg.contains("rate of twist at 200.0 m MD") && svg.contains(">rate of twist [rpm]<"),
+            svg.contains("rotation speed at 200.0 m MD") && svg.contains(">rotation speed [rpm]<"),
             "{svg}"
         );
         // Once around a second is 60 rpm.
-        assert!(svg.contains(">60<") && twisting.png(400).is_ok(), "{svg}");
-        let chosen = history(&table(1.0), Some(&["u_10".to_owned()]), &places, "").unwrap();
-        assert!(!chosen.svg().contains("twist"));
+        assert!(svg.contains(">60<") && svg.contains(">−4<") && twisting.png(400).is_ok(), "{svg}");
+        let layout = table(1.0, 1.0);
+        let shown = shown_of_history(&layout, None).unwrap();
+        let names: Vec<_> = shown.columns.keys().map(String::as_str).collect();
+        assert_eq!(names, ["u_10", "rotation_speed_49", "torque_49", "time"]);
+        let chosen = history(&layout, Some(&["u_10".to_owned()]), &places, "").unwrap();
+        assert!(!chosen.svg().contains("torque"));
     }
 }

@@ -1,9 +1,13 @@
 //! Torsional modes that falling friction feeds: the chain of shafts against all modes together, and what damping does to them.
 
+use std::f64::consts::PI;
+
+use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::{ModeKind, ModeSearch, UndampedTorsion, modes, torsional_modes};
-use drillsweep_sim::scenario::{Scenario, preset};
+use drillsweep_sim::scenario::{Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
 
 fn at_rest(scenario: &Scenario) -> (Model, Equilibrium) {
     let model = Model::new(scenario).expect("has a model");
@@ -55,4 +59,60 @@ fn torsion_grows_to_the_end_of_the_mesh_unless_damping_grows_with_frequency() {
 
 fn model_nodes(scenario: &Scenario) -> usize {
     Model::new(scenario).expect("has a model").node_count()
+}
+
+/// The base case in a straight well of an inclination \[deg\], all nodes recorded.
+fn straight(inclination_deg: f64, duration: f64) -> Scenario {
+    let mut scenario = preset("paper-200m").expect("shipped preset");
+    scenario.duration = duration;
+    scenario.recording.spectrum_windows = Some(Vec::new());
+    scenario.recording.orbit_window = None;
+    scenario.recording.nodes = (1..=model_nodes(&scenario) as u32).map(NodeChoice::Node).collect();
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (inclination_deg, 0.0);
+    }
+    scenario
+}
+
+fn recorded(scenario: &Scenario) -> (Model, Equilibrium, Vec<NodeHistory>) {
+    let (model, equilibrium) = at_rest(scenario);
+    let histories = match Transient::new(&model, &equilibrium).expect("sets up").run(&Control::new()) {
+        Ok(Outcome::Finished(records)) => records.histories,
+        other => panic!("did not finish: {other:?}"),
+    };
+    (model, equilibrium, histories)
+}
+
+#[test]
+fn a_torque_on_the_bit_is_the_torque_in_the_whole_of_a_string_that_nothing_rubs() {
+    let mut scenario = straight(0.0, 0.05);
+    scenario.operation.torque_on_bit = -2500.0;
+    scenario.operation.weight_on_bit = 0.0;
+    scenario.effects.set(Effect::Unbalance, Switch::Off);
+    let (_, _, histories) = recorded(&scenario);
+    for NodeHistory { node, torque, theta_z_rate, .. } in &histories {
+        assert!(torque.iter().all(|torque| (torque / -2500.0 - 1.0).abs() < 1e-9), "node {node}: {torque:?}");
+        assert!(theta_z_rate.iter().all(|rate| rate.abs() < 1e-9), "node {node}");
+    }
+}
+
+#[test]
+fn the_torque_of_a_string_that_rubs_is_the_stiffness_of_its_shafts_times_their_twist() {
+    let scenario = straight(80.0, 2.0);
+    let (model, equilibrium, histories) = recorded(&scenario);
+    let material = &scenario.string.material;
+    let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
+    let mut largest_change: f64 = 0.0;
+    for (e, (element, ends)) in model.mesh.elements.iter().zip(histories.windows(2)).enumerate() {
+        let polar_moment = PI / 32.0 * (element.outer_diameter.powi(4) - element.inner_diameter.powi(4));
+        let stiffness = shear_modulus * polar_moment / element.length;
+        let below = &ends[1].torque;
+        for ((torque, top), bottom) in below.iter().zip(&ends[0].theta_z).zip(&ends[1].theta_z) {
+            assert!((torque - stiffness * (bottom - top)).abs() < 1e-3, "element {e}: {torque} N m");
+            largest_change = largest_change.max((torque - below[0]).abs());
+        }
+        assert!((below[0] - equilibrium.torque[e]).abs() < 1e-6, "starts from the equilibrium");
+    }
+    assert!(histories[0].torque == histories[1].torque, "the first node has the element below it");
+    assert!(largest_change > 100.0, "the torque swings: {largest_change} N m");
 }

@@ -219,6 +219,7 @@ mod tests {
             v_rate: values(node, Series::VRate),
             w_rate: values(node, Series::WRate),
             theta_z_rate: values(node, Series::ThetaZRate),
+            torque: values(node, Series::Torque),
         };
         vec![history(4), history(7)]
     }

@@ -237,10 +237,18 @@ fn history(
         let mut table = Table::default();
         numbers(&mut table, &TIME, samples.clone().step_by(every).map(|k| k as f64 / records.rate_hz));
         for &(index, node) in &kept_nodes {
-            for (series, quantity) in SERIES {
+            let column = |series, of: &dyn Fn(f64) -> f64| {
                 let values = histories.read(index, series, samples.clone())?;
-                let values = values.iter().step_by(every).map(|&value| value as f32).collect();
-                table.push(quantity.at_node(node + 1), Column::Single(values));
+                let values = values.iter().step_by(every).map(|&value| of(value) as f32).collect();
+                Ok::<_, std::io::Error>(Column::Single(values))
+            };
+            for (series, quantity) in SERIES {
+                table.push(quantity.at_node(node + 1), column(series, &|value| value)?);
+            }
+            if model.effects.torsion {
+                let speed = column(Series::ThetaZRate, &|rate| model.rotation_speed + rate)?;
+                table.push(ROTATION_SPEED.at_node(node + 1), speed);
+                table.push(TORQUE.at_node(node + 1), column(Series::Torque, &|torque| torque)?);
             }
         }
         Ok(table)
@@ -249,7 +257,7 @@ fn history(
         Some(window) => sample_range(window.from, window.to, records.rate_hz, histories.samples()),
         None => 0..histories.samples(),
     };
-    let width = size_of::<f64>() * SERIES.len() * kept_nodes.len().max(1);
+    let width = size_of::<f64>() * tables::HISTORY.by_node.len() * kept_nodes.len().max(1);
     let every = *decimation as usize;
     let length = (PIECE_BYTES / width).next_multiple_of(every).max(every);
     let pieces = all.clone().step_by(length).map(|from| piece(from..(from + length).min(all.end)));

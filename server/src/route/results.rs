@@ -244,9 +244,11 @@ impl HistoryQuery {
 
 /// The recorded motion of the recorded nodes
 ///
-/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ... A picture shows u and v,
-/// where the string twists also the rate of twist of the lowest node, or the `fields`; the legend says at which depth and to which side.
-/// It shows 2,000,000 values at most.
+/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...; where torsion is solved for
+/// also `rotation_speed_N`, the rotation imposed at the top and the rate of twist together \[rad/s\], and `torque_N`, the torque in the
+/// element above the node, at the first node below it \[N m\], negative where it opposes clockwise rotation. A picture shows u and v,
+/// where the string twists also rotation speed \[rpm\] and torque of the lowest node, or the `fields`; the legend says at which depth
+/// and to which side. It shows 2,000,000 values at most.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/history",

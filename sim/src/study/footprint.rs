@@ -23,6 +23,10 @@ const PER_COLUMN_CHUNK: u64 = 1_500;
 /// Rows of a row group at most.
 const ROW_GROUP: u64 = 10_000;
 
+/// Columns of a history's table for each node, where torsion is solved for: the series, and the rotation speed that the rate of twist
+/// makes.
+const HISTORY_COLUMNS: u64 = Series::ALL.len() as u64 + 1;
+
 /// Memory and storage of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -90,7 +94,7 @@ impl Recorded {
         let sample = (self.nodes * Series::ALL.len() as u64) * size_of::<f64>() as u64;
         let block = (BLOCK_BYTES + sample).min(self.samples * sample);
         let row_group = LARGEST_ROW_GROUP.min(self.samples * sample);
-        let columns = 1 + self.nodes * Series::ALL.len() as u64;
+        let columns = 1 + self.nodes * HISTORY_COLUMNS;
         let row_groups = (self.samples / ROW_GROUP).max(self.samples * sample / (2 * LARGEST_ROW_GROUP)) + 1;
         let window = if self.nodes > 0 { PER_WINDOW_SAMPLE * self.longest_window } else { 0 };
         // The rows are there once as they are made and once as columns.
@@ -115,7 +119,7 @@ fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
     let double = size_of::<f64>();
     let small = (model.elements.len() * OF_ELEMENTS + model.node_count() * OF_NODES) * double;
     let ledger = recorded.ledger_rows * size_of::<EnergyRow>() as u64;
-    let history = |nodes: u64, samples: u64| samples * (8 + nodes * Series::ALL.len() as u64 * 4);
+    let history = |nodes: u64, samples: u64| samples * (8 + nodes * HISTORY_COLUMNS * 4);
     let Recorded { nodes, samples, .. } = *recorded;
     let of_motion = match &model.scenario.recording.outputs {
         Outputs::Summary => return 0,

@@ -30,6 +30,8 @@ pub struct NodeHistory {
     pub w_rate: Vec<f64>,
     /// Rate of the twist \[rad/s\].
     pub theta_z_rate: Vec<f64>,
+    /// Torque G I_p theta_z' in the element above the node, of the first node in the one below it \[N m\].
+    pub torque: Vec<f64>,
 }
 
 /// One of the series of a [`NodeHistory`].
@@ -51,11 +53,13 @@ pub enum Series {
     WRate,
     /// [`NodeHistory::theta_z_rate`].
     ThetaZRate,
+    /// [`NodeHistory::torque`].
+    Torque,
 }
 
 impl Series {
-    /// All of them, displacements before rates.
-    pub const ALL: [Series; 8] = [
+    /// All of them: displacements, rates, the torque.
+    pub const ALL: [Series; 9] = [
         Series::U,
         Series::V,
         Series::W,
@@ -64,6 +68,7 @@ impl Series {
         Series::VRate,
         Series::WRate,
         Series::ThetaZRate,
+        Series::Torque,
     ];
 }
 
@@ -132,6 +137,7 @@ impl NodeHistory {
             Series::VRate => &self.v_rate,
             Series::WRate => &self.w_rate,
             Series::ThetaZRate => &self.theta_z_rate,
+            Series::Torque => &self.torque,
         }
     }
 
@@ -145,11 +151,12 @@ impl NodeHistory {
             Series::VRate => &mut self.v_rate,
             Series::WRate => &mut self.w_rate,
             Series::ThetaZRate => &mut self.theta_z_rate,
+            Series::Torque => &mut self.torque,
         }
     }
 
-    /// Adds a sample of all degrees of freedom.
-    pub(super) fn push(&mut self, x: &[f64; DOFS], v: &[f64; DOFS]) {
+    /// Adds a sample: all degrees of freedom with their rates, and the torque \[N m\].
+    pub(super) fn push(&mut self, x: &[f64; DOFS], v: &[f64; DOFS], torque: f64) {
         self.u.push(x[U]);
         self.v.push(x[V]);
         self.w.push(x[W]);
@@ -158,6 +165,7 @@ impl NodeHistory {
         self.v_rate.push(v[V]);
         self.w_rate.push(v[W]);
         self.theta_z_rate.push(v[THETA_Z]);
+        self.torque.push(torque);
     }
 
     /// Adds the samples of the same node that follow.

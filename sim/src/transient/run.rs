@@ -411,14 +411,9 @@ impl<'m, const D: usize> Run<'m, D> {
     fn record_start(&mut self) {
         if self.progress.ticks == 0 {
             let state = &self.progress.state;
+            let motion = |node: usize| (state.displacement.node(node), state.velocity.node(node));
             for history in &mut self.block {
-                push(
-                    history,
-                    self.system.freedoms,
-                    &self.rest,
-                    &state.displacement.node(history.node),
-                    &state.velocity.node(history.node),
-                );
+                push(history, self.model, self.system.freedoms, &self.rest, motion);
             }
         }
     }
@@ -429,11 +424,10 @@ impl<'m, const D: usize> Run<'m, D> {
         let per_sample = self.grid.at_sample(1);
         for sample in start / per_sample + 1..=(*ticks / per_sample).min(self.samples - 1) {
             let at = self.grid.at_sample(sample);
-            for history in &mut self.block {
-                let node = history.node;
+            let motion = |node: usize| {
                 let end =
                     [&state.displacement, &state.velocity, &state.acceleration].map(|field| field.node(node));
-                let (x, v) = match &self.stepper {
+                match &self.stepper {
                     Stepper::Esdirk(method) if at < *ticks => {
                         let start_motion = method.start().map(|field| field.node(node));
                         let step = self.grid.time(*ticks - start);
@@ -445,8 +439,10 @@ impl<'m, const D: usize> Run<'m, D> {
                         )
                     }
                     _ => (end[0], end[1]),
-                };
-                push(history, self.system.freedoms, &self.rest, &x, &v);
+                }
+            };
+            for history in &mut self.block {
+                push(history, self.model, self.system.freedoms, &self.rest, motion);
             }
         }
     }
@@ -606,14 +602,23 @@ fn ledger_rows(samples: u64, every: u64) -> usize {
     (samples / every) as usize + 2
 }
 
-/// Adds a sample to a history: the degrees of freedom `freedoms` as they move, the others at rest.
+/// Adds a sample to a history: the degrees of freedom `freedoms` as `motion` tells displacements and rates of a node, the others at
+/// rest.
 fn push<const D: usize>(
     history: &mut NodeHistory,
+    model: &Model,
     freedoms: Freedoms<D>,
     rest: &NodalVector,
-    x: &[f64; D],
-    v: &[f64; D],
+    motion: impl Fn(usize) -> ([f64; D], [f64; D]),
 ) {
-    let at_rest = rest[history.node];
-    history.push(&freedoms.among(x, at_rest), &freedoms.among(v, [0.0; DOFS]));
+    let node = history.node;
+    let (x, v) = motion(node);
+    let x = freedoms.among(&x, rest[node]);
+    // Element e joins the nodes e and e + 1.
+    let above = node.saturating_sub(1);
+    let other = if node == above { above + 1 } else { above };
+    let x_other = freedoms.among(&motion(other).0, rest[other]);
+    let ends = if node == above { [x, x_other] } else { [x_other, x] };
+    let torque = model.elements[above].torque_row.iter().zip(ends.as_flattened()).map(|(a, x)| a * x).sum();
+    history.push(&x, &freedoms.among(&v, [0.0; DOFS]), torque);
 }

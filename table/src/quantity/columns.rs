@@ -92,6 +92,8 @@ quantities! {
     W_RATE: "w_rate", "", SPEED, "w rate";
     /// Rate of the twist, on top of the rotation imposed at the top.
     THETA_Z_RATE: "theta_z_rate", "", ANGULAR_SPEED, "theta z rate";
+    /// Rotation speed: the one imposed at the top and the rate of the twist together.
+    ROTATION_SPEED: "rotation_speed", "", ANGULAR_SPEED, "rotation speed";
     /// Distance from the hole's axis.
     RADIUS: "radius", "r", WIDTH, "radius";
 
@@ -100,7 +102,7 @@ quantities! {
     NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
     /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
     EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
-    /// Torque in the string.
+    /// Torque in the string, G I_p theta_z', negative where it opposes clockwise rotation; at a node that of the element above it, at the first node below it.
     TORQUE: "torque", "T_0", TORQUE, "torque";
     /// Mean distance of the element's nodes from the hole's axis over the clearance of its body, at most 1.
     ECCENTRICITY: "eccentricity", "e", RATIO, "eccentricity";

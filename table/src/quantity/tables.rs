@@ -67,11 +67,11 @@ pub static STATICS: Layout = Layout {
     by_node: &[],
 };
 
-/// The recorded motion.
+/// The recorded motion; the last two columns of each node where torsion is solved for.
 pub static HISTORY: Layout = Layout {
     name: "history",
     columns: &[&TIME],
-    by_node: &[&U, &V, &W, &THETA_Z, &U_RATE, &V_RATE, &W_RATE, &THETA_Z_RATE],
+    by_node: &[&U, &V, &W, &THETA_Z, &U_RATE, &V_RATE, &W_RATE, &THETA_Z_RATE, &ROTATION_SPEED, &TORQUE],
 };
 
 /// Full spectra that are kept in place of the motion: a row a frequency, for each recorded node and window in turn.

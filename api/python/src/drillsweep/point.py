@@ -130,7 +130,7 @@ class Point:
         time: TimeWindow = (None, None),
         max_points: int | None = None,
     ) -> Table:
-        """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `theta_z_rate_N` for node N."""
+        """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `torque_N` for node N."""
         return self.view("history", **_node_window(node, depth, nearest, time), max_points=max_points)
 
     def orbit(

@@ -151,7 +151,7 @@ fn statics_cause(error: &StaticsError) -> &'static str {
         StaticsError::NotConverged { .. } => "no equilibrium",
         StaticsError::Singular(_) => "singular tangent",
         StaticsError::Mud { .. } => "mud without a flow",
-        StaticsError::HydraulicsNotConverged { .. } => "string and mud do not settle",
+        StaticsError::HydraulicsNotConverged { .. } => "equilibrium of string and mud not converged",
     }
 }
 

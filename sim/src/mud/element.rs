@@ -91,6 +91,11 @@ impl FlowGeometry {
     pub fn annulus_area(&self) -> f64 {
         FRAC_PI_4 * (self.hole_diameter.powi(2) - self.outer_diameter.powi(2))
     }
+
+    /// Mean speed in the annulus \[m/s\] of a flow rate \[m3/s\].
+    pub fn annulus_speed(&self, flow_rate: f64) -> f64 {
+        flow_rate / self.annulus_area()
+    }
 }
 
 /// The flow past one element: [`SectionFlow::new`], then [`SectionFlow::at_eccentricity`].
@@ -153,7 +158,7 @@ impl SectionFlow {
         }
 
         let hydraulic_diameter = hole_diameter - outer_diameter;
-        let annulus_speed = flow_rate / (PI / 4.0 * hydraulic_diameter * (hole_diameter + outer_diameter));
+        let annulus_speed = geometry.annulus_speed(flow_rate);
         let bore_speed = flow_rate / (PI / 4.0 * inner_diameter.powi(2));
         let flow = (flow_rate > 0.0).then(|| {
             let annulus = slot_flow(&rheology, annulus_speed, hydraulic_diameter);

@@ -28,7 +28,7 @@ impl FlowMomentum {
         let bore_mass = mud.density * bore_area;
         let displaced_mass = mud.density * displaced_area;
         let bore_speed = if bore_area > 0.0 { mud.flow_rate / bore_area } else { 0.0 };
-        let annulus_speed = mud.flow_rate / geometry.annulus_area();
+        let annulus_speed = geometry.annulus_speed(mud.flow_rate);
         let chi = added_mass_coefficient(geometry);
         Self {
             bore_flux: bore_mass * bore_speed * bore_speed,

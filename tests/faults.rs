@@ -17,13 +17,13 @@ const WORKER_KILLS: usize = 20;
 const SERVER_KILLS: usize = 5;
 
 /// A process whose log is kept.
-struct Logged {
-    process: Process,
+pub(crate) struct Logged {
+    pub(crate) process: Process,
     log: Arc<Mutex<String>>,
 }
 
 impl Logged {
-    fn start(command: &mut Command) -> Self {
+    pub(crate) fn start(command: &mut Command) -> Self {
         let command = command.env("DRILLSWEEP_LOG", "info").env("NO_COLOR", "1");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let lines = BufReader::new(child.stderr.take().unwrap());
@@ -40,7 +40,7 @@ impl Logged {
     }
 
     /// Waits until the log gives something.
-    fn wait_for<T>(&self, found: impl Fn(&str) -> Option<T>) -> T {
+    pub(crate) fn wait_for<T>(&self, found: impl Fn(&str) -> Option<T>) -> T {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let log = self.log.lock().unwrap().clone();
@@ -53,13 +53,13 @@ impl Logged {
     }
 
     /// The address on which it listens.
-    fn address(&self) -> String {
+    pub(crate) fn address(&self) -> String {
         self.wait_for(|log| Some(log[log.find("http://")?..].split_whitespace().next()?.to_owned()))
     }
 }
 
 impl Logged {
-    fn kill(&mut self) {
+    pub(crate) fn kill(&mut self) {
         self.process.signal(Signal::KILL);
         self.process.0.wait().unwrap();
     }
@@ -73,14 +73,14 @@ impl Drop for Logged {
     }
 }
 
-fn command(data: &Path, arguments: &[&str]) -> Command {
+pub(crate) fn command(data: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(BINARY);
     command.args(arguments).arg("--data").arg(data);
     command
 }
 
 /// A server on a port of its choice, or on the one that it had before.
-fn serve(data: &Path, address: Option<&str>) -> (Logged, String) {
+pub(crate) fn serve(data: &Path, address: Option<&str>) -> (Logged, String) {
     let listen = address.map_or("127.0.0.1:0", |address| address.trim_start_matches("http://"));
     let server = Logged::start(&mut command(data, &["serve", "--listen", listen]));
     let address = server.address();
@@ -88,7 +88,7 @@ fn serve(data: &Path, address: Option<&str>) -> (Logged, String) {
 }
 
 /// A request for runs of the paper's string over `seconds`.
-fn request(seconds: f64, flow_rates: usize, densities: usize) -> Value {
+pub(crate) fn request(seconds: f64, flow_rates: usize, densities: usize) -> Value {
     let values = |from: f64, by: f64, count| (0..count).map(|i| from + by * i as f64).collect::<Vec<_>>();
     json!({
         "preset": "paper-200m",
@@ -106,15 +106,15 @@ fn request(seconds: f64, flow_rates: usize, densities: usize) -> Value {
     })
 }
 
-fn submit(server: &str, request: &Value) -> String {
+pub(crate) fn submit(server: &str, request: &Value) -> String {
     post(&format!("{server}/v1/sweeps"), request)["id"].as_str().unwrap().to_owned()
 }
 
-fn points(server: &str, sweep: &str) -> Vec<Value> {
+pub(crate) fn points(server: &str, sweep: &str) -> Vec<Value> {
     get(&format!("{server}/v1/sweeps/{sweep}/points?limit=500"))["points"].as_array().unwrap().clone()
 }
 
-fn bytes(url: &str) -> Vec<u8> {
+pub(crate) fn bytes(url: &str) -> Vec<u8> {
     ureq::get(url).call().unwrap().body_mut().read_to_vec().unwrap()
 }
 
@@ -123,7 +123,7 @@ fn check(data: &Path) -> (u64, Vec<Value>) {
     checked(&mut command(data, &["check", "--json"]))
 }
 
-fn checked(command: &mut Command) -> (u64, Vec<Value>) {
+pub(crate) fn checked(command: &mut Command) -> (u64, Vec<Value>) {
     let output = command.stderr(Stdio::inherit()).output().unwrap();
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     (report["results"].as_u64().unwrap(), report["problems"].as_array().unwrap().clone())
@@ -186,7 +186,7 @@ impl Clock {
 }
 
 /// The fencing token of the point that it claimed last.
-fn last_claim(log: &str) -> Option<u64> {
+pub(crate) fn last_claim(log: &str) -> Option<u64> {
     let line = log.lines().rfind(|line| line.contains("point claimed"))?;
     line.split("fencing_token=").nth(1)?.split(|sign: char| !sign.is_ascii_digit()).next()?.parse().ok()
 }

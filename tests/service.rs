@@ -5,6 +5,10 @@
 mod commands;
 mod faults;
 mod hostile;
+mod remote;
+#[path = "../store/tests/servers/mod.rs"]
+#[allow(dead_code, reason = "of the store's tests")]
+mod servers;
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -22,17 +22,15 @@ const WRITERS: i64 = 0x6472_696c_6c73_7765;
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
 pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms: i64) -> Result<Database> {
-    let mut options = options.clone().application_name("drillsweep").options([
+    // Commits are durable for workers, too, else than on SQLite: a server that crashes and comes back must not have forgotten an event
+    // that somebody has heard of.
+    let options = options.clone().application_name("drillsweep").options([
         ("lock_timeout", LOCK_TIMEOUT),
         ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
         ("default_transaction_isolation", "read committed"),
         // Migrations tell of what is there already.
         ("client_min_messages", "warning"),
     ]);
-    if let Role::Worker = role {
-        // What is lost with a crash of the server is computed again.
-        options = options.options([("synchronous_commit", "off")]);
-    }
     // One of them listens for changes.
     let connections = match role {
         Role::Server => 16,

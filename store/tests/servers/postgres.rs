@@ -65,6 +65,16 @@ impl Server {
         format!("postgres://drillsweep@127.0.0.1:{}/postgres", self.port)
     }
 
+    /// What a statement gives, as `psql` prints it without its frame.
+    #[allow(dead_code, reason = "not all that use this module ask it something")]
+    pub(crate) fn query(&self, statement: &str) -> String {
+        let mut client = program("psql");
+        client.args(["--no-align", "--tuples-only", "--no-psqlrc", "--dbname"]).arg(self.url());
+        let output = client.args(["--command", statement]).output().expect("psql");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+
     /// Starts it again after it was ended, on the same files and the same port.
     pub(crate) fn resume(&mut self) {
         let deadline = Instant::now() + PATIENCE;

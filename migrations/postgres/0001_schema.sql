@@ -209,6 +209,9 @@ WHEN (NEW.state <> OLD.state AND NOT CASE OLD.state
      END)
 EXECUTE FUNCTION refuse_transition();
 
+-- A worker's role may change work, and neither turns nor sweeps (deploy/postgres/worker-role.sql): what follows from a change of work is
+-- done in the name of the tables' owner.
+
 -- Owners take turns (start-time fair queueing): the one whose virtual time is least is served, and pays for it. Within an
 -- owner the most urgent goes first, then the order asked for: work.vtime is a place in that order.
 CREATE TABLE owner_turn (
@@ -218,7 +221,8 @@ CREATE TABLE owner_turn (
 
 -- Idle time is not saved up: who comes back has missed all turns but the one before the latest. Of claims at the same moment each
 -- pays for its own turn.
-CREATE FUNCTION take_a_turn() RETURNS trigger LANGUAGE plpgsql AS $$
+CREATE FUNCTION take_a_turn() RETURNS trigger LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
 BEGIN
     UPDATE owner_turn SET vtime = greatest(vtime, (SELECT max(vtime) FROM owner_turn) - 1000) + 1000
     WHERE owner = NEW.owner;
@@ -253,7 +257,8 @@ CREATE TABLE event (
 -- The sweeps are locked by their identifiers' order before they are changed, so that two work items of the same two sweeps do not
 -- wait for each other. An event's number is taken under that lock, which ends with the transaction: nobody sees a later event
 -- before an earlier one.
-CREATE FUNCTION tell_the_sweeps() RETURNS trigger LANGUAGE plpgsql AS $$
+CREATE FUNCTION tell_the_sweeps() RETURNS trigger LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
 BEGIN
     PERFORM 1 FROM sweep WHERE id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
     ORDER BY id FOR NO KEY UPDATE;

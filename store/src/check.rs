@@ -55,6 +55,8 @@ impl Store {
             match self.verify_blob(&id).await {
                 Ok(size) if size == bytes.unsigned_abs() => {}
                 Ok(size) => report.problems.push(format!("blob {id}: {size} bytes instead of {bytes}")),
+                // Whether the others are whole cannot be told either.
+                Err(error) if error.is_unavailable() => return Err(error),
                 Err(error) => {
                     report.problems.push(error.to_string());
                     if error.is_damage() {

@@ -1,8 +1,9 @@
 //! A PostgreSQL server of a test's own.
 
+use std::io::Write as _;
 use std::os::unix::fs::MetadataExt as _;
-use std::path::PathBuf;
-use std::process::{Child, Command};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -30,15 +31,22 @@ pub(crate) struct Server {
     directory: TempDir,
     process: Option<Child>,
     port: u16,
+    /// Beside those of all servers.
+    settings: &'static [&'static str],
 }
 
 impl Server {
     /// Makes a server and starts it.
     pub(crate) fn start() -> Self {
+        Self::start_with(&[])
+    }
+
+    /// The same with other settings, which have precedence.
+    pub(crate) fn start_with(settings: &'static [&'static str]) -> Self {
         let directory = TempDir::new().expect("a temporary directory");
         // The server's user is not the one that the directory belongs to.
         super::run(Command::new("chmod").arg("0777").arg(directory.path()));
-        let mut server = Self { directory, process: None, port: super::free_ports::<1>()[0] };
+        let mut server = Self { directory, process: None, port: super::free_ports::<1>()[0], settings };
         super::run(
             program("initdb")
                 .args([
@@ -65,6 +73,35 @@ impl Server {
         format!("postgres://drillsweep@127.0.0.1:{}/postgres", self.port)
     }
 
+    /// Copies the running server's files, as a standby has them that is behind.
+    #[allow(dead_code, reason = "not all that use this module fail over")]
+    pub(crate) fn copy(&self) -> PathBuf {
+        let copy = self.directory.path().join("copy");
+        super::run(
+            program("pg_basebackup")
+                .args([
+                    "--host=127.0.0.1",
+                    "--username=drillsweep",
+                    "--checkpoint=fast",
+                    "--no-sync",
+                    "--port",
+                ])
+                .arg(self.port.to_string())
+                .arg("--pgdata")
+                .arg(&copy),
+        );
+        copy
+    }
+
+    /// Kills the server; a copy of it takes its place, at the same address. What was confirmed since the copy was made is lost.
+    #[allow(dead_code, reason = "not all that use this module fail over")]
+    pub(crate) fn fail_over(&mut self, copy: &Path) {
+        self.kill();
+        std::fs::remove_dir_all(self.data()).expect("the files of the old one");
+        std::fs::rename(copy, self.data()).expect("the copy");
+        self.resume();
+    }
+
     /// What a statement gives, as `psql` prints it without its frame.
     #[allow(dead_code, reason = "not all that use this module ask it something")]
     pub(crate) fn query(&self, statement: &str) -> String {
@@ -73,6 +110,20 @@ impl Server {
         let output = client.args(["--command", statement]).output().expect("psql");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+
+    /// Runs a script of `psql` with variables.
+    #[allow(dead_code, reason = "not all that use this module have scripts")]
+    pub(crate) fn run_script(&self, script: &str, variables: &[(&str, &str)]) {
+        let mut client = program("psql");
+        client.args(["--quiet", "--no-psqlrc", "--dbname"]).arg(self.url());
+        for (name, value) in variables {
+            client.arg(format!("--set={name}={value}"));
+        }
+        let mut process = client.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("psql");
+        process.stdin.take().expect("a pipe").write_all(script.as_bytes()).expect("psql reads");
+        let output = process.wait_with_output().expect("psql ends");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
 
     /// Starts it again after it was ended, on the same files and the same port.
@@ -95,7 +146,7 @@ impl Server {
         let mut command = program("postgres");
         command.arg("-D").arg(self.data()).arg("-k").arg(self.directory.path());
         command.arg("-p").arg(self.port.to_string());
-        for setting in SETTINGS {
+        for setting in SETTINGS.iter().chain(self.settings) {
             command.args(["-c", setting]);
         }
         let log = std::fs::File::options()

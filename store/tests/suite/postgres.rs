@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use drillsweep_store::{Role, Store, StoreConfig, StoreError, WorkState};
+use drillsweep_store::{Renewal, Role, Store, StoreConfig, StoreError, WorkState, WorkerRecord};
 use sqlx::postgres::PgPool;
 use tempfile::TempDir;
 
-use crate::bench::{Engine, claim, submit, sweep};
+use crate::bench::{Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, submit, sweep, sweep_record};
 use crate::place::{Directory, Object, Place};
 use crate::servers::postgres::Server;
 
@@ -140,6 +140,104 @@ async fn who_waits_hears_of_work_and_of_changes_that_another_process_makes() {
     }
     drop(heard);
     waiting.close().await;
+}
+
+#[tokio::test]
+async fn a_worker_of_its_own_role_does_its_work_and_nothing_else() {
+    let engine = <Postgres>::new();
+    let store = engine.open().await;
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../deploy/postgres/worker-role.sql");
+    for _ in 0..2 {
+        engine.server.run_script(&std::fs::read_to_string(script).unwrap(), &[("role", "drillsweep_worker")]);
+    }
+    engine.server.query("CREATE USER rig IN ROLE drillsweep_worker");
+    let mut config = engine.config(Role::Worker, 0);
+    let url = engine.server.url().replace("//drillsweep@", "//rig@");
+    config.database = url.parse().unwrap();
+    let worker = Store::open(&config).await.unwrap();
+
+    submit(&store, &sweep("s", 0..4)).await;
+    worker.register_worker(&record("rig")).await.unwrap();
+    worker.keep_machine_speed("rig", PHYSICS, "{}").await.unwrap();
+    assert!(finish(&worker, &claim(&worker, "rig").await).await);
+    let suspended = claim(&worker, "rig").await.lease;
+    assert_eq!(worker.renew(&suspended, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+    let blob = worker.put_blob(b"half of it".to_vec()).await.unwrap();
+    assert!(worker.keep_checkpoint(&suspended, blob).await.unwrap());
+    assert!(worker.note_worker(&suspended, "was nearly full").await.unwrap());
+    assert!(worker.release(&suspended).await.unwrap());
+    assert!(worker.finish_failed(&claim(&worker, "rig").await.lease, "{}").await.unwrap());
+    assert!(worker.retry_later(&claim(&worker, "rig").await.lease, "{}").await.unwrap());
+    assert!(worker.crashed(&claim(&worker, "rig").await.lease, "{}").await.unwrap());
+    worker.remove_worker("rig").await.unwrap();
+    let counts = sweep_record(&store, "s").await.counts;
+    assert_eq!((counts.done, counts.failed, counts.queued), (1, 1, 2), "the sweep hears of all of it");
+
+    let past_the_store = PgPool::connect(&url).await.unwrap();
+    for forbidden in [
+        "SELECT hash FROM token",
+        "SELECT request FROM sweep",
+        "UPDATE sweep SET priority = 9",
+        "DELETE FROM point",
+        "INSERT INTO work (key, physics_version, owner, state, priority, vtime, ready_at, created, changed)
+         VALUES ('', 1, '', 'queued', 0, 0, 0, 0, 0)",
+        "UPDATE work SET owner = 'bert'",
+        "UPDATE owner_turn SET vtime = 0",
+        "DELETE FROM work",
+        "UPDATE artifact SET blob = ''",
+        "CREATE TABLE mine (number int)",
+    ] {
+        let refused = sqlx::query(forbidden).execute(&past_the_store).await.unwrap_err();
+        let code = refused.as_database_error().and_then(|error| error.code().map(|code| code.into_owned()));
+        assert_eq!(code.as_deref(), Some("42501"), "{forbidden}: {refused}");
+    }
+    assert!(worker.cancel_sweep("s").await.is_err());
+}
+
+#[tokio::test]
+async fn what_a_failover_has_forgotten_is_done_again_and_nothing_twice() {
+    let mut engine = <Postgres>::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", 0..4)).await;
+    let before = claim(&store, "old").await;
+    let copy = engine.server.copy();
+    // All that follows was confirmed, and will not have happened.
+    assert!(finish(&store, &before).await);
+    let after = claim(&store, "old").await;
+    assert!(finish(&store, &after).await);
+    let running = claim(&store, "old").await;
+    store.close().await;
+    engine.server.fail_over(&copy);
+
+    let store = engine.open().await;
+    assert_eq!(sweep_record(&store, "s").await.counts.done, 0);
+    // The old worker still works on a point that it does not have, as far as anybody knows.
+    assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Lost);
+    let mut keys = Vec::new();
+    while let Some(claim) = claim_or_none(&store, "new").await {
+        assert!(!finish(&store, &running).await, "not the old worker's, under whichever number");
+        assert!(finish(&store, &claim).await);
+        keys.push(claim.lease.key);
+    }
+    assert!(keys.contains(&after.lease.key) && keys.contains(&running.lease.key) && keys.len() == 3);
+    // The first one is the old worker's until its lease ends: it may store it again, or somebody else does.
+    assert!(finish(&store, &before).await);
+    let record = sweep_record(&store, "s").await;
+    assert_eq!((record.counts.done, record.finished.is_some()), (4, true));
+    let report = store.check().await.unwrap();
+    assert_eq!((report.results, report.problems), (4, vec![]));
+}
+
+fn record(id: &str) -> WorkerRecord {
+    WorkerRecord {
+        id: id.to_owned(),
+        host: "rig".to_owned(),
+        process: 42,
+        version: "0.1.0".to_owned(),
+        physics_version: PHYSICS,
+        started: 0,
+        last_seen: 0,
+    }
 }
 
 /// A table's columns: name, type, whether it may be absent.

@@ -1,0 +1,218 @@
+//! How large the queue may grow: a sweep of many points, and many workers that claim, renew, write a small blob and finish, and compute
+//! nothing, while others submit and look.
+//!
+//! `cargo bench -p drillsweep-store --bench growth -- --engine postgres --points 1000000 --workers 200 --seconds 120`
+
+#![expect(clippy::print_stdout, reason = "a report")]
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use drillsweep_store::{
+    CachePolicy, DatabaseLocation, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Role, Store,
+    StoreConfig, SweepFilter,
+};
+
+#[path = "../tests/servers/mod.rs"]
+#[allow(dead_code, reason = "of the tests")]
+mod servers;
+
+/// A server as one would run it, and not as the tests do: what it has confirmed is on the disk.
+const SETTINGS: &[&str] =
+    &["fsync=on", "full_page_writes=on", "max_connections=600", "shared_buffers=512MB", "max_wal_size=4GB"];
+
+const SWEEP: &str = "0190";
+
+/// What is measured.
+struct Plan {
+    engine: String,
+    points: i64,
+    workers: usize,
+    /// How long the workers work.
+    seconds: u64,
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let value = |name: &str, default: &str| {
+        let found = arguments.windows(2).find(|pair| pair[0] == name).map(|pair| pair[1].clone());
+        found.unwrap_or_else(|| default.to_owned())
+    };
+    let number = |name: &str, default: &str| value(name, default).parse::<i64>().expect("a number");
+    let plan = Plan {
+        engine: value("--engine", "postgres"),
+        points: number("--points", "100000"),
+        workers: usize::try_from(number("--workers", "200")).expect("a number of workers"),
+        seconds: number("--seconds", "30").unsigned_abs(),
+    };
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let mut config = StoreConfig::in_directory(directory.path(), Role::Server);
+    let server = (plan.engine == "postgres").then(|| servers::postgres::Server::start_with(SETTINGS));
+    if let Some(server) = &server {
+        config.database = server.url().parse::<DatabaseLocation>().expect("a URL");
+    }
+    println!("{}: {} points, {} workers", plan.engine, plan.points, plan.workers);
+    runtime.block_on(run(&plan, &config));
+    let bytes = match &server {
+        Some(server) => {
+            server.query("CHECKPOINT");
+            server.query("SELECT pg_database_size(current_database())").parse::<f64>().expect("a size")
+        }
+        None => {
+            let file = directory.path().join("drillsweep.sqlite");
+            std::fs::metadata(file).expect("the file").len() as f64
+        }
+    };
+    println!("database: {:.0} MB, {:.0} bytes a point", bytes / 1e6, bytes / plan.points as f64);
+    runtime.shutdown_background();
+}
+
+async fn run(plan: &Plan, config: &StoreConfig) {
+    let store = Store::open(config).await.expect("a store");
+    let is_over = Arc::new(AtomicBool::new(false));
+
+    let others = tokio::spawn(submit_beside(store.clone(), is_over.clone()));
+    let began = Instant::now();
+    store.submit_sweep(&sweep(SWEEP, "anne", plan.points)).await.expect("submitted");
+    println!("submit: {:.1} s", began.elapsed().as_secs_f64());
+    is_over.store(true, Ordering::Relaxed);
+    report("another owner's submit meanwhile", others.await.expect("it ends"));
+
+    is_over.store(false, Ordering::Relaxed);
+    let finished = Arc::new(AtomicU64::new(0));
+    let readers = tokio::spawn(read_beside(store.clone(), plan.points, is_over.clone()));
+    let mut workers = Vec::new();
+    for number in 0..plan.workers {
+        let config = StoreConfig { role: Role::Worker, ..config.clone() };
+        let store = Store::open(&config).await.expect("a store");
+        workers.push(tokio::spawn(work(store, number, is_over.clone(), finished.clone())));
+    }
+    let began = Instant::now();
+    tokio::time::sleep(Duration::from_secs(plan.seconds)).await;
+    is_over.store(true, Ordering::Relaxed);
+    let mut claims = Vec::new();
+    for worker in workers {
+        claims.extend(worker.await.expect("it ends"));
+    }
+    let rate = finished.load(Ordering::Relaxed) as f64 / began.elapsed().as_secs_f64();
+    println!("claims and finishes: {rate:.0} a second");
+    report("a claim", claims);
+    let (lists, pages, versions) = readers.await.expect("it ends");
+    report("a page of sweeps", lists);
+    report("a page of 100 points", pages);
+    report("a sweep's version", versions);
+}
+
+/// Another owner's sweeps of one point, one after the other.
+async fn submit_beside(store: Store, is_over: Arc<AtomicBool>) -> Vec<Duration> {
+    let mut times = Vec::new();
+    while !is_over.load(Ordering::Relaxed) {
+        let own = sweep(&format!("0191-{:09}", times.len()), "bob", 1);
+        let began = Instant::now();
+        store.submit_sweep(&own).await.expect("submitted");
+        times.push(began.elapsed());
+        tokio::time::sleep(Duration::from_millis(50)).await;
+    }
+    times
+}
+
+async fn read_beside(
+    store: Store,
+    points: i64,
+    is_over: Arc<AtomicBool>,
+) -> (Vec<Duration>, Vec<Duration>, Vec<Duration>) {
+    let (mut lists, mut pages, mut versions) = (Vec::new(), Vec::new(), Vec::new());
+    let mut after = 0;
+    while !is_over.load(Ordering::Relaxed) {
+        let began = Instant::now();
+        store.sweeps(&SweepFilter::default(), None, 50).await.expect("a list");
+        lists.push(began.elapsed());
+        let began = Instant::now();
+        // All over the sweep, by steps that share no divisor with its size.
+        after = (after + 7_919) % points;
+        store.points(SWEEP, &[], after, 100).await.expect("a page");
+        pages.push(began.elapsed());
+        let began = Instant::now();
+        store.sweep_version(SWEEP).await.expect("a version");
+        versions.push(began.elapsed());
+        tokio::time::sleep(Duration::from_millis(50)).await;
+    }
+    (lists, pages, versions)
+}
+
+/// A worker that computes nothing. Gives how long its claims took.
+async fn work(
+    store: Store,
+    number: usize,
+    is_over: Arc<AtomicBool>,
+    finished: Arc<AtomicU64>,
+) -> Vec<Duration> {
+    let name = format!("worker {number}");
+    let summary = format!(r#"{{"rows":"{:>500}"}}"#, "");
+    let mut claims = Vec::new();
+    while !is_over.load(Ordering::Relaxed) {
+        let began = Instant::now();
+        let Some(claim) = store.claim(&name, 1, 60_000).await.expect("claimed") else { break };
+        claims.push(began.elapsed());
+        store.renew(&claim.lease, 60_000, 0.5).await.expect("renewed");
+        let blob = store.put_blob(claim.lease.key.to_vec()).await.expect("written");
+        let artifact = NewArtifact {
+            name: "history".to_owned(),
+            media_type: "application/vnd.apache.parquet".to_owned(),
+            blob,
+            bytes: 32,
+            row_count: 1,
+        };
+        let result = NewResult {
+            summary_json: &summary,
+            provenance_json: "{}",
+            artifacts: &[artifact],
+            is_repeatable: true,
+        };
+        assert!(store.finish_done(&claim.lease, &result).await.expect("finished"), "nobody else has it");
+        finished.fetch_add(1, Ordering::Relaxed);
+    }
+    claims
+}
+
+/// A sweep whose texts are as long as real ones.
+fn sweep(id: &str, owner: &str, points: i64) -> NewSweep {
+    let point = |ordinal: i64| NewPoint {
+        ordinal,
+        parameters_json: format!(r#"{{"flow_rate":0.03,"mud_density":{ordinal}}}"#),
+        changes_json: format!(r#"{{"mud.flow_rate":0.03,"mud.density":{ordinal}}}"#),
+        work_key: *blake3::hash(format!("{id} {ordinal}").as_bytes()).as_bytes(),
+        fuller_key: None,
+    };
+    NewSweep {
+        id: id.to_owned(),
+        name: None,
+        owner: owner.to_owned(),
+        request_json: "{}".to_owned(),
+        priority: 0,
+        tags_json: "[]".to_owned(),
+        cache: CachePolicy::Reuse,
+        idempotency_key: None,
+        base_json: format!("{:>3000}", "{}"),
+        physics_version: 1,
+        points: (1..=points).map(point).collect(),
+        verification: NewVerification::default(),
+    }
+}
+
+fn report(what: &str, mut times: Vec<Duration>) {
+    times.sort_unstable();
+    let at = |share: f64| {
+        let index = (share * times.len() as f64) as usize;
+        times.get(index.min(times.len().saturating_sub(1))).map_or(0.0, |time| time.as_secs_f64() * 1e3)
+    };
+    println!(
+        "{what}: {:.1} ms median, {:.1} ms p99, {:.1} ms longest ({})",
+        at(0.5),
+        at(0.99),
+        at(1.0),
+        times.len()
+    );
+}

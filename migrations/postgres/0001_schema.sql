@@ -316,7 +316,10 @@ BEGIN
 END
 $$;
 
-CREATE TRIGGER work_changes_state AFTER UPDATE OF state, cancel_requested ON work FOR EACH ROW
+-- At the end of the transaction, unless that runs alone: the sweep's row is what all its workers wait for, and is locked for no longer
+-- than a commit takes.
+CREATE CONSTRAINT TRIGGER work_changes_state AFTER UPDATE OF state, cancel_requested ON work
+DEFERRABLE INITIALLY DEFERRED FOR EACH ROW
 WHEN (NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled)
 EXECUTE FUNCTION tell_the_sweeps();
 

@@ -32,6 +32,10 @@ impl Store {
         type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
         let rows: Vec<Row> =
             query(sql::event::LIST).bind(sweep_id).bind(after).bind(limit).rows(&self.database).await?;
+        if !rows.is_empty() {
+            // Nobody hears of an event that a crash of the database may forget: its number would be given again.
+            query(sql::event::MAKE_DURABLE).scalars::<i32>(&self.database).await?;
+        }
         rows.into_iter()
             .map(|(seq, kind, key, at, ordinals, verifies)| {
                 let state = WorkState::parse(&kind)?;

@@ -74,6 +74,7 @@ statements! {
     }
     event {
         LIST = "list",
+        MAKE_DURABLE = "make_durable",
     }
     failure {
         LIST = "list",

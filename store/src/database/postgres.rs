@@ -17,20 +17,27 @@ const LOCK_TIMEOUT: &str = "30s";
 /// How long a new connection may take.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Names the lock of writers among the advisory locks of the database; a number that nobody else takes by chance.
-const WRITERS: i64 = 0x6472_696c_6c73_7765;
+/// Takes the lock of writers alone, in its number that nobody else takes by chance and that the schema's triggers have, too. What follows
+/// from a change of work is done at once, as what comes next may go by it.
+const ALONE: &str = "SET CONSTRAINTS ALL IMMEDIATE; SELECT pg_advisory_xact_lock(7237963465534699365)";
+
+/// The same beside others of its kind; what follows from a change of work is done at the end.
+const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(7237963465534699365)";
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
 pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms: i64) -> Result<Database> {
-    // Commits are durable for workers, too, else than on SQLite: a server that crashes and comes back must not have forgotten an event
-    // that somebody has heard of.
-    let options = options.clone().application_name("drillsweep").options([
+    let mut options = options.clone().application_name("drillsweep").options([
         ("lock_timeout", LOCK_TIMEOUT),
         ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
         ("default_transaction_isolation", "read committed"),
         // Migrations tell of what is there already.
         ("client_min_messages", "warning"),
     ]);
+    if let Role::Worker = role {
+        // What a crash of the database forgets is computed again. All that workers do to one sweep goes through its row, one after the
+        // other: each would wait for the disk.
+        options = options.options([("synchronous_commit", "off")]);
+    }
     // One of them listens for changes.
     let connections = match role {
         Role::Server => 16,
@@ -74,14 +81,16 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Databas
 
 /// A transaction that waits until no other writer of any kind is left, and lets none begin.
 pub(crate) async fn write_alone(pool: &PgPool) -> Result<Transaction> {
-    let mut transaction = pool.begin_with("BEGIN").await?;
-    sqlx::query("SELECT pg_advisory_xact_lock($1)").bind(WRITERS).execute(&mut *transaction).await?;
-    Ok(Transaction::Postgres(transaction))
+    write(pool, ALONE).await
 }
 
-/// A transaction that runs beside others of its kind. The statements of the schema's triggers take the same lock.
+/// A transaction that runs beside others of its kind. The schema's triggers take the same lock.
 pub(crate) async fn write_beside_others(pool: &PgPool) -> Result<Transaction> {
+    write(pool, BESIDE_OTHERS).await
+}
+
+async fn write(pool: &PgPool, lock: &'static str) -> Result<Transaction> {
     let mut transaction = pool.begin_with("BEGIN").await?;
-    sqlx::query("SELECT pg_advisory_xact_lock_shared($1)").bind(WRITERS).execute(&mut *transaction).await?;
+    transaction.execute(sqlx::raw_sql(lock)).await?;
     Ok(Transaction::Postgres(transaction))
 }

@@ -1,6 +1,7 @@
 //! Where the data lies, as the commands are told.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::Args;
@@ -26,6 +27,10 @@ pub(crate) struct DataArguments {
     /// File with the password for the PostgreSQL database.
     #[arg(long, env = "DRILLSWEEP_DATABASE_PASSWORD_FILE")]
     database_password_file: Option<PathBuf>,
+    /// File with the credentials for the bucket, in the place of the environment's: the profile `[default]` of a shared credentials
+    /// file of AWS (aws_access_key_id, aws_secret_access_key, and aws_session_token where there is one).
+    #[arg(long, env = "DRILLSWEEP_OBJECTS_CREDENTIALS_FILE")]
+    objects_credentials_file: Option<PathBuf>,
 }
 
 impl DataArguments {
@@ -47,6 +52,12 @@ impl DataArguments {
                 .database
                 .with_password(password)
                 .context("--database-password-file is for a PostgreSQL database")?;
+        }
+        if let Some(path) = &self.objects_credentials_file {
+            let ObjectsLocation::S3 { settings, .. } = &mut config.objects else {
+                anyhow::bail!("--objects-credentials-file is for a bucket (--objects s3://BUCKET/PREFIX)");
+            };
+            settings.extend(credentials(path)?);
         }
         Ok(config)
     }
@@ -75,6 +86,80 @@ impl DataArguments {
         }
         if let Some(path) = &self.database_password_file {
             command.arg("--database-password-file").arg(path);
+        }
+        if let Some(path) = &self.objects_credentials_file {
+            command.arg("--objects-credentials-file").arg(path);
+        }
+    }
+}
+
+/// Settings of an object store from the profile `[default]` of a shared credentials file.
+fn credentials(path: &Path) -> anyhow::Result<BTreeMap<String, String>> {
+    let text = std::fs::read_to_string(path)
+        .with_context(|| format!("the object store's credentials cannot be read from {}", path.display()))?;
+    parse_credentials(&text).with_context(|| format!("the object store's credentials in {}", path.display()))
+}
+
+/// No message repeats what stands in the file, for it may be a secret.
+fn parse_credentials(text: &str) -> anyhow::Result<BTreeMap<String, String>> {
+    const REQUIRED: [&str; 2] = ["aws_access_key_id", "aws_secret_access_key"];
+    const OPTIONAL: &str = "aws_session_token";
+    let mut settings = BTreeMap::new();
+    let mut is_default = false;
+    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+        if line.is_empty() || line.starts_with(['#', ';']) {
+            continue;
+        }
+        if let Some(profile) = line.strip_prefix('[') {
+            let name = profile.strip_suffix(']').with_context(|| format!("line {number} lacks a ]"))?;
+            is_default = name.trim() == "default";
+            continue;
+        }
+        let (name, value) = line.split_once('=').with_context(|| {
+            format!("line {number} is neither a profile, such as [default], nor a name = value")
+        })?;
+        let name = name.trim().to_ascii_lowercase();
+        if is_default && (REQUIRED.contains(&name.as_str()) || name == OPTIONAL) {
+            anyhow::ensure!(!value.trim().is_empty(), "line {number} has no value");
+            settings.insert(name, value.trim().to_owned());
+        }
+    }
+    for name in REQUIRED {
+        anyhow::ensure!(settings.contains_key(name), "the profile [default] has no {name}");
+    }
+    Ok(settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn credentials_are_those_of_the_default_profile() {
+        let text = "# of the team\n[other]\naws_access_key_id = other\n\n[default]\r\naws_access_key_id=AKIDEXAMPLE\n\
+                    aws_secret_access_key = a+b/c=\nregion = eu-west-1\n[last]\naws_secret_access_key = other\n";
+        let settings = parse_credentials(text).unwrap();
+        let expected = [("aws_access_key_id", "AKIDEXAMPLE"), ("aws_secret_access_key", "a+b/c=")];
+        assert_eq!(settings, expected.map(|(name, value)| (name.to_owned(), value.to_owned())).into());
+    }
+
+    #[test]
+    fn what_is_wrong_with_credentials_is_said_without_them() {
+        for (text, reason) in [
+            ("", "the profile [default] has no aws_access_key_id"),
+            (
+                "[default]\naws_access_key_id = verysecret",
+                "the profile [default] has no aws_secret_access_key",
+            ),
+            (
+                "aws_access_key_id = verysecret\naws_secret_access_key = verysecret",
+                "the profile [default] has no aws_access_key_id",
+            ),
+            ("[default]\naws_access_key_id =", "line 2 has no value"),
+            ("[default\naws_access_key_id = verysecret", "line 1 lacks a ]"),
+            ("[default]\nverysecret", "line 2 is neither a profile, such as [default], nor a name = value"),
+        ] {
+            assert_eq!(parse_credentials(text).unwrap_err().to_string(), reason);
         }
     }
 }

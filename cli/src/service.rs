@@ -87,7 +87,7 @@ pub(crate) struct UpArguments {
 
 #[derive(Args)]
 struct ScratchArguments {
-    /// Directory for temporary files, which hold what a running point records: up to 6 GiB a worker, on a disk of its own machine; `scratch`
+    /// Directory for temporary files, which hold what a running point records: up to 7 GiB a worker, on a disk of its own machine; `scratch`
     /// in the data directory unless given.
     #[arg(long, env = "DRILLSWEEP_SCRATCH")]
     scratch: Option<PathBuf>,

@@ -14,7 +14,7 @@ const SAME_TIME: f64 = 1e-9;
 /// Samples of a node at most: half an hour at 1 kHz. Its orbit and full spectrum over the whole run are computed in memory.
 const MOST_SAMPLES: f64 = 2e6;
 
-/// Samples of all recorded nodes at most: 2 GiB of history.
+/// Samples of all recorded nodes at most: 2.5 GiB of history.
 const MOST_SAMPLES_OF_NODES: f64 = (1_u64 << 26) as f64;
 
 /// Spectrum windows at most.
@@ -243,7 +243,7 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         "recording.nodes",
         format!("{nodes} nodes"),
         format!(
-            "must be at most {} for {duration} s at {rate} Hz: together they may have {MOST_SAMPLES_OF_NODES} samples, 2 GiB of history",
+            "must be at most {} for {duration} s at {rate} Hz: together they may have {MOST_SAMPLES_OF_NODES} samples, 2.5 GiB of history",
             (MOST_SAMPLES_OF_NODES / samples).floor()
         ),
     );

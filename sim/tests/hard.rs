@@ -235,6 +235,24 @@ fn gauges_without_play_are_held_in_any_direction() {
 }
 
 #[test]
+fn a_string_at_rest_takes_half_the_step_of_a_turning_one_and_no_less() {
+    let effort = |turns: bool| {
+        let mut scenario = preset("paper-200m").expect("shipped preset");
+        if !turns {
+            scenario.operation.rotation_speed_rpm = 0.0;
+        }
+        (scenario.duration, scenario.accuracy) = (2.0, Accuracy::Preset(AccuracyPreset::Draft));
+        (scenario.recording.spectrum_windows, scenario.recording.orbit_window) = (Some(Vec::new()), None);
+        Scene::of(&scenario).records.effort
+    };
+    let (rest, turning) = (effort(false), effort(true));
+    // Friction that sticks is a stiff damper, which sweeps converge with at half the step.
+    assert!(rest.step_range[1] >= 0.5 * turning.step_range[1], "{rest:?}, {turning:?}");
+    // Twice as many, and as many again for the first ones, which are as short as the start of any run takes them.
+    assert!(rest.steps < 4 * turning.steps, "{rest:?}, {turning:?}");
+}
+
+#[test]
 fn stiff_contact_is_solved_alike_by_two_methods() {
     methods_agree("hard/stiff-contact-10", 0.2, 0.02);
     methods_agree("hard/stiff-contact-100", 0.05, 0.02);

@@ -127,7 +127,7 @@ impl<W: Write + Send> Writer<W> {
             if end - start == self.rows_of_group {
                 self.write_group(rows, start..end)?;
             } else {
-                self.pending.append(rows, start..end);
+                self.pending.append(rows, start..end, self.rows_of_group);
                 if self.pending.rows() == self.rows_of_group {
                     self.write_pending()?;
                 }

@@ -69,12 +69,12 @@ impl Column {
         }
     }
 
-    fn append(&mut self, other: &Column, rows: Range<usize>) {
+    fn append(&mut self, other: &Column, rows: Range<usize>, most: usize) {
         match (self, other) {
-            (Column::Integer(own), Column::Integer(values)) => own.extend_from_slice(&values[rows]),
-            (Column::Number(own), Column::Number(values)) => own.extend_from_slice(&values[rows]),
-            (Column::Single(own), Column::Single(values)) => own.extend_from_slice(&values[rows]),
-            (Column::Text(own), Column::Text(values)) => own.extend_from_slice(&values[rows]),
+            (Column::Integer(own), Column::Integer(values)) => extend(own, &values[rows], most),
+            (Column::Number(own), Column::Number(values)) => extend(own, &values[rows], most),
+            (Column::Single(own), Column::Single(values)) => extend(own, &values[rows], most),
+            (Column::Text(own), Column::Text(values)) => extend(own, &values[rows], most),
             _ => panic!("a column is continued in another type"),
         }
     }
@@ -135,13 +135,13 @@ impl Table {
         self.columns.iter().map(type_of).eq(other.columns.iter().map(type_of))
     }
 
-    /// Adds some rows of a table with the same columns.
+    /// Adds some rows of a table with the same columns; as memory for the next ones is set aside, `most` rows are thought of at most.
     ///
     /// # Panics
     /// When names or types of the columns differ, or there are no such rows.
-    pub(crate) fn append(&mut self, other: &Table, rows: Range<usize>) {
+    pub(crate) fn append(&mut self, other: &Table, rows: Range<usize>, most: usize) {
         for (name, column) in &other.columns {
-            self.columns[name].append(column, rows.clone());
+            self.columns[name].append(column, rows.clone(), most);
         }
     }
 
@@ -179,6 +179,16 @@ impl Table {
     pub fn rows(&self) -> usize {
         self.columns.values().next().map_or(0, Column::len)
     }
+}
+
+/// Adds values. Memory is doubled as a vector doubles it, but not beyond what `most` values take: what a row group takes would depend on
+/// how its rows are cut into pieces.
+fn extend<T: Clone>(own: &mut Vec<T>, values: &[T], most: usize) {
+    let needed = own.len() + values.len();
+    if needed > own.capacity() {
+        own.reserve_exact(most.min(2 * needed).max(needed) - own.len());
+    }
+    own.extend_from_slice(values);
 }
 
 mod finite_or_null {

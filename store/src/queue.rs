@@ -352,16 +352,19 @@ impl Store {
         if !is_due {
             return Ok(0);
         }
-        let too_long = query(sql::queue::SHORTEN_LEASES).execute(&self.database).await?;
+        // Several work items at once, and so alone.
+        let mut tx = self.write().await?;
+        let too_long = query(sql::queue::SHORTEN_LEASES).execute(&mut tx).await?;
         if too_long > 0 {
             tracing::warn!(leases = too_long, "the clock was set back; leases are counted from now");
         }
         let expired: Vec<(String, i64, Option<String>, Option<String>)> =
-            query(sql::queue::END_LEASES).bind(CRASH_LIMIT).rows(&self.database).await?;
+            query(sql::queue::END_LEASES).bind(CRASH_LIMIT).rows(&mut tx).await?;
+        query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&mut tx).await?;
+        tx.commit().await?;
         for (state, crashes, owner, note) in &expired {
             tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
         }
-        query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&self.database).await?;
         Ok(expired.len() as u64)
     }
 
@@ -382,12 +385,14 @@ impl Store {
             if !is_anything {
                 return Ok(ended);
             }
+            let mut tx = self.write().await?;
             ended += query(sql::queue::END_OUTDATED)
                 .bind(physics_version)
                 .bind(silence_ms)
                 .bind(ROWS_AT_ONCE as i64)
-                .execute(&self.database)
+                .execute(&mut tx)
                 .await?;
+            tx.commit().await?;
         }
     }
 

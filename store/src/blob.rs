@@ -57,6 +57,15 @@ impl StoredObject {
     }
 }
 
+/// A file whose content has been read once.
+pub(crate) struct NamedFile {
+    file: Arc<File>,
+    pub(crate) id: BlobId,
+    bytes: u64,
+    /// The content of a file of one part.
+    whole: Option<Vec<u8>>,
+}
+
 impl BlobStore {
     /// Opens what is at a location; a directory is made where there is none. Whether a bucket is there is not tried.
     ///
@@ -73,9 +82,13 @@ impl BlobStore {
     /// When the object store fails.
     pub async fn put(&self, bytes: Vec<u8>) -> Result<BlobId> {
         let id = BlobId::of(&bytes);
-        let payload = PutPayload::from(bytes);
+        self.put_as(id, PutPayload::from(bytes)).await?;
+        Ok(id)
+    }
+
+    async fn put_as(&self, id: BlobId, payload: PutPayload) -> Result<()> {
         match self.write(id, payload.clone(), PutMode::Create).await {
-            Ok(()) => return Ok(id),
+            Ok(()) => return Ok(()),
             Err(StoreError::Blob(object_store::Error::AlreadyExists { .. })) => {}
             // A request that breaks off may have been carried out, and is not sent again by itself.
             Err(error) if error.is_unavailable() => {}
@@ -84,7 +97,7 @@ impl BlobStore {
         if self.is_to_be_written(id).await? {
             self.write(id, payload, PutMode::Overwrite).await?;
         }
-        Ok(id)
+        Ok(())
     }
 
     /// Writes a file as a blob, as [`put`](Self::put) writes bytes; a large one is never in memory as a whole. Gives its size
@@ -93,31 +106,23 @@ impl BlobStore {
     /// # Errors
     /// When the file cannot be read or the object store fails.
     pub async fn put_file(&self, file: &File) -> Result<(BlobId, u64)> {
-        let file = Arc::new(file.try_clone().map_err(StoreError::LocalFile)?);
-        let mut hasher = blake3::Hasher::new();
-        let read = async |from: u64| {
-            let file = file.clone();
-            let part = tokio::task::spawn_blocking(move || read_part(&file, from)).await;
-            part.map_err(std::io::Error::other).flatten().map_err(StoreError::LocalFile)
-        };
-        let first = read(0).await?;
-        if first.len() < PART {
-            let bytes = first.len() as u64;
-            return Ok((self.put(first).await?, bytes));
+        self.put_named(NamedFile::read(file).await?).await
+    }
+
+    /// The same of a file that has been read once.
+    pub(crate) async fn put_named(&self, file: NamedFile) -> Result<(BlobId, u64)> {
+        let NamedFile { file, id, bytes, whole } = file;
+        if let Some(whole) = whole {
+            self.put_as(id, PutPayload::from(whole)).await?;
+            return Ok((id, bytes));
         }
-        let mut part = first;
-        while !part.is_empty() {
-            hasher.update(&part);
-            part = read(hasher.count()).await?;
-        }
-        let (id, bytes) = (BlobId(hasher.finalize()), hasher.count());
         if !self.is_to_be_written(id).await? {
             return Ok((id, bytes));
         }
         let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
         let mut written = 0;
         while written < bytes {
-            let part = read(written).await?;
+            let part = read_part(&file, written).await?;
             written += part.len() as u64;
             let sent = if part.is_empty() {
                 Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")))
@@ -319,18 +324,48 @@ impl BlobStore {
     }
 }
 
-/// A part of a file, shorter at its end.
-fn read_part(file: &File, from: u64) -> std::io::Result<Vec<u8>> {
-    let mut part = vec![0; PART];
-    let mut length = 0;
-    while length < PART {
-        match file.read_at(&mut part[length..], from + length as u64)? {
-            0 => break,
-            read => length += read,
+impl NamedFile {
+    /// Reads a file once, whatever its own position is.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub(crate) async fn read(file: &File) -> Result<Self> {
+        let file = Arc::new(file.try_clone().map_err(StoreError::LocalFile)?);
+        let first = read_part(&file, 0).await?;
+        if first.len() < PART {
+            let (id, bytes) = (BlobId::of(&first), first.len() as u64);
+            return Ok(Self { file, id, bytes, whole: Some(first) });
         }
+        let mut hasher = blake3::Hasher::new();
+        let mut part = first;
+        while !part.is_empty() {
+            hasher.update(&part);
+            part = read_part(&file, hasher.count()).await?;
+        }
+        Ok(Self { file, id: BlobId(hasher.finalize()), bytes: hasher.count(), whole: None })
     }
-    part.truncate(length);
-    Ok(part)
+}
+
+/// A part of a file, shorter at its end.
+async fn read_part(file: &Arc<File>, from: u64) -> Result<Vec<u8>> {
+    let file = file.clone();
+    let read = move || {
+        let mut part = vec![0; PART];
+        let mut length = 0;
+        while length < PART {
+            match file.read_at(&mut part[length..], from + length as u64)? {
+                0 => break,
+                read => length += read,
+            }
+        }
+        part.truncate(length);
+        Ok(part)
+    };
+    tokio::task::spawn_blocking(read)
+        .await
+        .map_err(std::io::Error::other)
+        .flatten()
+        .map_err(StoreError::LocalFile)
 }
 
 /// A part of some bytes; what lies beyond their end is left out.

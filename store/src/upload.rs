@@ -5,12 +5,11 @@
 //! is about to; whoever wants to reserve such a blob waits until it is gone, and writes it again.
 
 use std::fs::File;
-use std::os::unix::fs::FileExt as _;
 use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::blob::BlobId;
+use crate::blob::{BlobId, NamedFile};
 use crate::connection::Store;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
@@ -39,11 +38,9 @@ impl Store {
     /// # Errors
     /// When the file cannot be read, or the database or the object store fails.
     pub async fn put_blob_file(&self, file: &File) -> Result<(BlobId, u64)> {
-        let file = file.try_clone().map_err(StoreError::LocalFile)?;
-        let hashed = tokio::task::spawn_blocking(move || hash(&file).map(|hash| (file, hash))).await;
-        let (file, id) = hashed.map_err(std::io::Error::other).flatten().map_err(StoreError::LocalFile)?;
-        self.reserve(id).await?;
-        self.blobs().put_file(&file).await
+        let file = NamedFile::read(file).await?;
+        self.reserve(file.id).await?;
+        self.blobs().put_named(file).await
     }
 
     /// Reserves a blob, once nobody is deleting it.
@@ -73,20 +70,6 @@ pub(crate) async fn require_reserved(
     match missing.into_iter().next() {
         Some(blob) => Err(StoreError::BlobMissing(blob)),
         None => Ok(()),
-    }
-}
-
-/// The name of a file's content, whatever the file's own position is; that stays as it is.
-fn hash(file: &File) -> std::io::Result<BlobId> {
-    let mut hasher = blake3::Hasher::new();
-    let mut part = vec![0; 1 << 20];
-    loop {
-        match file.read_at(&mut part, hasher.count())? {
-            0 => return Ok(hasher.finalize().into()),
-            read => {
-                hasher.update(&part[..read]);
-            }
-        }
     }
 }
 

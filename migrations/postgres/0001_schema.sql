@@ -323,7 +323,7 @@ DEFERRABLE INITIALLY DEFERRED FOR EACH ROW
 WHEN (NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled)
 EXECUTE FUNCTION tell_the_sweeps();
 
--- Those who wait are told of changes when they are committed, once for each transaction (store/src/wake.rs).
+-- Listeners are notified when a transaction commits, once for each (store/src/notification.rs).
 CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
     NOTIFY drillsweep_work;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::blob::{BlobStore, ObjectsLocation};
 use crate::database::{Database, DatabaseLocation, Transaction, postgres, sqlite};
 use crate::error::Result;
+use crate::notification::Listening;
 use crate::query::query;
 use crate::sql;
-use crate::wake::Listening;
 
 /// Where the store lies and who opens it.
 #[derive(Debug, Clone)]

@@ -3,7 +3,8 @@
 //! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
 //! failure) runs beside others of its kind: it takes its locks in one order, the work item, the turn of its owner, the sweeps that
 //! have it by their identifiers. All that changes several (submitting, cancelling, pausing, collecting garbage) runs alone, as
-//! everything does on SQLite, by a lock that the former share; triggers take the shared lock, so that no statement can forget it.
+//! everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold shared. Triggers take the shared lock,
+//! so that no statement can forget it.
 
 mod location;
 pub(crate) mod postgres;

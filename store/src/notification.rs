@@ -1,7 +1,7 @@
-//! Hearing of changes without asking all the time.
+//! Notifications of changes, so that those who wait need not poll often.
 //!
-//! PostgreSQL tells its clients of changes when they are committed (`NOTIFY`, by the triggers of the schema); a word may be lost with a
-//! connection, so that whoever waits looks now and then all the same. SQLite tells nobody: there the looks are what it goes by.
+//! PostgreSQL notifies its listeners when a transaction commits (`NOTIFY`, by the triggers of the schema). A notification may be lost with
+//! a connection, so that polling goes on behind it, less often. SQLite has no notifications: there polling is all.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,31 +17,31 @@ use crate::database::Database;
 const WORK: &str = "drillsweep_work";
 const SWEEPS: &str = "drillsweep_sweeps";
 
-/// How much longer it is between two looks where changes are told of.
-const LOOKS_ARE_RARER: u32 = 5;
+/// How many times longer the polling interval is where there are notifications.
+const POLLING_SLOWDOWN: u32 = 5;
 
-/// The least that a wait takes where changes are told of: of many at once one is told.
-const PAUSE: Duration = Duration::from_millis(20);
+/// The shortest wait where there are notifications: many at once count as one.
+const SHORTEST_WAIT: Duration = Duration::from_millis(20);
 
-/// How long it is before another try where the server cannot be listened to.
+/// The wait before listening is tried again after it failed.
 const RETRY: Duration = Duration::from_secs(2);
 
-/// Changes of one kind, for one who waits for them. What happens between two waits ends the next one at once.
+/// Notifications of one kind for one waiter. One that arrives between two waits ends the next wait at once.
 #[derive(Debug)]
 pub struct Changes(Option<watch::Receiver<()>>);
 
 impl Changes {
-    /// Waits for the next change, or until it is time to look whether there was one: after `look` where nobody tells of changes, and
-    /// after five times as long where somebody does. Whatever ends it, there may be nothing new.
-    pub async fn wait(&mut self, look: Duration) {
+    /// Waits for the next notification, or until it is time to poll: after `poll_interval` where there are no notifications, and after
+    /// five times as long where there are. Nothing need have changed when it returns.
+    pub async fn wait(&mut self, poll_interval: Duration) {
         match &mut self.0 {
-            None => tokio::time::sleep(look).await,
-            Some(told) => {
-                tokio::time::sleep(PAUSE).await;
-                // An error means that nobody listens any more: then looks alone are what is left.
-                let _ = tokio::time::timeout(LOOKS_ARE_RARER * look, async {
-                    if told.changed().await.is_err() {
-                        tokio::time::sleep(look).await;
+            None => tokio::time::sleep(poll_interval).await,
+            Some(notified) => {
+                tokio::time::sleep(SHORTEST_WAIT).await;
+                // An error means that listening has ended: polling is left.
+                let _ = tokio::time::timeout(POLLING_SLOWDOWN * poll_interval, async {
+                    if notified.changed().await.is_err() {
+                        tokio::time::sleep(poll_interval).await;
                     }
                 })
                 .await;
@@ -50,19 +50,19 @@ impl Changes {
     }
 }
 
-/// Who listens for all that wait in this process; nobody before somebody has asked.
+/// The one listener of all waiters of a store; there is none before somebody waits.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Listening(Arc<Mutex<Option<Told>>>);
+pub(crate) struct Listening(Arc<Mutex<Option<Listener>>>);
 
-/// What was told, by channel.
+/// A task that listens, and whom it notifies, by channel.
 #[derive(Debug)]
-struct Told {
+struct Listener {
     work: watch::Sender<()>,
     sweeps: watch::Sender<()>,
     task: tokio::task::JoinHandle<()>,
 }
 
-impl Drop for Told {
+impl Drop for Listener {
     fn drop(&mut self) {
         self.task.abort();
     }
@@ -76,33 +76,33 @@ impl Listening {
 }
 
 impl Store {
-    /// What may have given workers something to do.
+    /// Notifications of work that may have become ready to be claimed.
     pub async fn work_changes(&self) -> Changes {
-        self.changes(|told| told.work.subscribe()).await
+        self.changes(|listener| listener.work.subscribe()).await
     }
 
-    /// Changes of the states of sweeps' points.
+    /// Notifications of changes of sweeps and of their points.
     pub async fn sweep_changes(&self) -> Changes {
-        self.changes(|told| told.sweeps.subscribe()).await
+        self.changes(|listener| listener.sweeps.subscribe()).await
     }
 
-    async fn changes(&self, of: impl Fn(&Told) -> watch::Receiver<()>) -> Changes {
+    async fn changes(&self, of: impl Fn(&Listener) -> watch::Receiver<()>) -> Changes {
         let Database::Postgres(pool) = &self.database else { return Changes(None) };
         let mut listening = self.listening.0.lock().await;
-        let told = listening.get_or_insert_with(|| {
+        let listener = listening.get_or_insert_with(|| {
             let (work, sweeps) = (watch::Sender::new(()), watch::Sender::new(()));
             let task = tokio::spawn(listen(pool.clone(), work.clone(), sweeps.clone()));
-            Told { work, sweeps, task }
+            Listener { work, sweeps, task }
         });
-        Changes(Some(of(told)))
+        Changes(Some(of(listener)))
     }
 }
 
-/// Listens for as long as the process runs, over a connection of the pool.
+/// Listens until the pool is closed, over one of its connections.
 async fn listen(pool: PgPool, work: watch::Sender<()>, sweeps: watch::Sender<()>) {
     while !pool.is_closed() {
         let error = listen_until_it_fails(&pool, &work, &sweeps).await;
-        tracing::warn!(?error, "the database tells of no changes; they are looked for");
+        tracing::warn!(?error, "notifications of the database are interrupted; polling goes on");
         tokio::time::sleep(RETRY).await;
     }
 }
@@ -115,9 +115,9 @@ async fn listen_until_it_fails(
     let mut listener = PgListener::connect_with(pool).await?;
     listener.listen_all([WORK, SWEEPS]).await?;
     loop {
-        // What was said before somebody listened, and after a lost connection was made anew, is not known.
-        let told = listener.try_recv().await?;
-        let channel = told.as_ref().map(|told| told.channel());
+        // None after a reconnect: what was notified meanwhile is lost, and so everybody is notified.
+        let notification = listener.try_recv().await?;
+        let channel = notification.as_ref().map(|notification| notification.channel());
         if channel != Some(SWEEPS) {
             work.send_replace(());
         }

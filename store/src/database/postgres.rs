@@ -17,11 +17,11 @@ const LOCK_TIMEOUT: &str = "30s";
 /// How long a new connection may take.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Takes the lock of writers alone, in its number that nobody else takes by chance and that the schema's triggers have, too. What follows
-/// from a change of work is done at once, as what comes next may go by it.
+/// Takes the writers' advisory lock exclusively; the schema's triggers use the same arbitrary key. Deferred triggers run at once in such a
+/// transaction, since its later statements rely on what they do.
 const ALONE: &str = "SET CONSTRAINTS ALL IMMEDIATE; SELECT pg_advisory_xact_lock(7237963465534699365)";
 
-/// The same beside others of its kind; what follows from a change of work is done at the end.
+/// Takes the same lock shared; deferred triggers run at the commit.
 const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(7237963465534699365)";
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
@@ -38,7 +38,7 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
         // other: each would wait for the disk.
         options = options.options([("synchronous_commit", "off")]);
     }
-    // One of them listens for changes.
+    // One of them listens for notifications.
     let connections = match role {
         Role::Server => 16,
         Role::Worker => 3,
@@ -79,12 +79,12 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Databas
     Ok(Database::Postgres(pool))
 }
 
-/// A transaction that waits until no other writer of any kind is left, and lets none begin.
+/// A transaction that holds the writers' lock exclusively.
 pub(crate) async fn write_alone(pool: &PgPool) -> Result<Transaction> {
     write(pool, ALONE).await
 }
 
-/// A transaction that runs beside others of its kind. The schema's triggers take the same lock.
+/// A transaction that holds the writers' lock shared, as the schema's triggers do for statements outside one.
 pub(crate) async fn write_beside_others(pool: &PgPool) -> Result<Transaction> {
     write(pool, BESIDE_OTHERS).await
 }

@@ -14,7 +14,7 @@ use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
 use drillsweep_server::{Config, ConnectionLimits, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
-use drillsweep_store::{Role, Store, StoreConfig};
+use drillsweep_store::{Role, Store, StoreConfig, patiently};
 use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit};
 use tokio::net::TcpListener;
@@ -250,7 +250,8 @@ async fn serve_until(
     arguments: &ListenArguments,
     stop: watch::Receiver<bool>,
 ) -> anyhow::Result<()> {
-    let store = Store::open(&data.store(Role::Server)?).await?;
+    let config = data.store(Role::Server)?;
+    let store = patiently(|| Store::open(&config)).await?;
     if let Some(path) = &arguments.admin_token_file {
         token::register(&store, path).await?;
     }

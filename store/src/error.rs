@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
 use object_store::client::HttpError;
+use sqlx::migrate::MigrateError;
 
 use crate::blob::BlobId;
 
@@ -19,7 +20,7 @@ pub enum StoreError {
     Database(#[from] sqlx::Error),
     /// The schema could not be brought up to date.
     #[error("database schema: {0}")]
-    Migration(#[from] sqlx::migrate::MigrateError),
+    Migration(#[from] MigrateError),
     /// The object store failed.
     #[error("object store: {0}")]
     Blob(#[from] object_store::Error),
@@ -142,29 +143,34 @@ impl StoreError {
         texts.iter().any(|part| text.contains(part))
     }
 
-    /// True where the same call may succeed a moment later: the database was busy.
+    /// True where the same call may succeed a moment later: the database was busy, or did not answer.
     pub fn is_busy(&self) -> bool {
         match self {
-            StoreError::Database(sqlx::Error::Database(error)) => {
-                match engine_code(error.as_ref()) {
-                    // SQLITE_BUSY and SQLITE_LOCKED with their extended codes.
-                    EngineCode::Sqlite(code) => matches!(code & 0xff, 5 | 6),
-                    // Conflicts of transactions, waits for locks that took too long, and a server that starts, stops or has no
-                    // connection left.
-                    EngineCode::Postgres(code) => {
-                        matches!(
-                            code.as_str(),
-                            "40001" | "40P01" | "55P03" | "53300" | "57P01" | "57P02" | "57P03"
-                        )
-                    }
-                    EngineCode::None => false,
-                }
+            StoreError::Database(error) | StoreError::Migration(MigrateError::Execute(error)) => {
+                is_passing(error)
             }
-            StoreError::Database(sqlx::Error::PoolTimedOut)
-            | StoreError::Arriving
-            | StoreError::TakenAway => true,
+            StoreError::Arriving | StoreError::TakenAway => true,
             _ => false,
         }
+    }
+}
+
+/// Whether a database may do a moment later what it did not now.
+fn is_passing(error: &sqlx::Error) -> bool {
+    match error {
+        sqlx::Error::Database(error) => match engine_code(error.as_ref()) {
+            // SQLITE_BUSY and SQLITE_LOCKED with their extended codes.
+            EngineCode::Sqlite(code) => matches!(code & 0xff, 5 | 6),
+            // Conflicts of transactions, waits for locks that took too long, and a server that starts, stops or has no
+            // connection left.
+            EngineCode::Postgres(code) => {
+                matches!(code.as_str(), "40001" | "40P01" | "55P03" | "53300" | "57P01" | "57P02" | "57P03")
+            }
+            EngineCode::None => false,
+        },
+        // A connection that could not be made, or broke off.
+        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
+        _ => false,
     }
 }
 

@@ -11,6 +11,7 @@ use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
     BlobId, Claim, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError, WorkerRecord,
+    patiently,
 };
 use jiff::Timestamp;
 use serde_json::{Value, json};
@@ -127,7 +128,7 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
         None => stop,
     };
     let id = format!("worker-{}", uuid::Uuid::now_v7().simple());
-    let store = Store::open(&config.store).await?;
+    let store = patiently(|| Store::open(&config.store)).await?;
     let record = WorkerRecord {
         id: id.clone(),
         host: host_name(),
@@ -138,7 +139,7 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
         last_seen: 0,
     };
     // Before the first claim, so that who holds a point can always be found.
-    store.register_worker(&record).await?;
+    patiently(|| store.register_worker(&record)).await?;
     keep_speed(&store, &record.host).await;
     let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease)?;
     let mut changes = store.work_changes().await;

@@ -7,6 +7,7 @@ use crate::database::{Database, DatabaseLocation, Transaction, postgres, sqlite}
 use crate::error::Result;
 use crate::notification::Listening;
 use crate::query::query;
+use crate::queue::Reaping;
 use crate::sql;
 
 /// Where the store lies and who opens it.
@@ -64,6 +65,7 @@ pub struct Store {
     /// The file of the embedded engine.
     pub(crate) database_path: Option<PathBuf>,
     pub(crate) listening: Listening,
+    pub(crate) reaping: Reaping,
     blobs: BlobStore,
 }
 
@@ -103,6 +105,7 @@ impl Store {
             database,
             database_path,
             listening: Listening::default(),
+            reaping: Reaping::default(),
             blobs: BlobStore::open(&config.objects)?,
         })
     }

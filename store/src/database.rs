@@ -4,16 +4,18 @@
 //! failure) runs beside others of its kind: it takes its locks in one order, the work item, the turn of its owner, the sweeps that
 //! have it by their identifiers. All that changes several (submitting, cancelling, pausing, collecting garbage) runs alone, as
 //! everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold shared. Triggers take the shared lock,
-//! so that no statement can forget it.
+//! so that no statement can forget it. What a change of state has as consequences for others, the former do one after the other, too
+//! (migrations/postgres/0002_queues.sql).
 
 mod location;
 pub(crate) mod postgres;
 pub(crate) mod sqlite;
 
-use sqlx::{PgPool, PgTransaction, SqlitePool, SqliteTransaction};
+use sqlx::{PgPool, SqlitePool, SqliteTransaction};
 use tokio::sync::OwnedMutexGuard;
 
 pub use self::location::DatabaseLocation;
+use self::postgres::PostgresTransaction;
 pub(crate) use self::sqlite::Writers;
 use crate::error::Result;
 use crate::query::Session;
@@ -34,7 +36,7 @@ pub(crate) enum Transaction {
         /// Given up after the transaction: fields are dropped in their order.
         _turn: Option<OwnedMutexGuard<()>>,
     },
-    Postgres(PgTransaction<'static>),
+    Postgres(PostgresTransaction),
 }
 
 impl Database {
@@ -44,9 +46,7 @@ impl Database {
             Database::Sqlite(pool, _) => {
                 Transaction::Sqlite { transaction: pool.begin_with("BEGIN").await?, _turn: None }
             }
-            Database::Postgres(pool) => Transaction::Postgres(
-                pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?,
-            ),
+            Database::Postgres(pool) => Transaction::Postgres(PostgresTransaction::read(pool).await?),
         })
     }
 
@@ -54,7 +54,7 @@ impl Database {
     pub(crate) async fn write(&self) -> Result<Transaction> {
         match self {
             Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-            Database::Postgres(pool) => postgres::write_alone(pool).await,
+            Database::Postgres(pool) => Ok(Transaction::Postgres(PostgresTransaction::alone(pool).await?)),
         }
     }
 
@@ -62,7 +62,9 @@ impl Database {
     pub(crate) async fn write_one(&self) -> Result<Transaction> {
         match self {
             Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-            Database::Postgres(pool) => postgres::write_beside_others(pool).await,
+            Database::Postgres(pool) => {
+                Ok(Transaction::Postgres(PostgresTransaction::beside_others(pool).await?))
+            }
         }
     }
 
@@ -82,6 +84,14 @@ impl Transaction {
             Transaction::Postgres(transaction) => transaction.commit().await?,
         }
         Ok(())
+    }
+
+    /// Commits a change of the state of a work item: the same, but for that those who commit such wait for each other in a better way.
+    pub(crate) async fn commit_in_turn(self) -> Result<()> {
+        match self {
+            Transaction::Sqlite { .. } => self.commit().await,
+            Transaction::Postgres(transaction) => transaction.commit_in_turn().await,
+        }
     }
 
     pub(crate) async fn rollback(self) -> Result<()> {
@@ -106,7 +116,7 @@ impl<'c> From<&'c mut Transaction> for Session<'c> {
     fn from(transaction: &'c mut Transaction) -> Self {
         match transaction {
             Transaction::Sqlite { transaction, .. } => Session::Sqlite(transaction),
-            Transaction::Postgres(transaction) => Session::Postgres(transaction),
+            Transaction::Postgres(transaction) => Session::Postgres(transaction.connection()),
         }
     }
 }

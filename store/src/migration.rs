@@ -16,7 +16,10 @@ const SQLITE: &[File] = &[
     (3, "uploads", include_str!("../../migrations/sqlite/0003_uploads.sql")),
 ];
 
-const POSTGRES: &[File] = &[(1, "schema", include_str!("../../migrations/postgres/0001_schema.sql"))];
+const POSTGRES: &[File] = &[
+    (1, "schema", include_str!("../../migrations/postgres/0001_schema.sql")),
+    (2, "queues", include_str!("../../migrations/postgres/0002_queues.sql")),
+];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A
 /// database that has had one of another text, or one that is not here, is refused.

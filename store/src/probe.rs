@@ -27,7 +27,7 @@ impl Store {
             .bind(NO_PHYSICS)
             .execute(&mut tx)
             .await?;
-        let claimed = self.claim_with(&mut tx, "probe", NO_PHYSICS, 1_000).await?;
+        let claimed = self.claim_in(&mut tx, "probe", NO_PHYSICS, 1_000).await?;
         tx.rollback().await?;
         if claimed.is_none_or(|claim| claim.lease.key != *key.as_bytes()) {
             return Err(StoreError::Corrupt("a work item that was queued could not be claimed".to_owned()));

@@ -1,13 +1,17 @@
 //! The queue: claiming work, keeping the lease, ending it.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
 
 use crate::blob::BlobId;
 use crate::connection::Store;
 use crate::database::Transaction;
-use crate::error::Result;
+use crate::error::{Result, StoreError};
 use crate::point::ScenarioText;
-use crate::query::{Session, Statement, query};
+use crate::query::{Query, Statement, query};
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 use crate::submit::ROWS_AT_ONCE;
@@ -25,6 +29,26 @@ const FIRST_RETRY_MS: i64 = 5_000;
 
 /// Longest wait before the last of these retries \[ms\].
 const LONGEST_RETRY_MS: i64 = (FIRST_RETRY_MS << (INFRASTRUCTURE_TRIES - 2)) * 3 / 2;
+
+/// How often those who claim look whether a lease has run out or a retry is due, as long as there is other work: looking costs as
+/// much as claiming.
+const REAP_EVERY: Duration = Duration::from_secs(1);
+
+/// When a process looked last whether anything is due.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Reaping(Arc<Mutex<Option<Instant>>>);
+
+impl Reaping {
+    /// Whether it is time to look again, now.
+    fn is_due(&self) -> bool {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = last.is_none_or(|last| last.elapsed() >= REAP_EVERY);
+        if is_due {
+            *last = Some(Instant::now());
+        }
+        is_due
+    }
+}
 
 /// Work handed to a worker.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,28 +166,27 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
-        self.reap_expired().await?;
-        self.claim_with(&self.database, worker, physics_version, lease_ms).await
+        let claim = || claiming(worker, physics_version, lease_ms).rows_in_turn(&self.database);
+        let has_looked = self.reaping.is_due();
+        if has_looked {
+            self.reap().await?;
+        }
+        let mut rows = claim().await?;
+        if rows.is_empty() && !has_looked && self.reap().await?.is_some() {
+            rows = claim().await?;
+        }
+        claimed(rows, worker)
     }
 
-    /// The same over a connection or in a transaction.
-    pub(crate) async fn claim_with<'c>(
+    /// The same in a transaction.
+    pub(crate) async fn claim_in(
         &self,
-        session: impl Into<Session<'c>>,
+        tx: &mut Transaction,
         worker: &str,
         physics_version: i64,
         lease_ms: i64,
     ) -> Result<Option<Claim>> {
-        type Row = (Vec<u8>, i64, String, String, Option<String>);
-        // All rows are fetched, here and below, so that the statement runs to its commit and an error of that is seen.
-        let rows: Vec<Row> =
-            query(sql::queue::CLAIM).bind(worker).bind(lease_ms).bind(physics_version).rows(session).await?;
-        let Some((key, fencing_token, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
-            return Ok(None);
-        };
-        let lease = Lease { key: work_key(&key)?, fencing_token, worker: worker.to_owned() };
-        let checkpoint = checkpoint.as_deref().map(str::parse).transpose()?;
-        Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json }, checkpoint }))
+        claimed(claiming(worker, physics_version, lease_ms).rows(tx).await?, worker)
     }
 
     /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.
@@ -194,8 +217,21 @@ impl Store {
     /// # Errors
     /// When the database fails, or a blob is not there.
     pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
-        let mut tx = self.write_one().await?;
         let key = lease.key.as_slice();
+        let finish = query(sql::queue::FINISH_AT_ONCE)
+            .bind(key)
+            .bind(lease.fencing_token)
+            .bind(&lease.worker)
+            .bind(result.summary_json)
+            .bind(result.provenance_json)
+            .bind(artifacts_json(result.artifacts));
+        if let Some((outcome,)) = finish.rows_in_turn::<(String,)>(&self.database).await?.into_iter().next() {
+            return match outcome.strip_prefix("missing ") {
+                Some(blob) => Err(StoreError::BlobMissing(blob.to_owned())),
+                None => Ok(outcome == "done"),
+            };
+        }
+        let mut tx = self.write_one().await?;
         let finished: Vec<i64> = query(sql::queue::FINISH)
             .bind(key)
             .bind(lease.fencing_token)
@@ -238,7 +274,7 @@ impl Store {
                 keep_disagreement(&mut tx, lease.key.as_slice(), &earlier.provenance).await?;
             }
         }
-        tx.commit().await?;
+        tx.commit_in_turn().await?;
         Ok(true)
     }
 
@@ -346,11 +382,16 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
+        Ok(self.reap().await?.unwrap_or(0))
+    }
+
+    /// The same; none if nothing was due.
+    async fn reap(&self) -> Result<Option<u64>> {
         // Most of the time there is nothing: look before taking the write lock.
         let is_due: bool =
             query(sql::queue::IS_ANYTHING_DUE).bind(LONGEST_RETRY_MS).scalar(&self.database).await?;
         if !is_due {
-            return Ok(0);
+            return Ok(None);
         }
         // Several work items at once, and so alone.
         let mut tx = self.write().await?;
@@ -365,7 +406,7 @@ impl Store {
         for (state, crashes, owner, note) in &expired {
             tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
         }
-        Ok(expired.len() as u64)
+        Ok(Some(expired.len() as u64))
     }
 
     /// Ends work whose version of the numbers is earlier than the one that is computed now, and that no worker heard of within the last
@@ -425,6 +466,35 @@ impl Store {
             .await?;
         Ok(changed == 1)
     }
+}
+
+fn artifacts_json(artifacts: &[NewArtifact]) -> String {
+    let artifacts = artifacts.iter().map(|artifact| {
+        json!({
+            "name": artifact.name,
+            "media_type": artifact.media_type,
+            "blob": artifact.blob.to_string(),
+            "bytes": artifact.bytes,
+            "row_count": artifact.row_count,
+        })
+    });
+    Value::Array(artifacts.collect()).to_string()
+}
+
+fn claiming(worker: &str, physics_version: i64, lease_ms: i64) -> Query {
+    query(sql::queue::CLAIM).bind(worker).bind(lease_ms).bind(physics_version)
+}
+
+/// Key, fencing token, base, changes, checkpoint.
+type ClaimedRow = (Vec<u8>, i64, String, String, Option<String>);
+
+fn claimed(rows: Vec<ClaimedRow>, worker: &str) -> Result<Option<Claim>> {
+    let Some((key, fencing_token, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {
+        return Ok(None);
+    };
+    let lease = Lease { key: work_key(&key)?, fencing_token, worker: worker.to_owned() };
+    let checkpoint = checkpoint.as_deref().map(str::parse).transpose()?;
+    Ok(Some(Claim { lease, scenario: ScenarioText { base_json, changes_json }, checkpoint }))
 }
 
 /// Marks a result as other than the one before.

@@ -107,6 +107,7 @@ statements! {
         END_OUTDATED = "end_outdated",
         FAIL = "fail",
         FINISH = "finish",
+        FINISH_AT_ONCE = "finish_at_once",
         INSERT_ARTIFACT = "insert_artifact",
         INSERT_RESULT = "insert_result",
         IS_ANYTHING_DUE = "is_anything_due",
@@ -209,7 +210,6 @@ statements! {
         VALID = "valid",
     }
     upload {
-        BEING_REMOVED = "being_removed",
         RESERVE = "reserve",
         UNRESERVED = "unreserved",
     }

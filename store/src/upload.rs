@@ -45,14 +45,12 @@ impl Store {
 
     /// Reserves a blob, once nobody is deleting it.
     async fn reserve(&self, blob: BlobId) -> Result<()> {
+        let name = blob.to_string();
         loop {
-            let mut tx = self.write_one().await?;
-            let name = blob.to_string();
-            if !query(sql::upload::BEING_REMOVED).bind(&name).scalar::<bool>(&mut tx).await? {
-                query(sql::upload::RESERVE).bind(&name).bind(RESERVED_MS).execute(&mut tx).await?;
-                return tx.commit().await;
+            let reserve = query(sql::upload::RESERVE).bind(&name).bind(RESERVED_MS);
+            if !reserve.rows_beside_others::<(String,)>(&self.database).await?.is_empty() {
+                return Ok(());
             }
-            tx.rollback().await?;
             // Until the note of it runs out, if whoever was deleting it has died.
             tokio::time::sleep(POLL).await;
         }

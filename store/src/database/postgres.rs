@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use sqlx::postgres::{PgConnectOptions, PgPool, PgPoolOptions};
-use sqlx::{AssertSqlSafe, Executor as _};
+use sqlx::pool::PoolConnection;
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, PgRow};
+use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Postgres};
 
 use crate::connection::Role;
-use crate::database::{Database, Transaction};
+use crate::database::Database;
 use crate::error::Result;
 use crate::migration;
 
@@ -17,12 +18,18 @@ const LOCK_TIMEOUT: &str = "30s";
 /// How long a new connection may take.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Takes the writers' advisory lock exclusively; the schema's triggers use the same arbitrary key. Deferred triggers run at once in such a
-/// transaction, since its later statements rely on what they do.
-const ALONE: &str = "SET CONSTRAINTS ALL IMMEDIATE; SELECT pg_advisory_xact_lock(7237963465534699365)";
+/// How long a connection is trusted after its last use; later it is asked first whether it is still there, which takes a message and its
+/// answer.
+const TRUSTED_FOR: Duration = Duration::from_secs(1);
 
-/// Takes the same lock shared; deferred triggers run at the commit.
+/// Takes the writers' advisory lock exclusively; the schema's triggers use the same arbitrary key.
+const ALONE: &str = "SELECT pg_advisory_xact_lock(7237963465534699365)";
+
+/// Takes the same lock shared.
 const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(7237963465534699365)";
+
+/// Goes through the turnstile (migrations/postgres/0002_queues.sql), after the writers' lock was taken.
+const TURNSTILE: &str = "LOCK TABLE turnstile IN EXCLUSIVE MODE";
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
 pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms: i64) -> Result<Database> {
@@ -30,13 +37,20 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
         ("lock_timeout", LOCK_TIMEOUT),
         ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
         ("default_transaction_isolation", "read committed"),
+        // No statement is worth compiling: where statistics are missing, the planner thinks that some are.
+        ("jit", "off"),
         // Migrations tell of what is there already.
         ("client_min_messages", "warning"),
     ]);
     if let Role::Worker = role {
         // What a crash of the database forgets is computed again. All that workers do to one sweep goes through its row, one after the
         // other: each would wait for the disk.
-        options = options.options([("synchronous_commit", "off")]);
+        // Their statements look for a few rows by an index: planning one takes longer than running it.
+        options = options.options([
+            ("synchronous_commit", "off"),
+            ("plan_cache_mode", "force_generic_plan"),
+            ("enable_seqscan", "off"),
+        ]);
     }
     // One of them listens for notifications.
     let connections = match role {
@@ -46,6 +60,15 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
     let pool = PgPoolOptions::new()
         .max_connections(connections)
         .acquire_timeout(CONNECT_TIMEOUT)
+        .test_before_acquire(false)
+        .before_acquire(|connection, use_of_it| {
+            Box::pin(async move {
+                if use_of_it.idle_for > TRUSTED_FOR {
+                    connection.ping().await?;
+                }
+                Ok(true)
+            })
+        })
         .after_connect(move |connection, _| {
             Box::pin(async move {
                 if clock_offset_ms != 0 {
@@ -79,18 +102,81 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Databas
     Ok(Database::Postgres(pool))
 }
 
-/// A transaction that holds the writers' lock exclusively.
-pub(crate) async fn write_alone(pool: &PgPool) -> Result<Transaction> {
-    write(pool, ALONE).await
+/// A transaction. Where it ends neither by a commit nor by being rolled back, its connection is closed, by which the server undoes it.
+pub(crate) struct PostgresTransaction {
+    connection: PoolConnection<Postgres>,
+    has_ended: bool,
 }
 
-/// A transaction that holds the writers' lock shared, as the schema's triggers do for statements outside one.
-pub(crate) async fn write_beside_others(pool: &PgPool) -> Result<Transaction> {
-    write(pool, BESIDE_OTHERS).await
+impl PostgresTransaction {
+    /// One that sees one state of the database and changes nothing.
+    pub(crate) async fn read(pool: &PgPool) -> Result<Self> {
+        Self::begin(pool, "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY".to_owned()).await
+    }
+
+    /// One that holds the writers' lock exclusively. Deferred triggers run at once, since its later statements rely on what they do.
+    pub(crate) async fn alone(pool: &PgPool) -> Result<Self> {
+        Self::begin(pool, format!("BEGIN; SET CONSTRAINTS ALL IMMEDIATE; {ALONE}")).await
+    }
+
+    /// One that holds the writers' lock shared, as the schema's triggers do for statements outside one. Deferred triggers run at the
+    /// commit.
+    pub(crate) async fn beside_others(pool: &PgPool) -> Result<Self> {
+        Self::begin(pool, format!("BEGIN; {BESIDE_OTHERS}")).await
+    }
+
+    async fn begin(pool: &PgPool, statements: String) -> Result<Self> {
+        let mut begun = Self { connection: pool.acquire().await?, has_ended: false };
+        begun.connection.execute(sqlx::raw_sql(AssertSqlSafe(statements))).await?;
+        Ok(begun)
+    }
+
+    pub(crate) fn connection(&mut self) -> &mut PgConnection {
+        &mut self.connection
+    }
+
+    pub(crate) async fn commit(self) -> Result<()> {
+        self.end("COMMIT".to_owned()).await
+    }
+
+    /// Goes through the turnstile and commits: one message, so that nobody waits there for this client.
+    pub(crate) async fn commit_in_turn(self) -> Result<()> {
+        self.end(format!("{TURNSTILE}; COMMIT")).await
+    }
+
+    pub(crate) async fn rollback(self) -> Result<()> {
+        self.end("ROLLBACK".to_owned()).await
+    }
+
+    async fn end(mut self, statements: String) -> Result<()> {
+        self.connection.execute(sqlx::raw_sql(AssertSqlSafe(statements))).await?;
+        self.has_ended = true;
+        Ok(())
+    }
 }
 
-async fn write(pool: &PgPool, lock: &'static str) -> Result<Transaction> {
-    let mut transaction = pool.begin_with("BEGIN").await?;
-    transaction.execute(sqlx::raw_sql(lock)).await?;
-    Ok(Transaction::Postgres(transaction))
+impl Drop for PostgresTransaction {
+    fn drop(&mut self) {
+        if !self.has_ended {
+            self.connection.close_on_drop();
+        }
+    }
+}
+
+/// Runs one statement as a transaction that holds the writers' lock shared: one message. Its rows have their values as text.
+pub(crate) async fn beside_others(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>> {
+    script(pool, format!("{BESIDE_OTHERS}; {statement}")).await
+}
+
+/// The same of one that goes through the turnstile first; nobody waits there for this client.
+pub(crate) async fn in_turn(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>> {
+    script(pool, format!("{BESIDE_OTHERS}; {TURNSTILE}; {statement}")).await
+}
+
+/// Statements in one message are one transaction. The first takes a lock.
+async fn script(pool: &PgPool, statements: String) -> Result<Vec<PgRow>> {
+    let mut rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
+    // What taking the lock gave.
+    rows.remove(0);
+    Ok(rows)
 }

@@ -1,0 +1,139 @@
+// Requests to the service, and whether it can be reached.
+
+/** What the service says is wrong with a request (RFC 9457). */
+export class Problem extends Error {
+  /** @param {number} status @param {any} document */
+  constructor(status, document) {
+    super(document.detail || document.title || `the server answered ${status}`);
+    this.status = status;
+    /** @type {string} */
+    this.title = document.title ?? `Error ${status}`;
+    /** @type {{pointer?: string, parameter?: string, detail: string}[]} */
+    this.errors = document.errors ?? [];
+  }
+}
+
+/** The service could not be reached. */
+export class Unreachable extends Error {
+  constructor() {
+    super("the server cannot be reached");
+  }
+}
+
+/** `lost` when the service does not answer, `found` when it does again, `login` when it wants a token. */
+export const connection = new EventTarget();
+
+const FIRST_RETRY_MS = 1000;
+const LONGEST_RETRY_MS = 30_000;
+let isLost = false;
+
+/**
+ * @param {string} path
+ * @param {Record<string, string | number | boolean | null | undefined>} [query] what is absent or empty is left out
+ */
+export function address(path, query = {}) {
+  const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+  const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
+  return text ? `${path}?${text}` : path;
+}
+
+/**
+ * @param {string} path
+ * @param {Record<string, any>} [query]
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<any>}
+ */
+export function get(path, query, signal) {
+  return ask("GET", address(path, query), undefined, signal);
+}
+
+/**
+ * A request with side effects, or one with a body.
+ * @param {"POST" | "PATCH" | "DELETE"} method
+ * @param {string} path
+ * @param {any} [body]
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<any>}
+ */
+export function send(method, path, body, signal) {
+  return ask(method, path, body, signal);
+}
+
+/**
+ * @param {string} method
+ * @param {string} url
+ * @param {any} body
+ * @param {AbortSignal} [signal]
+ */
+async function ask(method, url, body, signal) {
+  /** @type {Record<string, string>} */
+  const headers = { Accept: "application/json" };
+  if (method !== "GET") headers["X-Drillsweep-CSRF"] = "1";
+  if (body !== undefined) headers["Content-Type"] = "application/json";
+  let answer;
+  try {
+    answer = await fetch(url, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    lose();
+    throw new Unreachable();
+  }
+  if (answer.status === 502 || answer.status === 504) {
+    lose();
+    throw new Unreachable();
+  }
+  if (answer.status === 204) return null;
+  if (answer.ok) return answer.json();
+  const document = await answer.json().catch(() => ({}));
+  if (answer.status === 401) connection.dispatchEvent(new Event("login"));
+  throw new Problem(answer.status, document);
+}
+
+/** Says that the service is gone, and asks for it at growing intervals until it answers. */
+export function lose() {
+  if (isLost) return;
+  isLost = true;
+  probe(FIRST_RETRY_MS);
+}
+
+/** @param {number} delay */
+function probe(delay) {
+  connection.dispatchEvent(new CustomEvent("lost", { detail: { retryAt: Date.now() + delay } }));
+  setTimeout(async () => {
+    const answer = await fetch("/livez", { cache: "no-store" }).catch(() => null);
+    if (answer?.ok) {
+      isLost = false;
+      connection.dispatchEvent(new Event("found"));
+    } else {
+      probe(Math.min(2 * delay, LONGEST_RETRY_MS));
+    }
+  }, delay);
+}
+
+/**
+ * Follows a sweep until its end or the signal. The browser reconnects by itself and says which event it saw last.
+ * @param {string} id
+ * @param {{sweep?: (sweep: any) => void, point?: (event: any) => void}} listeners
+ * @param {AbortSignal} signal
+ */
+export function follow(id, listeners, signal) {
+  if (signal.aborted) return;
+  const source = new EventSource(`/v1/sweeps/${encodeURIComponent(id)}/events`);
+  source.addEventListener("sweep", (event) => {
+    const sweep = JSON.parse(event.data);
+    if (isFinal(sweep)) source.close();
+    listeners.sweep?.(sweep);
+  });
+  source.addEventListener("point", (event) => listeners.point?.(JSON.parse(event.data)));
+  source.addEventListener("error", () => {
+    if (source.readyState === EventSource.CLOSED) return;
+    // A stream that ends and a server that is gone look the same from here.
+    get("/livez", {}, signal).catch(() => {});
+  });
+  signal.addEventListener("abort", () => source.close(), { once: true });
+}
+
+/** @param {any} sweep */
+export function isFinal(sweep) {
+  return sweep.state === "completed" || sweep.state === "cancelled";
+}

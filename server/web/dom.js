@@ -1,0 +1,73 @@
+// Elements made from values. Text from the service only ever becomes text: nothing here parses markup.
+
+/** @typedef {Node | string | number | null | undefined | false} Child */
+
+/**
+ * An element with attributes and children. A function is a listener (`onclick`), `true` an attribute without a value, and
+ * `null`, `undefined` or `false` leaves the attribute or the child out.
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, any>} [attributes]
+ * @param {(Child | Child[])[]} children
+ * @returns {HTMLElementTagNameMap[K]}
+ */
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (typeof value === "function") element.addEventListener(name.slice(2), value);
+    else if (name === "value") /** @type {any} */ (element).value = value;
+    else element.setAttribute(name, value === true ? "" : String(value));
+  }
+  append(element, children);
+  return element;
+}
+
+/**
+ * @param {Element} parent
+ * @param {(Child | Child[])[]} children
+ */
+export function append(parent, children) {
+  for (const child of children.flat()) {
+    if (child === null || child === undefined || child === false) continue;
+    parent.append(child instanceof Node ? child : String(child));
+  }
+}
+
+/**
+ * Puts children in the place of those that an element has.
+ * @param {Element} parent
+ * @param {(Child | Child[])[]} children
+ */
+export function fill(parent, ...children) {
+  parent.replaceChildren();
+  append(parent, children);
+}
+
+/**
+ * A select with a label before it.
+ * @param {string} label
+ * @param {[value: string, text: string][]} options
+ * @param {string} chosen
+ * @param {(value: string) => void} onChange
+ */
+export function choice(label, options, chosen, onChange) {
+  const select = h("select", { onchange: () => onChange(select.value) });
+  for (const [value, text] of options) select.append(h("option", { value, selected: value === chosen }, text));
+  select.value = chosen;
+  return h("label", { class: "field" }, h("span", {}, label), select);
+}
+
+/**
+ * Runs `call` once things have been quiet for `delay` milliseconds.
+ * @param {() => void} call
+ * @param {number} delay
+ */
+export function debounced(call, delay) {
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  return () => {
+    clearTimeout(timer);
+    timer = setTimeout(call, delay);
+  };
+}

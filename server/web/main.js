@@ -1,0 +1,171 @@
+// The frame: which view the link asks for, the session, settings, and what is said when the service is gone.
+
+import { connection, Problem, send, get, Unreachable } from "./api.js";
+import { fill, h } from "./dom.js";
+import { route } from "./router.js";
+import { apply, choose, settings, theme, unitSystem } from "./settings.js";
+import { loadQuantities } from "./units.js";
+
+/**
+ * A view fills `main` until `signal` is aborted, and gives its title.
+ * @typedef {(main: HTMLElement, route: import("./router.js").Route, signal: AbortSignal) => Promise<string>} View
+ */
+
+/** @type {Record<string, () => Promise<{show: View}>>} */
+const VIEWS = {
+  sweeps: () => import("./sweeps.js"),
+};
+
+const main = element("main");
+const banner = element("banner");
+const switches = element("switches");
+
+/** @type {AbortController} */
+let shown = new AbortController();
+/** The link of the view that is shown, without its query. */
+let place = "";
+
+/** @param {string} id */
+function element(id) {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no element ${id}`);
+  return found;
+}
+
+/** @param {string[]} path */
+function viewOf(path) {
+  if (path[0] === "sweeps" && path.length === 1) return "sweeps";
+  if (path[0] === "sweeps" && path.length === 2) return "sweep";
+  if (path[0] === "sweeps" && path[2] === "points" && path.length === 4) return "point";
+  return path.length === 1 && (path[0] === "compare" || path[0] === "new") ? path[0] : "";
+}
+
+/** Shows what the link asks for, anew. */
+async function show() {
+  shown.abort();
+  const mine = (shown = new AbortController());
+  const asked = route();
+  const view = viewOf(asked.path);
+  const isElsewhere = asked.path.join("/") !== place;
+  place = asked.path.join("/");
+  for (const entry of document.querySelectorAll(".bar nav a")) {
+    const isHere = entry.getAttribute("href") === `#/${asked.path[0]}`;
+    if (isHere) entry.setAttribute("aria-current", "page");
+    else entry.removeAttribute("aria-current");
+  }
+  if (!view) {
+    fill(main, h("div", { class: "empty" }, h("h1", {}, "There is no such page"), h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps"))));
+    return;
+  }
+  if (isElsewhere) fill(main, h("p", { class: "empty", role: "status" }, "Loading…"));
+  // A view is built aside and takes its place complete, so that one that is shown anew does not flicker.
+  const next = h("div", {});
+  try {
+    const title = await (await VIEWS[view]()).show(next, asked, mine.signal);
+    if (mine.signal.aborted) return;
+    document.title = `${title} · drillsweep`;
+  } catch (error) {
+    if (mine.signal.aborted) return;
+    fill(next, failure(error));
+  }
+  fill(main, next);
+  next.dispatchEvent(new Event("shown"));
+  if (isElsewhere) {
+    main.focus({ preventScroll: true });
+    scrollTo(0, 0);
+  }
+}
+
+/** @param {unknown} error */
+function failure(error) {
+  if (error instanceof Problem && error.status === 401) return h("div", { class: "empty" }, h("h1", {}, "Log in to see this"));
+  if (error instanceof Problem && error.status === 404) {
+    return h("div", { class: "empty" }, h("h1", {}, "Not found"), h("p", {}, error.message), h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps")));
+  }
+  if (!(error instanceof Problem || error instanceof Unreachable)) console.error(error);
+  const text = error instanceof Error ? error.message : String(error);
+  const again = h("button", { onclick: () => void show() }, "Try again");
+  return h("div", { class: "empty", role: "alert" }, h("h1", {}, "This could not be shown"), h("p", {}, text), again);
+}
+
+/** @type {any} */
+let session = null;
+
+async function loadSession() {
+  session = await get("/v1/session").catch(() => null);
+  drawSwitches();
+  if (session?.tokens_required && !session.name) login();
+}
+
+function drawSwitches() {
+  const isDark = theme() === "dark";
+  const units = unitSystem();
+  const other = units === "si" ? "field" : "si";
+  fill(
+    switches,
+    h("button", { onclick: () => choose("units", other), title: "Units of all numbers and axes", "aria-label": `Units: ${units === "si" ? "SI" : "field"}. Switch` }, units === "si" ? "SI units" : "Field units"),
+    h("button", { onclick: () => choose("theme", isDark ? "light" : "dark"), "aria-label": isDark ? "Light theme" : "Dark theme" }, isDark ? "Light" : "Dark"),
+    session?.name ? h("button", { onclick: logout, title: `Logged in as ${session.name}, may ${(session.scopes ?? []).join(", ")}` }, "Log out") : session?.tokens_required && h("button", { onclick: login }, "Log in"),
+  );
+}
+
+async function logout() {
+  await send("DELETE", "/v1/session").catch(() => {});
+  await loadSession();
+  void show();
+}
+
+function login() {
+  if (document.querySelector("dialog[open]")) return;
+  const token = h("input", { type: "password", autocomplete: "current-password", required: true, name: "token" });
+  const wrong = h("p", { class: "wrong", role: "alert" });
+  const dialog = h("dialog", { "aria-labelledby": "login-title" });
+  const form = h(
+    "form",
+    {
+      onsubmit: async (/** @type {Event} */ event) => {
+        event.preventDefault();
+        try {
+          await send("POST", "/v1/session", { token: token.value });
+          dialog.close();
+          await loadSession();
+          void show();
+        } catch (error) {
+          wrong.textContent = error instanceof Error ? error.message : String(error);
+          token.setAttribute("aria-invalid", "true");
+        }
+      },
+    },
+    h("h2", { id: "login-title" }, "Log in"),
+    h("p", { class: "soft" }, "This service needs a token. It stays with this browser until it ends or you log out."),
+    h("label", { class: "field wide" }, h("span", {}, "Token"), token),
+    wrong,
+    h("button", { class: "main", type: "submit" }, "Log in"),
+  );
+  dialog.append(form);
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+connection.addEventListener("login", login);
+connection.addEventListener("lost", (event) => {
+  const { retryAt } = /** @type {CustomEvent} */ (event).detail;
+  const seconds = Math.max(1, Math.round((retryAt - Date.now()) / 1000));
+  fill(banner, `The server does not answer. What you see is as it was last; trying again in ${seconds} s.`);
+  banner.hidden = false;
+});
+connection.addEventListener("found", () => {
+  banner.hidden = true;
+  void show();
+});
+settings.addEventListener("change", () => {
+  drawSwitches();
+  void show();
+});
+addEventListener("hashchange", () => void show());
+
+apply();
+drawSwitches();
+await Promise.all([loadQuantities(), loadSession()]);
+await show();

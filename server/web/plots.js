@@ -1,0 +1,162 @@
+// Pictures with plotly: loaded when the first one is drawn, in the page's theme, with PNG and SVG to take away.
+
+import { h } from "./dom.js";
+import { theme } from "./settings.js";
+
+/** Lines that differ (Okabe and Ito), readable on both themes and for colour-blind readers. */
+export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+/** Dashes that go with them, so that colour is not all that tells lines apart. */
+export const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
+/** The scale of every coloured quantity. */
+export const SCALE = "Viridis";
+
+/** @type {Promise<any> | undefined} */
+let loading;
+
+/** @returns {Promise<any>} plotly */
+function plotly() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = new URL("vendor/plotly-strict.min.js", import.meta.url).href;
+    script.onload = () => resolve(/** @type {any} */ (globalThis).Plotly);
+    script.onerror = () => {
+      loading = undefined;
+      reject(new Error("the drawing library could not be loaded"));
+    };
+    document.head.append(script);
+  });
+  return loading;
+}
+
+/** @returns {{text: string, soft: string, line: string, panel: string}} colours of the theme */
+export function inks() {
+  return theme() === "dark"
+    ? { text: "#e4e9ee", soft: "#9ca9b6", line: "#323c47", panel: "#1a2129" }
+    : { text: "#1b232c", soft: "#56626f", line: "#d8dde3", panel: "#ffffff" };
+}
+
+/**
+ * A place for a picture.
+ * @param {string} name what screen readers say and files are called
+ * @param {string} [size] `low` or `tall`
+ */
+export function canvas(name, size = "") {
+  return h("div", { class: `plot ${size}`, role: "img", "aria-label": name });
+}
+
+/**
+ * Draws, or redraws, a picture.
+ * @param {HTMLElement} place made by `canvas`
+ * @param {any[]} traces
+ * @param {any} layout what differs from the common layout
+ * @param {AbortSignal} signal of the view: the picture is taken down with it
+ * @returns {Promise<any>} the picture, which has plotly's events
+ */
+export async function draw(place, traces, layout, signal) {
+  const Plotly = await plotly();
+  await laidOut(place, signal);
+  if (signal.aborted) return place;
+  const isFirst = !place.classList.contains("js-plotly-plot");
+  await Plotly.react(place, traces, merged(common(), layout), config(Plotly, place));
+  if (isFirst) {
+    const observer = new ResizeObserver(() => place.isConnected && place.clientWidth > 0 && Plotly.Plots.resize(place));
+    observer.observe(place);
+    signal.addEventListener("abort", () => {
+      observer.disconnect();
+      // After the next view has taken the place of this one.
+      setTimeout(() => Plotly.purge(place), 1000);
+    }, { once: true });
+  }
+  return place;
+}
+
+/**
+ * Waits until a place has a size, which a view that is built aside has not.
+ * @param {HTMLElement} place
+ * @param {AbortSignal} signal
+ * @returns {Promise<void>}
+ */
+function laidOut(place, signal) {
+  return new Promise((resolve) => {
+    const look = () => (signal.aborted || (place.isConnected && place.clientWidth > 0) ? resolve() : void requestAnimationFrame(look));
+    look();
+  });
+}
+
+/**
+ * Changes the layout of a picture that is drawn.
+ * @param {HTMLElement} place
+ * @param {any} changes by path, as plotly's `relayout` takes them
+ */
+export async function adjust(place, changes) {
+  if (place.classList.contains("js-plotly-plot")) await (await plotly()).relayout(place, changes);
+}
+
+function common() {
+  const { text, soft, line } = inks();
+  const axis = { gridcolor: line, zerolinecolor: line, linecolor: soft, ticks: "outside", tickcolor: line, automargin: true, title: { standoff: 8, font: { size: 13 } }, exponentformat: "power" };
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    font: { color: text, family: 'system-ui, "Segoe UI", "Noto Sans", sans-serif', size: 12 },
+    margin: { l: 60, r: 16, t: 16, b: 50 },
+    colorway: LINES,
+    hovermode: "closest",
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } },
+    xaxis: axis,
+    yaxis: axis,
+  };
+}
+
+/**
+ * The common layout with a picture's own; every axis that it names has the common axis below it.
+ * @param {any} base
+ * @param {any} own
+ */
+function merged(base, own) {
+  const result = { ...base, ...own };
+  for (const name of new Set(["xaxis", "yaxis", ...Object.keys(own).filter((key) => /^[xy]axis\d*$/.test(key))])) {
+    const given = own[name] ?? {};
+    const title = typeof given.title === "string" ? { text: given.title } : given.title;
+    result[name] = { ...base.xaxis, ...given, title: { ...base.xaxis.title, ...title } };
+  }
+  return result;
+}
+
+/** @param {any} Plotly @param {HTMLElement} place */
+function config(Plotly, place) {
+  const filename = (place.getAttribute("aria-label") ?? "picture").replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase();
+  const save = (/** @type {string} */ format) => ({
+    name: `save-${format}`,
+    title: `Save as ${format.toUpperCase()}`,
+    icon: ICONS[format],
+    click: () => Plotly.downloadImage(place, { format, filename, width: place.clientWidth, height: place.clientHeight, scale: format === "png" ? 2 : 1 }),
+  });
+  return { displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d", "autoScale2d"], modeBarButtonsToAdd: [save("png"), save("svg")] };
+}
+
+/** Letters in a frame: `P` for PNG, `S` for SVG. */
+/** @type {Record<string, any>} */
+const ICONS = {
+  png: { width: 24, height: 24, path: "M2 2h20v20H2zM4 4v16h16V4zM8 6h5a4 4 0 0 1 0 8h-3v4H8zm2 2v4h3a2 2 0 0 0 0-4z" },
+  svg: { width: 24, height: 24, path: "M2 2h20v20H2zM4 4v16h16V4zM15 9V7H9.500a1.500 1.500 0 0 0-1.500 1.500v3A1.500 1.500 0 0 0 9.500 13H14v3H8v2h6.500a1.500 1.500 0 0 0 1.500-1.500v-4a1.500 1.500 0 0 0-1.500-1.500H10V9z" },
+};
+
+/**
+ * The bar beside coloured values.
+ * @param {string} title
+ */
+export function colourBar(title) {
+  const { text } = inks();
+  return { title: { text: title, side: "right", font: { size: 12 } }, thickness: 14, outlinewidth: 0, tickfont: { color: text }, exponentformat: "power" };
+}
+
+/** Ticks of a colour that is shown by its decimal logarithm. @param {number} least @param {number} largest logarithms */
+export function logTicks(least, largest) {
+  const at = [];
+  for (let power = Math.floor(least); power <= Math.ceil(largest); power += 1) {
+    for (const digit of largest - least > 2.5 ? [1] : [1, 2, 5]) at.push(Math.log10(digit) + power);
+  }
+  const within = at.filter((value) => value >= least - 1e-9 && value <= largest + 1e-9);
+  return { tickvals: within, ticktext: within.map((value) => String(Number((10 ** value).toPrecision(3)))) };
+}

@@ -1,0 +1,51 @@
+// The link holds the whole view: path and query stand after `#`.
+
+/**
+ * @typedef {object} Route
+ * @property {string[]} path decoded segments
+ * @property {URLSearchParams} query
+ */
+
+/** @returns {Route} */
+export function route() {
+  const [path, query] = (location.hash.replace(/^#/, "") || "/sweeps").split("?", 2);
+  return { path: path.split("/").filter(Boolean).map(decode), query: new URLSearchParams(query ?? "") };
+}
+
+/** @param {string} segment */
+function decode(segment) {
+  try {
+    return decodeURIComponent(segment);
+  } catch {
+    return segment;
+  }
+}
+
+/**
+ * The link to a view.
+ * @param {string[]} path
+ * @param {Record<string, any>} [query] what is absent or empty is left out
+ */
+export function link(path, query = {}) {
+  const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+  const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
+  return `#/${path.map(encodeURIComponent).join("/")}${text ? `?${text}` : ""}`;
+}
+
+/** @param {string} target a link as `link` makes it */
+export function go(target) {
+  location.hash = target;
+}
+
+/**
+ * Changes the query of the link without leaving the view; `null` or an empty text takes an entry away.
+ * @param {Record<string, string | number | null | undefined>} changes
+ */
+export function keep(changes) {
+  const { path, query } = route();
+  for (const [name, value] of Object.entries(changes)) {
+    if (value === null || value === undefined || value === "") query.delete(name);
+    else query.set(name, String(value));
+  }
+  history.replaceState(null, "", link(path, Object.fromEntries(query)));
+}

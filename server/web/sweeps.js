@@ -1,0 +1,299 @@
+// The list of sweeps, with the queue, the workers and what failed lately.
+
+import { address, follow, get, isFinal } from "./api.js";
+import { debounced, choice, fill, h } from "./dom.js";
+import { lines, shell } from "./lines.js";
+import { go, keep, link } from "./router.js";
+import { duration } from "./units.js";
+
+const PAGE = 100;
+const POLL_MS = 4000;
+/** Streams at once: a browser has six connections to a server for all its tabs together. */
+const STREAMS = 2;
+
+/** @type {import("./main.js").View} */
+export async function show(main, route, signal) {
+  const filters = () => ({ state: state(), name: search.value.trim(), owner: owner.value.trim(), tag: tag.value.trim() });
+  let chosenState = route.query.get("state") ?? "";
+  const state = () => chosenState;
+
+  const filtered = debounced(() => {
+    keep(filters());
+    redraw();
+    void load();
+  }, 250);
+  const input = (/** @type {string} */ label, /** @type {string} */ name, /** @type {string} */ type = "text") =>
+    h("input", { type, value: route.query.get(name) ?? "", oninput: filtered, "aria-label": label, placeholder: label, size: 12 });
+  const search = input("Search names", "name", "search");
+  search.size = 24;
+  search.title = "Press / to search";
+  const owner = input("Owner", "owner");
+  const tag = input("Tag", "tag");
+  const states = choice("State", [["", "all"], ["running", "running"], ["paused", "paused"], ["completed", "completed"], ["cancelled", "cancelled"]], chosenState, (value) => {
+    chosenState = value;
+    filtered();
+  });
+  const field = (/** @type {string} */ name, /** @type {HTMLElement} */ element) => h("label", { class: "field" }, h("span", {}, name), element);
+
+  const body = h("tbody", {});
+  const table = h(
+    "table",
+    { "aria-label": "Sweeps" },
+    h("thead", {}, h("tr", {}, h("th", {}, "Sweep"), h("th", {}, "State"), h("th", { class: "wide-only" }, "Owner"), h("th", { class: "wide-only" }, "Submitted"))),
+    body,
+  );
+  const end = h("p", { class: "soft small", role: "status" });
+  const service = h("section", { class: "panel", "aria-label": "Workers and queue" });
+  const failures = h("section", { class: "panel", "aria-label": "What failed lately" });
+
+  /** @type {Map<string, {sweep: any, row: HTMLTableRowElement, pace: Pace}>} */
+  const known = new Map();
+  /** @type {string | null} */
+  let next = null;
+  let isLoading = false;
+  let selected = -1;
+  /** Numbers the loads, so that the answer to an older filter is dropped. */
+  let generation = 0;
+
+  async function load() {
+    const mine = ++generation;
+    const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
+    if (mine !== generation) return;
+    known.clear();
+    selected = -1;
+    fill(body);
+    next = page.next ?? null;
+    add(page.sweeps);
+    watch();
+  }
+
+  async function more() {
+    if (!next || isLoading) return;
+    isLoading = true;
+    const mine = generation;
+    try {
+      const page = await get("/v1/sweeps", { ...filters(), limit: PAGE, cursor: next }, signal);
+      if (mine === generation) {
+        next = page.next ?? null;
+        add(page.sweeps);
+      }
+    } finally {
+      isLoading = false;
+    }
+  }
+
+  /** @param {any[]} sweeps */
+  function add(sweeps) {
+    for (const sweep of sweeps) {
+      if (known.has(sweep.id)) continue;
+      const entry = { sweep, row: h("tr", {}), pace: new Pace() };
+      entry.pace.note(sweep.progress);
+      known.set(sweep.id, entry);
+      drawRow(entry.row, sweep, entry.pace);
+      body.append(entry.row);
+    }
+    const hasFilter = Object.values(filters()).some(Boolean);
+    if (known.size === 0) {
+      fill(end, hasFilter ? "No sweep matches these filters." : h("span", {}, "There are no sweeps yet. ", h("a", { href: "#/new" }, "Submit the first one"), "."));
+    } else {
+      fill(end, next ? "Further sweeps follow as you scroll." : `${known.size} ${known.size === 1 ? "sweep" : "sweeps"}.`);
+    }
+  }
+
+  /** @param {any} sweep */
+  function update(sweep) {
+    const entry = known.get(sweep.id);
+    if (!entry) return;
+    entry.sweep = sweep;
+    entry.pace.note(sweep.progress);
+    drawRow(entry.row, sweep, entry.pace);
+  }
+
+  /** @type {Set<string>} */
+  const streams = new Set();
+
+  /** Follows the newest sweeps that run. */
+  function watch() {
+    for (const { sweep } of known.values()) {
+      if (streams.size >= STREAMS) return;
+      if (sweep.state !== "running" || streams.has(sweep.id)) continue;
+      streams.add(sweep.id);
+      follow(sweep.id, { sweep: (changed) => {
+        if (isFinal(changed)) streams.delete(changed.id);
+        update(changed);
+      } }, signal);
+    }
+  }
+
+  /** Looks for new sweeps, and for the progress of those that no stream tells of. */
+  async function poll() {
+    if (document.hidden) return;
+    const mine = generation;
+    const [page] = await Promise.all([get("/v1/sweeps", { ...filters(), limit: PAGE }, signal), drawService()]);
+    if (mine !== generation) return;
+    const fresh = page.sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id));
+    for (const sweep of page.sweeps) if (!streams.has(sweep.id)) update(sweep);
+    for (const sweep of fresh.reverse()) {
+      const entry = { sweep, row: h("tr", {}), pace: new Pace() };
+      entry.pace.note(sweep.progress);
+      known.set(sweep.id, entry);
+      drawRow(entry.row, sweep, entry.pace);
+      body.prepend(entry.row);
+    }
+    if (fresh.length) add([]);
+    watch();
+  }
+
+  async function drawService() {
+    const [queue, { workers }, failed] = await Promise.all([get("/v1/queue", {}, signal), get("/v1/workers", {}, signal), get("/v1/failures", { limit: 5 }, signal)]);
+    fill(service, ...servicePart(queue, workers));
+    fill(failures, ...failuresPart(failed.failures));
+  }
+
+  /** @param {number} index */
+  function select(index) {
+    const rows = [...body.rows];
+    if (!rows.length) return;
+    rows[selected]?.removeAttribute("aria-selected");
+    selected = Math.max(0, Math.min(rows.length - 1, index));
+    rows[selected].setAttribute("aria-selected", "true");
+    rows[selected].querySelector("a")?.focus({ preventScroll: true });
+    rows[selected].scrollIntoView({ block: "nearest" });
+  }
+
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    if (event.target instanceof HTMLElement && event.target.matches("input, select, textarea")) {
+      if (event.key === "Escape") event.target.blur();
+      return;
+    }
+    if (event.key === "/") {
+      event.preventDefault();
+      search.focus();
+    } else if (event.key === "j") select(selected + 1);
+    else if (event.key === "k") select(selected - 1);
+    else if (event.key === "n") go("#/new");
+  }, { signal });
+
+  const observer = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && more().catch(() => {}), { rootMargin: "800px" });
+  observer.observe(end);
+  signal.addEventListener("abort", () => observer.disconnect());
+  const timer = setInterval(() => void poll().catch(() => {}), POLL_MS);
+  signal.addEventListener("abort", () => clearInterval(timer));
+
+  const taken = lines(() => {
+    const list = address("/v1/sweeps", filters());
+    const chosen = Object.entries(filters()).filter(([, value]) => value);
+    return {
+      curl: `curl -s ${shell(location.origin + list)}`,
+      python: `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`,
+      matlab: `list = webread("${location.origin}/v1/sweeps"${chosen.map(([name, value]) => `, "${name}", "${value.replaceAll('"', '""')}"`).join("")});`,
+      cli: `drillsweep list --server ${location.origin}${chosen.filter(([name]) => name !== "name").map(([name, value]) => ` --${name} ${shell(value)}`).join("")}`,
+    };
+  });
+  const redraw = () => taken.dispatchEvent(new Event("redraw"));
+
+  fill(
+    main,
+    h("div", { class: "head" }, h("h1", {}, "Sweeps"), h("p", { class: "soft small wide-only" }, h("kbd", {}, "j"), " ", h("kbd", {}, "k"), " move, ", h("kbd", {}, "Enter"), " opens, ", h("kbd", {}, "/"), " searches, ", h("kbd", {}, "n"), " new")),
+    h(
+      "div",
+      { class: "columns" },
+      h("div", {}, h("div", { class: "controls", role: "search" }, field("Name", search), states, field("Owner", owner), field("Tag", tag)), h("div", { class: "panel scroll" }, table, end), taken),
+      h("aside", { "aria-label": "Service" }, service, failures),
+    ),
+  );
+  await Promise.all([load(), drawService()]);
+  return "Sweeps";
+}
+
+/** How fast a sweep goes, from the progress seen of it. */
+export class Pace {
+  /** @type {{at: number, progress: number}[]} */
+  #seen = [];
+
+  /** @param {number} progress */
+  note(progress) {
+    this.#seen.push({ at: Date.now(), progress });
+    if (this.#seen.length > 30) this.#seen.shift();
+  }
+
+  /** @returns {number | null} seconds left; null where nothing moved yet */
+  left() {
+    const first = this.#seen[0];
+    const last = this.#seen[this.#seen.length - 1];
+    if (!first || last.progress <= first.progress) return null;
+    return ((1 - last.progress) * (last.at - first.at)) / (last.progress - first.progress) / 1000;
+  }
+}
+
+/**
+ * @param {HTMLTableRowElement} row
+ * @param {any} sweep
+ * @param {Pace} pace
+ */
+function drawRow(row, sweep, pace) {
+  const hadFocus = row.contains(document.activeElement);
+  const title = sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
+  const anchor = h("a", { class: "name", href: link(["sweeps", sweep.id]) }, title);
+  fill(
+    row,
+    h("td", {}, anchor, h("div", { class: "small soft" }, `${sweep.counts.total} ${sweep.counts.total === 1 ? "point" : "points"} `, (sweep.tags ?? []).map((/** @type {string} */ tag) => h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag)))),
+    h("td", {}, progressPart(sweep, pace)),
+    h("td", { class: "wide-only" }, sweep.owner),
+    h("td", { class: "wide-only" }, when(sweep.created)),
+  );
+  if (hadFocus) anchor.focus({ preventScroll: true });
+}
+
+/**
+ * State, bar and counts of a sweep.
+ * @param {any} sweep
+ * @param {Pace} pace
+ */
+export function progressPart(sweep, pace) {
+  const { counts } = sweep;
+  const left = sweep.state === "running" ? pace.left() : null;
+  const words = [`${counts.succeeded} of ${counts.total} succeeded`];
+  if (counts.running) words.push(`${counts.running} running`);
+  if (counts.failed) words.push(`${counts.failed} failed`);
+  if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
+  if (left !== null) words.push(`about ${duration(left)} left`);
+  const percent = Math.floor(100 * sweep.progress);
+  return h(
+    "div",
+    {},
+    h("span", { class: `state ${sweep.state}` }, sweep.state),
+    !isFinal(sweep) && [h("span", { class: "soft small" }, ` ${percent} %`), h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` })],
+    h("div", { class: "small soft" }, words.join(", ")),
+  );
+}
+
+/** @param {string} time RFC 3339 */
+export function when(time) {
+  const date = new Date(time);
+  const text = date.toLocaleString(undefined, { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit", ...(date.getFullYear() === new Date().getFullYear() ? {} : { year: "numeric" }) });
+  return h("time", { datetime: time, title: date.toLocaleString() }, text);
+}
+
+/** @param {any} queue @param {any[]} workers */
+function servicePart(queue, workers) {
+  const fact = (/** @type {string} */ name, /** @type {any} */ value) => [h("dt", {}, name), h("dd", { class: "number" }, value)];
+  const rows = workers.map((worker) => {
+    const silent = (Date.now() - Date.parse(worker.seen)) / 1000;
+    return h("tr", {}, h("td", { class: "small" }, `${worker.host}, process ${worker.process}`), h("td", { class: "small soft number" }, silent < 20 ? "alive" : `silent for ${duration(silent)}`));
+  });
+  return [
+    h("h2", {}, "Workers and queue"),
+    h("dl", { class: "facts" }, fact("Running", queue.running), fact("Queued", queue.queued), fact("Paused", queue.paused), fact("To be retried", queue.waiting_for_retry)),
+    workers.length ? h("table", { "aria-label": "Workers" }, h("tbody", {}, rows)) : h("p", { class: "wrong" }, "No worker is there: queued points wait."),
+  ];
+}
+
+/** @param {any[]} failed */
+function failuresPart(failed) {
+  const rows = failed.map((point) =>
+    h("li", {}, h("a", { href: link(["sweeps", point.sweep, "points", String(point.ordinal)]) }, `${point.sweep_name ?? "Sweep"}, point ${point.ordinal}`), h("div", { class: "small soft" }, `${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"} `, when(point.at))),
+  );
+  return [h("h2", {}, "Failed lately"), rows.length ? h("ul", {}, rows) : h("p", { class: "soft" }, "Nothing has failed.")];
+}

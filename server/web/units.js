@@ -1,0 +1,141 @@
+// What the names of columns and of a scenario's fields stand for, and the units in which they are shown.
+
+import { unitSystem } from "./settings.js";
+
+/**
+ * @typedef {object} Entry
+ * @property {string} label
+ * @property {string} [symbol]
+ * @property {string} [meaning]
+ * @property {string} [unit] the unit in which it is served
+ * @property {{unit: string, size: number}} [shown]
+ * @property {{unit: string, size: number}} [field]
+ */
+
+/** @type {Record<string, Entry>} */
+let registry = {};
+
+/** Reads the registry; names are shown as they are until then. */
+export async function loadQuantities() {
+  const answer = await fetch(new URL("quantities.json", import.meta.url));
+  if (answer.ok) registry = await answer.json();
+}
+
+const VARIANT = /^(spread|ensemble_mean|reference|bias)_(.+)$/;
+const NUMBERS = /(?:_(\d+))?(?:_w(\d+))?$/;
+
+/**
+ * What a name stands for: a column, with the node, window and variant that its name may carry, or a path of the scenario.
+ * @param {string} name
+ * @returns {{entry: Entry | undefined, node?: string, window?: string, variant?: string}}
+ */
+function parse(name) {
+  if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
+  if (registry[name]) return { entry: registry[name] };
+  const variant = VARIANT.exec(name);
+  const rest = variant ? variant[2] : name;
+  const numbers = NUMBERS.exec(rest);
+  return { entry: registry[rest.replace(NUMBERS, "")], variant: variant?.[1], node: numbers?.[1], window: numbers?.[2] };
+}
+
+/**
+ * What a picture calls a name, such as `orbit radius rms, node 49`.
+ * @param {string} name
+ */
+export function label(name) {
+  const { entry, node, window, variant } = parse(name);
+  if (!entry) return name.replaceAll("_", " ");
+  const parts = [variant ? `${variant.replaceAll("_", " ")} of ${entry.label}` : entry.label];
+  if (node) parts.push(`node ${node}`);
+  if (window) parts.push(`window ${window}`);
+  return parts.join(", ");
+}
+
+/** @param {string} name */
+export function meaning(name) {
+  return parse(name).entry?.meaning ?? "";
+}
+
+/**
+ * The unit in which a name is shown: how it is written, and how many of the served unit one of it is.
+ * @param {string} name
+ * @returns {{symbol: string, size: number}}
+ */
+export function unit(name) {
+  const { entry, variant } = parse(name);
+  if (!entry?.unit || entry.unit === "1" || variant === "bias") return { symbol: "", size: 1 };
+  const shown = unitSystem() === "field" ? entry.field : entry.shown;
+  return { symbol: written(shown?.unit ?? entry.unit), size: shown?.size ?? 1 };
+}
+
+/**
+ * @param {string} name
+ * @returns {string} the label with its unit in brackets, for an axis
+ */
+export function title(name) {
+  const { symbol } = unit(name);
+  return symbol ? `${label(name)} [${symbol}]` : label(name);
+}
+
+/**
+ * A column in the unit in which it is shown. Gaps stay gaps.
+ * @param {string} name
+ * @param {(number | null)[]} values
+ * @returns {(number | null)[]}
+ */
+export function shown(name, values) {
+  const { size } = unit(name);
+  return size === 1 ? values : values.map((value) => (value === null ? null : value / size));
+}
+
+/**
+ * A value with its unit, in words for people.
+ * @param {string} name
+ * @param {unknown} value as it is served
+ * @param {number} [digits]
+ */
+export function say(name, value, digits = 4) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value !== "number") return String(value).replaceAll("_", " ");
+  const { symbol, size } = unit(name);
+  const text = number(value / size, digits);
+  return symbol ? `${text} ${symbol}` : text;
+}
+
+/**
+ * A number in a few significant digits.
+ * @param {number} value
+ * @param {number} [digits]
+ */
+export function number(value, digits = 4) {
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(digits - 1).replace("e+", "e");
+  return String(Number(value.toPrecision(digits)));
+}
+
+/** @param {number} seconds */
+export function duration(seconds) {
+  if (seconds < 1) return `${number(1000 * seconds, 2)} ms`;
+  if (seconds < 60) return `${number(seconds, 2)} s`;
+  const minutes = Math.round(seconds / 60);
+  if (minutes < 60) return `${minutes} min`;
+  if (minutes < 48 * 60) return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  return `${Math.round(minutes / 1440)} days`;
+}
+
+/** @param {number} count */
+export function bytes(count) {
+  const units = ["bytes", "kB", "MB", "GB", "TB"];
+  const step = count < 1 ? 0 : Math.min(units.length - 1, Math.floor(Math.log10(count) / 3));
+  return `${number(count / 1000 ** step, 3)} ${units[step]}`;
+}
+
+/** @param {string} symbol a unit in the registry's spelling, such as `N s/m2` */
+function written(symbol) {
+  return symbol
+    .replace(/([A-Za-z])2/g, "$1²")
+    .replace(/([A-Za-z])3/g, "$1³")
+    .replaceAll(" ", "·")
+    .replace(/^deg$/, "°");
+}

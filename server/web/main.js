@@ -14,6 +14,10 @@ import { loadQuantities } from "./units.js";
 /** @type {Record<string, () => Promise<{show: View}>>} */
 const VIEWS = {
   sweeps: () => import("./sweeps.js"),
+  sweep: () => import("./sweep.js"),
+  point: () => import("./point.js"),
+  compare: () => import("./compare.js"),
+  new: () => import("./new.js"),
 };
 
 const main = element("main");

@@ -1,0 +1,161 @@
+// A column of the table over two swept parameters, the others held; over one, a line.
+
+import { choice, fill, h } from "./dom.js";
+import { canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
+import { distinct, isText } from "./table.js";
+import { label, say, title, unit } from "./units.js";
+
+/** Colours of words, such as states. */
+const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
+
+/**
+ * @param {import("./sweep.js").Context} context
+ * @returns {import("./sweep.js").Part}
+ */
+export function map(context) {
+  const { axes, table, query } = context;
+  const place = canvas("Map of the sweep", "tall");
+  const caption = h("figcaption", {});
+  const controls = h("div", { class: "controls" });
+  const element = h("div", {}, controls, h("figure", {}, place, caption));
+  const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
+
+  function chosen() {
+    const x = axes.includes(get("x", "")) ? get("x", "") : axes[0];
+    const others = axes.filter((axis) => axis !== x);
+    const y = others.includes(get("y", "")) ? get("y", "") : others[0];
+    const results = table.results().filter((name) => !axes.includes(name));
+    const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
+    return { x, y, colour, results, held: others.filter((axis) => axis !== y), isLog: get("scale", "linear") === "log", style: get("style", "cells") };
+  }
+
+  async function redraw() {
+    const { x, y, colour, results, held, isLog, style } = chosen();
+    if (!x) {
+      fill(element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
+      return;
+    }
+    const [ordinals, states, xs, ys, values, ...others] = await table.columns("ordinal", "state", x, y ?? x, colour, ...held);
+    const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
+      context.keep({ [name]: value });
+      void redraw();
+    };
+    const named = (/** @type {string[]} */ names) => names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    const words = isText(values);
+    const heldValues = held.map((axis, index) => {
+      const all = distinct(others[index]);
+      const asked = Number(get(`at.${axis}`, ""));
+      return { axis, all, value: query.has(`at.${axis}`) && all.includes(asked) ? asked : all[0], column: others[index] };
+    });
+    const isGrid = distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16 || !y;
+    // A design that draws its points has no slices: all of them are shown.
+    const slices = isGrid ? heldValues : [];
+    fill(
+      controls,
+      choice("Across", named(axes), x, set("x")),
+      y && choice("Up", named(axes.filter((axis) => axis !== x)), y, set("y")),
+      choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
+      !words && choice("Scale", [["linear", "linear"], ["log", "logarithmic"]], isLog ? "log" : "linear", set("scale")),
+      y && isGrid && !words && choice("Drawn as", [["cells", "cells"], ["contour", "contours"]], style, set("style")),
+      slices.map(({ axis, all, value }) => choice(label(axis), all.map((entry) => [String(entry), say(axis, entry)]), String(value), set(`at.${axis}`))),
+    );
+    const rows = ordinals.map((_, index) => index).filter((index) => slices.every(({ column, value }) => column[index] === value));
+    const done = rows.filter((index) => values[index] !== null).length;
+    const logged = (/** @type {any} */ value) => (typeof value === "number" && value > 0 ? Math.log10(value) : null);
+    const hidden = isLog && !words ? rows.filter((index) => typeof values[index] === "number" && Number(values[index]) <= 0).length : 0;
+    fill(caption, `${label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it.`, hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
+    place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+
+    const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / unit(name).size : value);
+    const texts = rows.map((index) => [`point ${ordinals[index]}: ${states[index]}`, `${label(x)} ${say(x, xs[index])}`, y && `${label(y)} ${say(y, ys[index])}`, `${label(colour)} ${say(colour, values[index])}`].filter(Boolean).join("<br>"));
+    const axisLayout = (/** @type {string} */ name) => ({ title: title(name), type: context.spans[name]?.scale === "log" ? "log" : "linear" });
+
+    if (!y) {
+      const order = rows.map((_, position) => position).sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
+      const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0] }, line: { color: LINES[0] } };
+      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), type: isLog ? "log" : "linear" } }, context.signal);
+      clickable(shape);
+      return;
+    }
+
+    const vocabulary = words ? distinct(values) : [];
+    const coded = (/** @type {number} */ index) => (words ? (values[index] === null ? null : vocabulary.indexOf(/** @type {string} */ (values[index]))) : isLog ? logged(values[index]) : at(colour, values[index]));
+    const z = rows.map(coded);
+    const finite = /** @type {number[]} */ (z.filter((value) => value !== null));
+    const offset = isLog ? Math.log10(unit(colour).size) : 0;
+    const shownZ = isLog && !words ? z.map((value) => (value === null ? null : Number(value) - offset)) : z;
+    const least = finite.reduce((a, b) => Math.min(a, b), Infinity) - (words ? 0 : offset);
+    const largest = finite.reduce((a, b) => Math.max(a, b), -Infinity) - (words ? 0 : offset);
+    const bar = words
+      ? { ...colourBar(label(colour)), tickvals: vocabulary.map((_, index) => index), ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")) }
+      : { ...colourBar(title(colour)), ...(isLog && finite.length ? logTicks(least, largest) : {}) };
+    const count = Math.max(vocabulary.length, 1);
+    const discrete = Array.from({ length: count }, (_, index) => [[index / count, WORDS[index % WORDS.length]], [(index + 1) / count, WORDS[index % WORDS.length]]]).flat();
+    const scale = words ? { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 } : { colorscale: SCALE };
+
+    /** @type {any[]} */
+    const traces = [];
+    if (isGrid) {
+      const across = distinct(rows.map((index) => xs[index]));
+      const up = distinct(rows.map((index) => ys[index]));
+      const column = new Map(across.map((value, index) => [value, index]));
+      const line = new Map(up.map((value, index) => [value, index]));
+      const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
+      const cells = grid(null);
+      const hover = grid("");
+      const numbers = grid(null);
+      rows.forEach((index, position) => {
+        const [r, c] = [line.get(/** @type {number} */ (ys[index])) ?? 0, column.get(/** @type {number} */ (xs[index])) ?? 0];
+        cells[r][c] = shownZ[position];
+        hover[r][c] = texts[position];
+        numbers[r][c] = ordinals[index];
+      });
+      traces.push({ type: style === "contour" && !words && across.length > 1 && up.length > 1 ? "contour" : "heatmap", x: across.map((value) => at(x, value)), y: up.map((value) => at(y, value)), z: cells, text: hover, customdata: numbers, hoverinfo: "text", colorbar: bar, ...scale, xgap: words || up.length * across.length > 900 ? 0 : 1, ygap: words || up.length * across.length > 900 ? 0 : 1, contours: { coloring: "heatmap" }, line: { color: inks().panel, width: 0.7 } });
+    } else {
+      const kind = rows.length > 3000 ? "scattergl" : "scatter";
+      traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > 3000 ? 5 : 9, color: shownZ, colorscale: scale.colorscale, cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
+    }
+    const failed = rows.filter((index) => states[index] === "failed");
+    if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });
+    const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y) }, context.signal);
+    clickable(shape);
+  }
+
+  /** @param {any} shape */
+  function clickable(shape) {
+    shape.removeAllListeners?.("plotly_click");
+    shape.on?.("plotly_click", (/** @type {any} */ event) => {
+      const ordinal = event.points[0]?.customdata;
+      if (typeof ordinal === "number") context.open(ordinal);
+    });
+  }
+
+  return {
+    element,
+    draw: undelayed(redraw, context),
+    fields: () => {
+      const { x, y, colour, held } = chosen();
+      return ["ordinal", x, y, ...held, colour].filter((name) => name !== undefined);
+    },
+  };
+}
+
+/**
+ * The first drawing waits for its place in the page, which the view takes when it is complete; so it is not waited for.
+ * @param {() => Promise<void>} redraw
+ * @param {import("./sweep.js").Context} context
+ */
+export function undelayed(redraw, context) {
+  let isFirst = true;
+  return async () => {
+    const work = redraw();
+    if (!isFirst) return work;
+    isFirst = false;
+    work.catch((error) => context.signal.aborted || console.error(error));
+  };
+}
+
+/** The result that an engineer asks for first. @param {string[]} results */
+export function preferred(results) {
+  return results.find((name) => name.startsWith("orbit_radius_rms")) ?? results.find((name) => name === "friction_coefficient_max") ?? results.find((name) => name !== "state") ?? "state";
+}

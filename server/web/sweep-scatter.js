@@ -1,0 +1,109 @@
+// Clouds of points: any two columns against each other, and all swept parameters side by side.
+
+import { choice, fill, h } from "./dom.js";
+import { canvas, colourBar, draw, LINES, SCALE } from "./plots.js";
+import { preferred, undelayed } from "./sweep-map.js";
+import { isText } from "./table.js";
+import { label, say, shown, title } from "./units.js";
+
+/** Points beyond which marks are drawn by WebGL. */
+const MANY = 3000;
+
+/**
+ * @param {import("./sweep.js").Context} context
+ * @returns {import("./sweep.js").Part}
+ */
+export function scatter(context) {
+  const { table, query } = context;
+  const place = canvas("Scatter of the points", "tall");
+  const caption = h("figcaption", {});
+  const controls = h("div", { class: "controls" });
+
+  function chosen() {
+    const names = table.results();
+    const pick = (/** @type {string} */ key, /** @type {string | undefined} */ other) => (names.includes(query.get(key) ?? "") ? (query.get(key) ?? "") : (other ?? names[0]));
+    return { names, x: pick("x", context.axes[0]), y: pick("y", preferred(names)), colour: pick("colour", context.axes[1] ?? context.axes[0]), isLogX: query.get("xscale") === "log", isLogY: query.get("yscale") === "log" };
+  }
+
+  async function redraw() {
+    const { names, x, y, colour, isLogX, isLogY } = chosen();
+    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+      context.keep({ [key]: value });
+      void redraw();
+    };
+    const options = names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    /** @type {[string, string][]} */
+    const scales = [["linear", "linear"], ["log", "logarithmic"]];
+    fill(controls, choice("Across", options, x, set("x")), choice("Scale across", scales, isLogX ? "log" : "linear", set("xscale")), choice("Up", options, y, set("y")), choice("Scale up", scales, isLogY ? "log" : "linear", set("yscale")), choice("Colour", options, colour, set("colour")));
+    const [ordinals, xs, ys, colours] = await table.columns("ordinal", x, y, colour);
+    const words = isText(colours) ? [...new Set(colours)].filter((word) => word !== null) : null;
+    const at = (/** @type {string} */ name, /** @type {any[]} */ values) => (isText(values) ? values : shown(name, values));
+    const [atX, atY] = [at(x, xs), at(y, ys)];
+    const text = ordinals.length > MANY ? undefined : ordinals.map((ordinal, index) => `point ${ordinal}<br>${label(x)} ${say(x, xs[index])}<br>${label(y)} ${say(y, ys[index])}<br>${label(colour)} ${say(colour, colours[index])}`);
+    const base = { type: ordinals.length > MANY ? "scattergl" : "scatter", mode: "markers", hoverinfo: text ? "text" : "x+y" };
+    const size = ordinals.length > MANY ? 4 : 8;
+    const traces = words
+      ? words.map((word, order) => {
+          const rows = ordinals.map((_, index) => index).filter((index) => colours[index] === word);
+          return { ...base, name: String(word), x: rows.map((index) => atX[index]), y: rows.map((index) => atY[index]), text: text && rows.map((index) => text[index]), customdata: rows.map((index) => ordinals[index]), marker: { size, color: LINES[order % LINES.length], symbol: order }, showlegend: true };
+        })
+      : [{ ...base, x: atX, y: atY, text, customdata: ordinals, marker: { size, color: shown(colour, /** @type {(number | null)[]} */ (colours)), colorscale: SCALE, colorbar: colourBar(title(colour)) } }];
+    const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
+    fill(caption, `${both} of ${ordinals.length} points have both values. Select a point to open it.`);
+    place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);
+    const shape = await draw(place, traces, { xaxis: { title: title(x), type: isText(xs) ? "category" : isLogX ? "log" : "linear" }, yaxis: { title: title(y), type: isText(ys) ? "category" : isLogY ? "log" : "linear" } }, context.signal);
+    shape.removeAllListeners?.("plotly_click");
+    shape.on?.("plotly_click", (/** @type {any} */ event) => context.open(event.points[0].customdata));
+  }
+
+  return {
+    element: h("div", {}, controls, h("figure", {}, place, caption)),
+    draw: undelayed(redraw, context),
+    fields: () => {
+      const { x, y, colour } = chosen();
+      return [...new Set(["ordinal", x, y, colour])];
+    },
+  };
+}
+
+/**
+ * All swept parameters and a few results side by side; dragging along an axis keeps what passes there.
+ * @param {import("./sweep.js").Context} context
+ * @returns {import("./sweep.js").Part}
+ */
+export function parallel(context) {
+  const { table, axes, query } = context;
+  const place = canvas("Parallel coordinates of the sweep", "tall");
+  const caption = h("figcaption", {}, "Drag along an axis to keep the points that pass there; drag an axis by its name to move it.");
+  const controls = h("div", { class: "controls" });
+
+  function chosen() {
+    const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
+    const colour = results.includes(query.get("colour") ?? "") ? (query.get("colour") ?? "") : preferred(results);
+    const first = results.find((name) => name === "friction_coefficient_max") ?? colour;
+    const beside = results.includes(query.get("beside") ?? "") ? (query.get("beside") ?? "") : first;
+    return { results, colour, beside };
+  }
+
+  async function redraw() {
+    const { results, colour, beside } = chosen();
+    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+      context.keep({ [key]: value });
+      void redraw();
+    };
+    const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));
+    const names = [...new Set([...axes, beside, colour])];
+    const columns = await table.columns(...names);
+    const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
+    if (!rows.length) {
+      fill(caption, "No point has all of these values yet.");
+      return;
+    }
+    const dimensions = names.map((name, order) => ({ label: title(name), values: shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))) }));
+    const last = dimensions[names.indexOf(colour)];
+    await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: SCALE, colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
+  }
+
+  return { element: h("div", {}, controls, h("figure", {}, place, caption)), draw: undelayed(redraw, context), fields: () => ["ordinal", ...axes, chosen().colour] };
+}

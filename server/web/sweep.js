@@ -1,0 +1,190 @@
+// A sweep: its state with what can be done to it, and its points as maps, clouds, sensitivities, a table and failures.
+
+import { follow, get, isFinal, send } from "./api.js";
+import { choice, fill, h } from "./dom.js";
+import { lines, tableLines } from "./lines.js";
+import { reported, notice } from "./notices.js";
+import { go, keep, link } from "./router.js";
+import { effects } from "./sweep-effects.js";
+import { failures } from "./sweep-failures.js";
+import { map } from "./sweep-map.js";
+import { parallel, scatter } from "./sweep-scatter.js";
+import { table } from "./sweep-table.js";
+import { Pace, progressPart, when } from "./sweeps.js";
+import { SweepTable } from "./table.js";
+import { say } from "./units.js";
+
+/**
+ * What a view of a sweep's points is made with.
+ * @typedef {object} Context
+ * @property {any} sweep
+ * @property {string[]} axes the swept parameters, as the table calls them
+ * @property {Record<string, any>} spans how the request gives the values of each
+ * @property {SweepTable} table
+ * @property {URLSearchParams} query
+ * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
+ * @property {(ordinal: number) => void} open
+ * @property {AbortSignal} signal
+ */
+
+/**
+ * A view of a sweep's points: its element, and how it is drawn anew when there are further results.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[]}} Part
+ */
+
+/** @type {[string, string, (context: Context) => Part][]} */
+const PARTS = [
+  ["map", "Map", map],
+  ["scatter", "Scatter", scatter],
+  ["parallel", "Parallel coordinates", parallel],
+  ["effects", "Sensitivities", effects],
+  ["table", "Table", table],
+  ["failures", "Failures", failures],
+];
+
+/** The least time between two readings of a table that is still growing. */
+const REDRAW_MS = 4000;
+
+/** @type {import("./main.js").View} */
+export async function show(main, route, signal) {
+  const id = route.path[1];
+  let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
+  const data = new SweepTable(sweep, signal);
+  await data.load();
+  const spans = sweep.request?.axes ?? {};
+  const named = Object.keys(spans).length ? Object.keys(spans) : Object.keys(sweep.request?.points?.[0] ?? {});
+  const axes = named.map((name) => (data.names.includes(name) ? name : (SHORT[name] ?? name))).filter((name) => data.names.includes(name));
+  const asked = route.query.get("view");
+  const [view, , make] = PARTS.find(([name]) => name === asked) ?? PARTS[axes.length ? 0 : 4];
+
+  const query = new URLSearchParams(route.query);
+  const taken = lines(() => {
+    const fields = part.fields();
+    const list = fields.length ? `[${fields.map((field) => JSON.stringify(field)).join(", ")}]` : "";
+    return {
+      ...tableLines(data.path, { fields: fields.join(",") }, `from drillsweep import Client\n\nsweep = Client("${location.origin}").sweep("${id}")\ntable = sweep.table().to_pandas()${list && `[${list}]`}`),
+      cli: `drillsweep fetch ${id} --server ${location.origin} --output results`,
+    };
+  });
+  /** @type {Context} */
+  const context = {
+    sweep,
+    axes,
+    spans: Object.fromEntries(Object.entries(spans).map(([name, span]) => [data.names.includes(name) ? name : (SHORT[name] ?? name), span])),
+    table: data,
+    query,
+    keep: (changes) => {
+      for (const [name, value] of Object.entries(changes)) {
+        if (value === null) query.delete(name);
+        else query.set(name, value);
+      }
+      keep(changes);
+      taken.dispatchEvent(new Event("redraw"));
+    },
+    open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
+    signal,
+  };
+  const part = make(context);
+
+  const head = h("div", {});
+  const pace = new Pace();
+  pace.note(sweep.progress);
+  const drawHead = () => fill(head, ...headPart(sweep, pace, act, change));
+
+  /** @param {string} verb */
+  async function act(verb) {
+    const changed = await reported(send("POST", `/v1/sweeps/${encodeURIComponent(id)}/${verb}`));
+    if (changed) update(changed);
+  }
+
+  /** @param {any} changes */
+  async function change(changes) {
+    const changed = await reported(send("PATCH", `/v1/sweeps/${encodeURIComponent(id)}`, changes));
+    if (changed) update(changed);
+    if (changed) notice("The sweep is changed.");
+  }
+
+  let drawnAt = Date.now();
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let waiting;
+
+  /** @param {any} changed */
+  function update(changed) {
+    const hasResults = changed.counts.succeeded !== sweep.counts.succeeded || changed.counts.failed !== sweep.counts.failed;
+    const wasFinal = isFinal(sweep);
+    sweep = { ...sweep, ...changed };
+    context.sweep = sweep;
+    pace.note(sweep.progress);
+    drawHead();
+    if (hasResults && waiting === undefined) waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
+    if (wasFinal && !isFinal(sweep)) follow(id, { sweep: update }, signal);
+  }
+
+  async function redraw() {
+    waiting = undefined;
+    drawnAt = Date.now();
+    try {
+      await data.load();
+      await part.draw();
+    } catch {
+      // A later result, or the server's return, draws again.
+    }
+  }
+  signal.addEventListener("abort", () => clearTimeout(waiting));
+
+  drawHead();
+  fill(
+    main,
+    h("nav", { class: "crumbs", "aria-label": "Breadcrumb" }, h("a", { href: "#/sweeps" }, "Sweeps"), " / "),
+    head,
+    h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, PARTS.map(([name, text]) => h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }, name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text))),
+    h("section", { class: "panel", "aria-label": PARTS.find(([name]) => name === view)?.[1] ?? "" }, part.element),
+    taken,
+  );
+  await part.draw();
+  if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
+  return sweep.name ?? `Sweep ${id.slice(-8)}`;
+}
+
+/** @type {Record<string, string>} paths that the table calls by a shorter name */
+const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
+
+/**
+ * @param {any} sweep
+ * @param {Pace} pace
+ * @param {(verb: string) => void} act
+ * @param {(changes: any) => void} change
+ */
+function headPart(sweep, pace, act, change) {
+  const button = (/** @type {string} */ verb, /** @type {string} */ text, /** @type {boolean} */ isShown, kind = "") => isShown && h("button", { class: kind, onclick: () => act(verb) }, text);
+  const canRetry = isFinal(sweep) && sweep.counts.failed + sweep.counts.cancelled > 0;
+  const priority = choice("Priority", Array.from({ length: 21 }, (_, index) => [String(10 - index), String(10 - index)]), String(sweep.priority), (value) => change({ priority: Number(value) }));
+  const { worst, warnings = [] } = sweep.verification ?? {};
+  return [
+    h(
+      "div",
+      { class: "head" },
+      h(
+        "div",
+        {},
+        h("h1", {}, sweep.name ?? `Sweep ${sweep.id.slice(-8)}`),
+        h("p", { class: "soft small" }, `${sweep.request?.preset ?? sweep.request?.scenario?.name ?? "own scenario"}, of ${sweep.owner}, `, when(sweep.created), " ", (sweep.tags ?? []).map((/** @type {string} */ tag) => h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag))),
+      ),
+      h(
+        "div",
+        { class: "controls" },
+        button("pause", "Pause", sweep.state === "running"),
+        button("resume", "Resume", sweep.state === "paused"),
+        !isFinal(sweep) && h("button", { class: "danger", onclick: () => confirm("Cancel this sweep? Queued points are not started, running ones are stopped. Results so far stay.") && act("cancel") }, "Cancel"),
+        button("retry", "Retry failed and cancelled", canRetry),
+        !isFinal(sweep) && priority,
+        h("a", { class: "button", href: link(["new"], { from: sweep.id }) }, "New sweep like this"),
+        h("a", { class: "button", href: sweep.links.export, download: "" }, "Download all"),
+      ),
+    ),
+    h("div", { "aria-live": "off" }, progressPart(sweep, pace)),
+    worst && h("p", { class: "small" }, `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`, worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : "."),
+    warnings.map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
+    h("div", { style: "height:.8rem" }),
+  ];
+}

@@ -1,0 +1,128 @@
+// An orbit as seen looking downhole, the low side down, and the full spectrum of one.
+
+import { inks } from "./plots.js";
+import { shown, title, unit } from "./units.js";
+
+/** Lines of a spectrum that are named in its picture. */
+const NAMED = 6;
+
+/**
+ * Displacements across the hole and from the low side up, in served units.
+ * Forward whirl, with the rotation of the string, goes clockwise.
+ * @param {number[]} u
+ * @param {number[]} v
+ * @param {number} lowSide angle of the low side, from u towards v [rad]
+ */
+export function seenDownhole(u, v, lowSide) {
+  const [cosine, sine] = [Math.cos(lowSide), Math.sin(lowSide)];
+  return { across: u.map((value, index) => -(v[index] * cosine - value * sine)), up: u.map((value, index) => -(value * cosine + v[index] * sine)) };
+}
+
+/**
+ * The orbit's trace, in the units in which it is shown.
+ * @param {any} table with u and v
+ * @param {number} lowSide
+ * @param {any} line
+ * @param {string} [name]
+ */
+export function orbitTrace(table, lowSide, line, name) {
+  const { across, up } = seenDownhole(table.columns.u, table.columns.v, lowSide);
+  const isLong = across.length > 20_000;
+  return { type: isLong ? "scattergl" : "scatter", mode: "lines", x: shown("radius", across), y: shown("radius", up), line: { width: 0.9, ...line }, name, showlegend: name !== undefined, hovertemplate: "%{x:.4~g}, %{y:.4~g}<extra></extra>" };
+}
+
+/**
+ * The hole: a node on this circle touches the wall.
+ * @param {number} clearance [m]
+ */
+export function holeTrace(clearance) {
+  const radius = Number(shown("radius", [clearance])[0]);
+  const angles = Array.from({ length: 361 }, (_, degree) => (degree * Math.PI) / 180);
+  return { type: "scatter", mode: "lines", x: angles.map((angle) => radius * Math.cos(angle)), y: angles.map((angle) => radius * Math.sin(angle)), line: { color: inks().soft, width: 1.6 }, hoverinfo: "skip", showlegend: false };
+}
+
+/**
+ * @param {boolean} isZoomed whether the motion fills the picture, in place of the hole
+ * @param {any[]} traces of the orbits
+ * @param {number} clearance [m]
+ */
+export function orbitLayout(isZoomed, traces, clearance) {
+  const { symbol } = unit("radius");
+  const radius = 1.08 * Number(shown("radius", [clearance])[0]);
+  let [x, y] = [[-radius, radius], [-radius, radius]];
+  if (isZoomed) {
+    const range = (/** @type {"x" | "y"} */ name) => {
+      const values = traces.flatMap((trace) => [least(trace[name]), -least(trace[name].map((/** @type {number} */ value) => -value))]);
+      return [Math.min(...values), Math.max(...values)];
+    };
+    const [across, up] = [range("x"), range("y")];
+    const half = 0.56 * Math.max(across[1] - across[0], up[1] - up[0], radius * 1e-6);
+    x = [(across[0] + across[1]) / 2 - half, (across[0] + across[1]) / 2 + half];
+    y = [(up[0] + up[1]) / 2 - half, (up[0] + up[1]) / 2 + half];
+  }
+  return {
+    xaxis: { title: `across the hole [${symbol}]`, range: x, scaleanchor: "y", constrain: "domain", zeroline: !isZoomed },
+    yaxis: { title: `from the low side up [${symbol}]`, range: y, constrain: "domain", zeroline: !isZoomed },
+  };
+}
+
+/** @param {number[]} values */
+function least(values) {
+  return values.reduce((a, b) => Math.min(a, b), Infinity);
+}
+
+/**
+ * The spectrum's trace without the line at zero, the mean position, which would dwarf the others.
+ * @param {any} table
+ * @param {any} line
+ * @param {string} [name]
+ */
+export function spectrumTrace(table, line, name) {
+  // As wide as the line that any window makes of a mean.
+  const mean = 2.5 * table.attributes.resolution;
+  const amplitude = shown("amplitude", table.columns.amplitude).map((value, index) => (Math.abs(table.columns.frequency[index]) < mean ? null : value));
+  return { type: "scatter", mode: "lines", x: table.columns.frequency, y: amplitude, line: { width: 1, ...line }, name, showlegend: name !== undefined, hovertemplate: "%{x:.3~f} Hz: %{y:.4~g}<extra></extra>" };
+}
+
+/**
+ * The highest lines that the step resolves, without the mean.
+ * @param {any} table
+ * @returns {{frequency: number, amplitude: number, whirl: string}[]}
+ */
+export function namedLines(table) {
+  return (table.attributes.peaks ?? []).filter((/** @type {any} */ peak) => peak.whirl !== "offset" && peak.is_resolved !== false).slice(0, NAMED);
+}
+
+/**
+ * @param {any} table of the spectrum whose lines are named; null names none
+ * @param {boolean} isLog
+ */
+export function spectrumLayout(table, isLog) {
+  const { soft } = inks();
+  const resolved = table?.attributes.resolved_hz;
+  const last = table ? Math.max(...table.columns.frequency.map(Math.abs)) : 0;
+  const beyond = resolved && resolved < last ? [[resolved, last], [-last, -resolved]] : [];
+  return {
+    xaxis: { title: "frequency [Hz]: − backward whirl, + forward whirl", zerolinecolor: soft },
+    yaxis: { title: title("amplitude"), type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
+    shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
+    annotations: table
+      ? namedLines(table).map((peak) => {
+          const height = Number(shown("amplitude", [peak.amplitude])[0]);
+          return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11 } };
+        })
+      : [],
+  };
+}
+
+/**
+ * What a line is a multiple of, such as `2 × rotation`, where it is one within the resolution.
+ * @param {number} frequency [Hz]
+ * @param {number} rotation [Hz]
+ * @param {number} resolution [Hz]
+ */
+export function multiple(frequency, rotation, resolution) {
+  if (rotation <= 0) return "";
+  const order = Math.round(Math.abs(frequency) / rotation);
+  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * rotation) <= resolution ? `${order} × rotation` : "";
+}

@@ -1,0 +1,101 @@
+// Which effects took part and why, how far the numbers can be trusted, what they cost, and files to take away.
+
+import { address, get, Problem, send } from "./api.js";
+import { fill, h } from "./dom.js";
+import { bytes, duration, label, meaning, number, say } from "./units.js";
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @returns {import("./point.js").PointPart}
+ */
+export function about(context) {
+  const { point, path, signal } = context;
+  const effects = h("section", { class: "panel", "aria-label": "Effects" }, h("h2", {}, "Effects"), h("p", { class: "soft" }, "Loading…"));
+  const files = h("section", { class: "panel", "aria-label": "Downloads" }, h("h2", {}, "Downloads"), h("p", { class: "soft" }, "Loading…"));
+
+  async function drawEffects() {
+    try {
+      // What was decided follows from the scenario alone, so that planning it anew tells it.
+      const { plan } = await send("POST", "/v1/runs?dry_run=true", { scenario: point.scenario }, signal);
+      const rows = plan.effects.map((/** @type {any} */ effect) => h("tr", {}, h("td", {}, effect.effect.replaceAll("_", " ")), h("td", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off")), h("td", {}, effect.reason), h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`)));
+      fill(effects, h("h2", {}, "Effects"), h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Effect"), h("th", {}, ""), h("th", {}, "Why"), h("th", {}, ""))), h("tbody", {}, rows))));
+    } catch (error) {
+      if (signal.aborted) return;
+      fill(effects, h("h2", {}, "Effects"), h("p", { class: "soft" }, error instanceof Problem && error.status === 403 ? "Your token may not plan scenarios, which tells the effects." : String(error instanceof Error ? error.message : error)));
+    }
+  }
+
+  async function drawFiles() {
+    const { artifacts } = await get(`${path}/artifacts`, {}, signal);
+    const rows = artifacts.map((/** @type {any} */ file) => {
+      const hasView = ["profile", "statics", "history", "contacts", "energy"].includes(file.name);
+      return h("tr", {}, h("td", {}, file.expired ? `${file.name} (expired)` : h("a", { href: file.link, download: "" }, `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`)), h("td", { class: "number" }, file.rows), h("td", { class: "number" }, bytes(file.bytes)), h("td", {}, hasView && !file.expired && h("a", { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` }, "CSV")));
+    });
+    fill(files, h("h2", {}, "Downloads"), rows.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "File"), h("th", { class: "number" }, "Rows"), h("th", { class: "number" }, "Size"), h("th", {}, "As"))), h("tbody", {}, rows)) : h("p", { class: "soft" }, "Of this point only its row of the table is stored."));
+  }
+
+  return {
+    element: h("div", { class: "half" }, accuracyPart(point), costPart(point), effects, files, summaryPart(point), provenancePart(point)),
+    draw: async () => {
+      await Promise.all([drawEffects(), drawFiles()]);
+    },
+    request: () => ({ table: "statics", query: {}, python: "print(point.summary)\nprint(point.provenance)" }),
+  };
+}
+
+/** @param {string} heading @param {[string, string][]} facts @param {any[]} [more] */
+function factsPart(heading, facts, more = []) {
+  return h("section", { class: "panel", "aria-label": heading }, h("h2", {}, heading), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])), more);
+}
+
+/** @param {any} point */
+function accuracyPart(point) {
+  const { summary, provenance = {} } = point;
+  const { time, mesh, spread } = provenance.errors ?? {};
+  const percent = (/** @type {any} */ value) => (typeof value === "number" ? `${number(100 * value, 2)} %` : "not known");
+  /** @type {[string, string][]} */
+  const facts = [
+    ["Time steps: error of statistics", percent(summary.time_error)],
+    ["Mesh: error of the mean radius", percent(summary.mesh_error_mean_radius)],
+    ["Spread of an ensemble", percent(summary.relative_spread)],
+    ["Error of a displacement at the end", say("error_estimate_displacement", summary.error_estimate_displacement, 2)],
+    ["Resolved up to", say("resolved_hz", summary.resolved_hz)],
+    ["Unresolved steps", String(summary.unresolved_steps ?? "–")],
+    ["Energy that the ledger misses", say("energy_residual_ratio", summary.energy_residual_ratio, 2)],
+  ];
+  const reasons = [time?.condition, mesh?.reason && `Mesh: ${mesh.reason}`, spread?.reason && `Spread: ${spread.reason}`].filter(Boolean);
+  const biases = Object.keys(summary).filter((name) => name.startsWith("bias_") && summary[name] !== null);
+  return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biases.length ? h("p", { class: "small" }, "Bias against the reference run: ", biases.map((name) => `${label(name.slice(5))} ${percent(summary[name])}`).join(", ")) : null]);
+}
+
+/** @param {any} point */
+function costPart(point) {
+  const { provenance = {} } = point;
+  /** @type {[string, string][]} */
+  const facts = [];
+  const add = (/** @type {string} */ name, /** @type {any} */ value, /** @type {(value: any) => string} */ write = String) => value !== undefined && value !== null && facts.push([name, write(value)]);
+  add("Simulated time", point.scenario.duration, (value) => say("time", value));
+  add("Processor time of the run", provenance.transient_cpu_time, duration);
+  add("Processor time of the equilibrium", provenance.statics_cpu_time, duration);
+  add("Wall time of the run", provenance.transient_wall_time, duration);
+  add("Elements", provenance.elements);
+  add("Method", provenance.integrator);
+  add("Steps", provenance.steps);
+  add("Steps from", provenance.shortest_step, (value) => `${duration(value)} to ${duration(provenance.longest_step ?? value)}`);
+  add("Steps taken back", provenance.rejected_steps);
+  return factsPart("What it cost", facts);
+}
+
+/** @param {any} point */
+function summaryPart(point) {
+  const rows = Object.entries(point.summary).filter(([, value]) => value !== null).map(([name, value]) => h("tr", { title: meaning(name) }, h("td", {}, label(name)), h("td", { class: "number" }, say(name, value))));
+  return h("section", { class: "panel", "aria-label": "Summary" }, h("h2", {}, "Summary"), h("div", { class: "scroll", style: "max-height:26rem", tabindex: "0", role: "region", "aria-label": "Summary, scrollable" }, h("table", {}, h("tbody", {}, rows))));
+}
+
+/** @param {any} point */
+function provenancePart(point) {
+  const { provenance = {} } = point;
+  /** @type {[string, string][]} */
+  const facts = [["Key", point.key], ["Version", `${provenance.version ?? "–"}, physics ${provenance.physics_version ?? "–"}`], ["Computed by", `${provenance.worker ?? "–"} on ${provenance.host ?? "–"}`], ["Begun", provenance.started ? new Date(provenance.started).toLocaleString() : "–"], ["Ended", provenance.ended ? new Date(provenance.ended).toLocaleString() : "–"], ["Attempts", String(point.attempts)]];
+  return factsPart("Where it comes from", facts, [h("details", {}, h("summary", {}, "Scenario as simulated"), h("pre", { tabindex: "0", style: "max-height:24rem" }, JSON.stringify(point.scenario, null, 2)))]);
+}

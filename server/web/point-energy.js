@@ -1,0 +1,42 @@
+// Energy by account: what was put in, where it went, and what the ledger misses.
+
+import { fill, h } from "./dom.js";
+import { canvas, DASHES, draw, LINES } from "./plots.js";
+import { label, say, shown, unit } from "./units.js";
+
+const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
+const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
+const HELD = ["kinetic", "stored"];
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @returns {import("./point.js").PointPart}
+ */
+export function energy(context) {
+  const bars = canvas("Energy by account at the end of the run", "low");
+  const curves = canvas("Energy over time");
+  const caption = h("figcaption", {});
+
+  async function redraw() {
+    const { columns } = await context.table("energy");
+    const last = columns.time.length - 1;
+    const accounts = [...SUPPLIED, ...DISSIPATED, ...HELD].filter((name) => columns[name]);
+    const change = (/** @type {string} */ name) => Number(columns[name][last]) - Number(columns[name][0]);
+    const kind = (/** @type {string} */ name) => (SUPPLIED.includes(name) ? 0 : DISSIPATED.includes(name) ? 1 : 2);
+    const backwards = accounts.toReversed();
+    const power = unit("kinetic").symbol;
+    fill(caption, `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of what it moves: the error of the integration.`);
+    const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
+      const names = backwards.filter((account) => kind(account) === group);
+      return { type: "bar", orientation: "h", name, y: names.map(label), x: names.map((account) => shown(account, [change(account)])[0]), marker: { color: LINES[group] }, showlegend: true, hovertemplate: `%{y}: %{x:.4~g} ${power}<extra></extra>` };
+    });
+    await draw(bars, traces, { xaxis: { title: `energy [${power}]` }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 16, t: 30, b: 50 } }, context.signal);
+    await draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${power}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${power}]` }, hovermode: "x" }, context.signal);
+  }
+
+  return {
+    element: h("div", {}, h("h2", {}, "By account"), h("figure", {}, bars, caption), h("h2", {}, "Over time"), h("figure", {}, curves)),
+    draw: redraw,
+    request: () => ({ table: "energy", query: {}, python: "energy = point.energy().to_pandas()" }),
+  };
+}

@@ -1,0 +1,281 @@
+// The motion of a recorded node: a window brushed in its history, and orbit, full spectrum and statistics of that window.
+
+import { Problem } from "./api.js";
+import { choice, fill, h } from "./dom.js";
+import { holeTrace, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { adjust, canvas, draw, inks, LINES } from "./plots.js";
+import { say, shown, unit } from "./units.js";
+
+/** Samples in a picture: two for each pixel of a wide screen. */
+const SHOWN = 4000;
+/** Samples from which statistics are taken; of more every k-th. */
+const COUNTED = 20_000;
+/** Samples that a spectrum needs. */
+const LEAST = 8;
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @returns {import("./point.js").PointPart}
+ */
+export function motion(context) {
+  const { point, query, signal } = context;
+  const { recording, duration, operation } = point.scenario;
+  /** @type {any[]} */
+  const nodes = recording.nodes;
+  const history = canvas("History of the node", "low");
+  const rotation = canvas("Rotation speed and torque of the node", "low");
+  const orbit = canvas("Orbit of the node");
+  const spectrum = canvas("Full spectrum of the node");
+  const statistics = h("div", {});
+  const listed = h("div", {});
+  const controls = h("div", { class: "controls" });
+  const wrong = h("p", { class: "wrong", role: "alert" });
+
+  /** @type {any} */
+  let statics;
+  /** @type {any} */
+  let whole;
+  /** @type {any} */
+  let windowed;
+  let generation = 0;
+
+  const selector = () => {
+    const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
+    return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+  };
+  const span = () => {
+    const usual = recording.orbit_window ?? { from: duration / 3, to: duration };
+    const from = Number(query.get("from") ?? usual.from);
+    const to = Number(query.get("to") ?? usual.to);
+    return from >= 0 && to > from ? { from, to: Math.min(to, duration) } : { from: usual.from, to: usual.to };
+  };
+  const isZoomed = () => (query.get("zoom") ?? "motion") === "motion";
+  const isLog = () => query.get("amplitude") === "log";
+  const weighting = () => (query.get("window") === "rectangular" ? "rectangular" : "hann");
+
+  /** @param {string} name @param {string} value */
+  const set = (name, value) => context.keep({ [name]: value });
+
+  function drawControls() {
+    const { from, to } = span();
+    const entry = (/** @type {string} */ name, /** @type {number} */ value) => {
+      const box = h("input", { type: "number", min: 0, max: duration, step: "any", value: Number(value.toFixed(3)), style: "width:7rem", onchange: () => {
+        const limits = { from: span().from, to: span().to, [name]: Number(box.value) };
+        choose(limits.from, limits.to);
+      } });
+      return h("label", { class: "field" }, h("span", {}, `${name === "from" ? "From" : "To"} [s]`), box);
+    };
+    fill(
+      controls,
+      choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth)]), query.get("node") ?? "0", (value) => {
+        set("node", value);
+        void redraw();
+      }),
+      entry("from", from),
+      entry("to", to),
+      choice("Orbit shows", [["motion", "the motion"], ["hole", "the whole hole"]], isZoomed() ? "motion" : "hole", (value) => {
+        set("zoom", value);
+        void drawOrbit();
+      }),
+      choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], isLog() ? "log" : "linear", (value) => {
+        set("amplitude", value);
+        void drawSpectrum();
+      }),
+      choice("Weighting", [["hann", "Hann"], ["rectangular", "rectangular"]], weighting(), (value) => {
+        set("window", value);
+        void drawWindow();
+      }),
+      h("button", { onclick: () => choose(0, duration) }, "Whole run"),
+    );
+  }
+
+  /** @param {number} node */
+  function depthOf(node) {
+    const index = statics?.columns.node.indexOf(node) ?? -1;
+    return index < 0 ? "" : `, ${say("measured_depth", statics.columns.measured_depth[index])}`;
+  }
+
+  /** @param {number} from @param {number} to */
+  function choose(from, to) {
+    const first = Math.max(0, Math.min(from, to));
+    const last = Math.min(duration, Math.max(from, to));
+    if ((last - first) * recording.rate_hz < LEAST) return;
+    context.keep({ from: String(Number(first.toFixed(4))), to: String(Number(last.toFixed(4))) });
+    drawControls();
+    void drawWindow();
+  }
+
+  /** What the statics say of the node that the answer is of. */
+  function place() {
+    const index = Math.max(0, statics.columns.node.indexOf(whole.attributes.node));
+    return { lowSide: statics.columns.low_side_angle[index], clearance: statics.columns.clearance[index], depth: whole.attributes.measured_depth, node: whole.attributes.node };
+  }
+
+  async function redraw() {
+    statics ??= await context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" });
+    drawControls();
+    const mine = ++generation;
+    try {
+      whole = await context.table("orbit", { ...selector(), max_points: SHOWN });
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+      fill(pictures, h("p", { class: "panel empty", role: "alert" }, error.message));
+      return;
+    }
+    if (mine !== generation) return;
+    const { node } = place();
+    const turning = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN }).catch(() => null);
+    await Promise.all([drawHistory(), turning && drawRotation(turning, node), drawWindow()]);
+  }
+
+  async function drawHistory() {
+    const { lowSide, node, depth } = place();
+    const { across, up } = seenDownhole(whole.columns.u, whole.columns.v, lowSide);
+    const traces = [
+      { type: "scattergl", mode: "lines", x: whole.columns.time, y: shown("radius", up), name: "from the low side up", line: { color: LINES[0], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
+      { type: "scattergl", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
+    ];
+    history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
+    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]` }, shapes: [shade()], newselection: { line: { color: inks().soft, width: 1 } } }, signal);
+    shape.removeAllListeners?.("plotly_selecting");
+    shape.removeAllListeners?.("plotly_selected");
+    let isDue = false;
+    shape.on?.("plotly_selecting", (/** @type {any} */ event) => {
+      const range = event?.range?.x;
+      if (!range || isDue) return;
+      isDue = true;
+      requestAnimationFrame(() => {
+        isDue = false;
+        void drawOrbit(range);
+      });
+    });
+    shape.on?.("plotly_selected", (/** @type {any} */ event) => {
+      const range = event?.range?.x;
+      if (!range) return;
+      choose(range[0], range[1]);
+      void adjust(history, { selections: [] });
+    });
+  }
+
+  function shade() {
+    const { from, to } = span();
+    return { type: "rect", xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1, fillcolor: LINES[5], opacity: 0.18, line: { width: 0 }, layer: "below" };
+  }
+
+  /** @param {any} table @param {number} node */
+  async function drawRotation(table, node) {
+    const { columns } = table;
+    const [speed, torque] = [`rotation_speed_${node}`, `torque_${node}`];
+    await draw(
+      rotation,
+      [
+        { type: "scattergl", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
+        { type: "scattergl", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
+      ],
+      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]` }, yaxis2: { title: `torque [${unit(torque).symbol}]`, overlaying: "y", side: "right", showgrid: false } },
+      signal,
+    );
+  }
+
+  async function drawWindow() {
+    const mine = ++generation;
+    const { from, to } = span();
+    const node = place().node;
+    wrong.textContent = "";
+    void adjust(history, { shapes: [shade()] });
+    try {
+      const [cut, lines, samples] = await Promise.all([
+        context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
+        context.table("spectrum", { ...selector(), from, to, window: weighting(), peaks: 10 }),
+        context.table("history", { ...selector(), from, to, fields: `u_${node},v_${node}`, max_points: COUNTED }),
+      ]);
+      if (mine !== generation) return;
+      windowed = { cut, lines };
+      drawStatistics(samples, node);
+      drawLines();
+      await Promise.all([drawOrbit(), drawSpectrum()]);
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+      wrong.textContent = error.errors[0]?.detail ?? error.message;
+    }
+  }
+
+  /** @param {[number, number]} [range] while a window is being brushed: cut from what the history shows */
+  async function drawOrbit(range) {
+    const { lowSide, clearance, node, depth } = place();
+    let table = windowed?.cut;
+    if (range) {
+      const rows = whole.columns.time.map((/** @type {number} */ _, /** @type {number} */ index) => index).filter((/** @type {number} */ index) => whole.columns.time[index] >= range[0] && whole.columns.time[index] < range[1]);
+      table = { columns: { u: rows.map((/** @type {number} */ row) => whole.columns.u[row]), v: rows.map((/** @type {number} */ row) => whole.columns.v[row]) } };
+    }
+    if (!table?.columns.u.length) return;
+    orbit.setAttribute("aria-label", `Orbit of node ${node} at ${say("measured_depth", depth)}`);
+    const trace = orbitTrace(table, lowSide, { color: LINES[0] });
+    await draw(orbit, [holeTrace(clearance), trace], orbitLayout(isZoomed(), [trace], clearance), signal);
+  }
+
+  async function drawSpectrum() {
+    if (!windowed) return;
+    const { node, depth } = place();
+    spectrum.setAttribute("aria-label", `Full spectrum of node ${node} at ${say("measured_depth", depth)}`);
+    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout(windowed.lines, isLog()), signal);
+  }
+
+  /** @param {any} table @param {number} node */
+  function drawStatistics(table, node) {
+    const [u, v] = [table.columns[`u_${node}`], table.columns[`v_${node}`]];
+    const mean = (/** @type {number[]} */ values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+    const [u0, v0] = [mean(u), mean(v)];
+    const radii = u.map((/** @type {number} */ value, /** @type {number} */ index) => Math.hypot(value, v[index]));
+    const radius = mean(radii);
+    const size = Math.sqrt(mean(u.map((/** @type {number} */ value, /** @type {number} */ index) => (value - u0) ** 2 + (v[index] - v0) ** 2)));
+    const deviation = Math.sqrt(mean(radii.map((/** @type {number} */ value) => (value - radius) ** 2)));
+    const largest = [...radii, ...windowed.cut.columns.radius].reduce((a, b) => Math.max(a, b), 0);
+    const { clearance } = place();
+    const { from, to } = span();
+    const facts = [
+      ["Window", `${say("time", from)} to ${say("time", to)}`],
+      ["Orbit size (rms about the mean)", say("radius", size)],
+      ["Mean radius", say("radius", radius)],
+      ["Deviation of the radius", say("radius", deviation)],
+      ["Largest radius", say("radius", largest)],
+      ["Offset of the mean position", say("radius", Math.hypot(u0, v0))],
+      ["Clearance", say("radius", clearance)],
+      ["Samples", u.length < windowed.cut.attributes.samples ? `${u.length} of ${windowed.cut.attributes.samples}` : String(u.length)],
+    ];
+    fill(statistics, h("h2", {}, "Statistics of the window"), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)])));
+  }
+
+  function drawLines() {
+    const { lines } = windowed;
+    const turns = operation.rotation_speed_rpm / 60;
+    const rows = namedLines(lines).map((line) => h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency)), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude)), h("td", {}, multiple(line.frequency, turns, lines.attributes.resolution))));
+    const resolved = lines.attributes.resolved_hz ?? point.summary.resolved_hz;
+    fill(
+      listed,
+      h("h2", {}, "Lines of the spectrum"),
+      h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"))), h("tbody", {}, rows)),
+      h("p", { class: "small soft" }, `Resolution ${say("frequency", lines.attributes.resolution)}.`, resolved ? ` The steps resolve up to ${say("frequency", resolved)}.` : "", " The line at zero, the mean position, is left out."),
+    );
+  }
+
+  const pictures = h(
+    "div",
+    {},
+    h("div", { class: "panel" }, h("h2", {}, "Displacement"), h("figure", {}, history, h("figcaption", {}, "Drag across the history to choose a window; orbit, spectrum and statistics follow."))),
+    h("div", { style: "height:1rem" }),
+    h("div", { class: "half" }, h("div", { class: "panel" }, h("h2", {}, "Orbit, looking downhole"), h("figure", {}, orbit, h("figcaption", {}, "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall."))), h("div", { class: "panel" }, h("h2", {}, "Full spectrum"), h("figure", {}, spectrum, h("figcaption", {}, "Shaded: beyond what the time steps resolve."))), h("div", { class: "panel" }, statistics), h("div", { class: "panel" }, listed)),
+    h("div", { style: "height:1rem" }),
+    h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque"), h("figure", {}, rotation)),
+  );
+  return {
+    element: nodes.length ? h("div", {}, controls, wrong, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),
+    draw: nodes.length ? redraw : async () => {},
+    request: () => {
+      const { from, to } = span();
+      const asked = selector();
+      const which = asked.node !== undefined ? `node=${asked.node}` : `depth=${asked.depth}, nearest=True`;
+      return { table: "orbit", query: { ...asked, from, to }, python: `plot.orbit(point, ${which}, time=(${from}, ${to}))\nplot.spectrum(point, ${which}, time=(${from}, ${to}), window="${weighting()}")` };
+    },
+  };
+}

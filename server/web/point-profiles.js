@@ -1,0 +1,147 @@
+// Quantities over depth, side by side with one depth cursor.
+
+import { fill, h } from "./dom.js";
+import { canvas, draw, inks, LINES } from "./plots.js";
+import { label, meaning, say, shown, title } from "./units.js";
+
+/** Quantities over depth, and the table that has each. @type {[string, string][]} */
+export const QUANTITIES = [
+  ["friction_coefficient", "profile"],
+  ["rotation_damping", "profile"],
+  ["eccentricity", "profile"],
+  ["effective_tension", "profile"],
+  ["torque", "profile"],
+  ["normal_force", "statics"],
+  ["largest_normal_force", "contacts"],
+  ["contact_time", "contacts"],
+  ["stick_time", "contacts"],
+  ["largest_radius", "contacts"],
+  ["annulus_speed", "profile"],
+  ["reynolds_number", "profile"],
+  ["annulus_pressure", "profile"],
+  ["bore_pressure", "profile"],
+  ["friction_gradient", "profile"],
+  ["radius", "statics"],
+];
+
+const USUAL = ["friction_coefficient", "rotation_damping", "eccentricity", "effective_tension", "torque", "largest_normal_force"];
+
+/**
+ * A quantity over measured depth: of elements as steps over their ends, of nodes as they are.
+ * @param {string} name
+ * @param {any} table
+ * @returns {{value: (number | null)[], depth: (number | null)[]}} in the units in which they are shown
+ */
+export function overDepth(name, table) {
+  const { columns } = table;
+  const value = shown(name, columns[name]);
+  if (columns.measured_depth) return { value, depth: shown("measured_depth", columns.measured_depth) };
+  const [top, bottom] = [shown("measured_depth", columns.measured_depth_top), shown("measured_depth", columns.measured_depth_bottom)];
+  return { value: value.flatMap((entry) => [entry, entry]), depth: top.flatMap((entry, index) => [entry, bottom[index]]) };
+}
+
+/**
+ * Several quantities side by side over one depth axis that grows downwards.
+ * @param {HTMLElement} place
+ * @param {string[]} names
+ * @param {{table: (name: string) => any, colour: string, dash: string, name: string}[]} points tables by quantity
+ * @param {AbortSignal} signal
+ */
+export async function drawProfiles(place, names, points, signal) {
+  const { soft } = inks();
+  const traces = names.flatMap((name, column) =>
+    points.flatMap((point, order) => {
+      const table = point.table(name);
+      if (!table?.columns[name]) return [];
+      const { value, depth } = overDepth(name, table);
+      return [{ type: "scatter", mode: "lines", x: value, y: depth, xaxis: `x${column ? column + 1 : ""}`, yaxis: "y", name: point.name, legendgroup: String(order), showlegend: column === 0 && points.length > 1, line: { color: point.colour, dash: point.dash, width: 1.4 }, hovertemplate: "%{x:.4~g}<extra></extra>" }];
+    }),
+  );
+  const width = 1 / names.length;
+  const gap = Math.min(0.03, width / 6);
+  const layout = {
+    hovermode: "y",
+    hoversubplots: "axis",
+    margin: { l: 64, r: 12, t: points.length > 1 ? 40 : 12, b: 60 },
+    yaxis: { title: title("measured_depth"), autorange: "reversed", showspikes: true, spikemode: "across", spikesnap: "cursor", spikethickness: 1, spikecolor: soft, spikedash: "solid", zeroline: false },
+    ...Object.fromEntries(names.map((name, column) => [`xaxis${column ? column + 1 : ""}`, { title: { text: wrapped(title(name)), font: { size: 12 } }, domain: [column * width + (column ? gap : 0), (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2)], anchor: "y", nticks: 5 }])),
+  };
+  return draw(place, traces, layout, signal);
+}
+
+/** @param {string} text */
+function wrapped(text) {
+  const middle = text.indexOf(" [");
+  if (text.length < 18) return text;
+  if (middle > 0) return `${text.slice(0, middle)}<br>${text.slice(middle + 1)}`;
+  return text;
+}
+
+/**
+ * Ticks by which quantities are chosen; the choice stands in the link.
+ * @param {string} chosen from the link
+ * @param {(names: string[]) => void} onChange
+ */
+export function quantityTicks(chosen, onChange) {
+  const asked = chosen.split(",").filter((name) => QUANTITIES.some(([entry]) => entry === name));
+  const names = new Set(asked.length ? asked : USUAL);
+  const inOrder = () => QUANTITIES.map(([name]) => name).filter((name) => names.has(name));
+  const ticks = QUANTITIES.map(([name]) => {
+    const box = h("input", { type: "checkbox", checked: names.has(name), onchange: () => {
+      box.checked ? names.add(name) : names.delete(name);
+      if (names.size) onChange(inOrder());
+    } });
+    return h("label", { class: "tick small", title: meaning(name) }, box, label(name));
+  });
+  return { element: h("details", {}, h("summary", {}, "Quantities"), h("div", { class: "controls" }, ticks)), names: inOrder };
+}
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @returns {import("./point.js").PointPart}
+ */
+export function profiles(context) {
+  const place = canvas("Profiles over measured depth", "tall");
+  const reading = h("p", { class: "small soft", role: "status" }, "Point at a depth to read all profiles there.");
+  const ticks = quantityTicks(context.query.get("profiles") ?? "", (names) => {
+    context.keep({ profiles: names.join(",") });
+    void redraw();
+  });
+  /** @type {Record<string, any>} */
+  const tables = {};
+
+  async function redraw() {
+    const names = ticks.names();
+    const needed = new Set(names.map(tableOf));
+    await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
+    const shape = await drawProfiles(place, names, [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }], context.signal);
+    shape.removeAllListeners?.("plotly_hover");
+    shape.on?.("plotly_hover", (/** @type {any} */ event) => read(event.points[0].y, names));
+  }
+
+  /** @param {number} depth as shown @param {string[]} names */
+  function read(depth, names) {
+    const words = names.map((name) => {
+      const { value, depth: depths } = overDepth(name, tables[tableOf(name)]);
+      let nearest = 0;
+      depths.forEach((entry, index) => {
+        if (Math.abs(Number(entry) - depth) < Math.abs(Number(depths[nearest]) - depth)) nearest = index;
+      });
+      const size = shown(name, [1])[0] ?? 1;
+      return `${label(name)} ${say(name, value[nearest] === null ? null : Number(value[nearest]) / size)}`;
+    });
+    const size = shown("measured_depth", [1])[0] ?? 1;
+    fill(reading, `At ${say("measured_depth", depth / size)}: ${words.join(" · ")}`);
+  }
+
+  return {
+    element: h("div", {}, ticks.element, h("figure", {}, place), reading),
+    draw: redraw,
+    request: () => ({ table: "profile", query: { fields: ["measured_depth_top", "measured_depth_bottom", ...ticks.names().filter((name) => tableOf(name) === "profile")].join(",") }, python: `plot.profile(point, "${ticks.names()[0]}")` }),
+  };
+}
+
+/** @param {string} name */
+export function tableOf(name) {
+  return QUANTITIES.find(([entry]) => entry === name)?.[1] ?? "profile";
+}

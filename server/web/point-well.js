@@ -1,0 +1,101 @@
+// The well in space with the string in it at rest, coloured by a quantity.
+
+import { choice, fill, h } from "./dom.js";
+import { canvas, colourBar, draw, inks, SCALE } from "./plots.js";
+import { QUANTITIES, tableOf } from "./point-profiles.js";
+import { label, say, shown, title, unit } from "./units.js";
+
+/** How many times the string's distance from the axis of the hole is drawn. */
+const EXAGGERATIONS = ["1", "20", "100", "300"];
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @returns {import("./point.js").PointPart}
+ */
+export function well(context) {
+  const { query } = context;
+  const place = canvas("The well and the string in it", "tall");
+  const controls = h("div", { class: "controls" });
+  const caption = h("figcaption", {});
+  const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
+  const factor = () => (EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : 20);
+
+  async function redraw() {
+    const name = colour();
+    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+      context.keep({ [key]: value });
+      void redraw();
+    };
+    fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor()), set("exaggerate")));
+    const statics = (await context.table("statics")).columns;
+    const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
+    const values = onNodes(table, name, statics.measured_depth.length);
+    const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
+    const string = displaced(statics, axis, factor());
+    const line = (/** @type {typeof axis} */ path) => ({ x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down) });
+    const { soft, line: faint } = inks();
+    const texts = values.map((value, index) => `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`);
+    const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: faint, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
+    fill(caption, `The string at rest; its distance from the axis of the hole is drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}. Drag to turn, scroll to come nearer.`);
+    await draw(
+      place,
+      [
+        { type: "scatter3d", mode: "lines", ...line(axis), line: { color: soft, width: 2 }, hoverinfo: "skip", name: "axis of the hole" },
+        { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: SCALE, width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
+      ],
+      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } },
+      context.signal,
+    );
+  }
+
+  return {
+    element: h("div", {}, controls, h("figure", {}, place, caption)),
+    draw: redraw,
+    request: () => ({ table: "statics", query: {}, python: `statics = point.statics().to_pandas()` }),
+  };
+}
+
+/**
+ * A quantity at the nodes: of elements, the mean of both that a node joins.
+ * @param {any} columns
+ * @param {string} name
+ * @param {number} nodes
+ * @returns {(number | null)[]}
+ */
+function onNodes(columns, name, nodes) {
+  const values = columns[name];
+  if (values.length === nodes) return values;
+  return Array.from({ length: nodes }, (_, node) => (values[Math.max(0, node - 1)] + values[Math.min(values.length - 1, node)]) / 2);
+}
+
+/**
+ * Where the string lies, its distance from the axis multiplied.
+ * @param {any} statics
+ * @param {{north: number[], east: number[], down: number[]}} axis
+ * @param {number} factor
+ */
+function displaced(statics, axis, factor) {
+  const count = axis.north.length;
+  const result = { north: [...axis.north], east: [...axis.east], down: [...axis.down] };
+  for (let node = 0; node < count; node += 1) {
+    const [before, after] = [Math.max(0, node - 1), Math.min(count - 1, node + 1)];
+    const tangent = unitVector([axis.north[after] - axis.north[before], axis.east[after] - axis.east[before], axis.down[after] - axis.down[before]]);
+    // The low side is what gravity leaves across the hole; a vertical hole has none, and north takes its place.
+    const gravity = [0, 0, 1].map((value, index) => value - tangent[2] * tangent[index]);
+    const low = Math.hypot(...gravity) > 1e-6 ? unitVector(gravity) : [1, 0, 0];
+    const side = [tangent[1] * low[2] - tangent[2] * low[1], tangent[2] * low[0] - tangent[0] * low[2], tangent[0] * low[1] - tangent[1] * low[0]];
+    const [cosine, sine] = [Math.cos(statics.low_side_angle[node]), Math.sin(statics.low_side_angle[node])];
+    const [u, v] = [statics.u[node], statics.v[node]];
+    const [down, across] = [factor * (u * cosine + v * sine), factor * (v * cosine - u * sine)];
+    result.north[node] += down * low[0] + across * side[0];
+    result.east[node] += down * low[1] + across * side[1];
+    result.down[node] += down * low[2] + across * side[2];
+  }
+  return result;
+}
+
+/** @param {number[]} vector */
+function unitVector(vector) {
+  const length = Math.hypot(...vector) || 1;
+  return vector.map((value) => value / length);
+}

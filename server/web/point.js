@@ -1,0 +1,124 @@
+// A point: what it is, and its profiles, motion, energy, well, and what it cost.
+
+import { get, Problem } from "./api.js";
+import { fill, h } from "./dom.js";
+import { lines, tableLines } from "./lines.js";
+import { about } from "./point-about.js";
+import { energy } from "./point-energy.js";
+import { motion } from "./point-motion.js";
+import { profiles } from "./point-profiles.js";
+import { well } from "./point-well.js";
+import { keep, link } from "./router.js";
+import { parameters } from "./sweep-failures.js";
+import { say } from "./units.js";
+
+/**
+ * What a view of a point is made with.
+ * @typedef {object} PointContext
+ * @property {any} point
+ * @property {string} path of the point, from `/v1`
+ * @property {URLSearchParams} query
+ * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
+ * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {AbortSignal} signal
+ */
+
+/**
+ * A view of a point, and the request behind what it shows.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, request: () => {table: string, query: Record<string, any>, python: string}}} PointPart
+ */
+
+/** @type {[string, string, (context: PointContext) => PointPart][]} */
+const PARTS = [
+  ["profiles", "Profiles", profiles],
+  ["motion", "Orbit, history, spectrum", motion],
+  ["well", "Well", well],
+  ["energy", "Energy", energy],
+  ["about", "Effects, accuracy, downloads", about],
+];
+
+/** How often a point that is not final yet is looked at. */
+const POLL_MS = 3000;
+
+/** @type {import("./main.js").View} */
+export async function show(main, route, signal) {
+  const [, id, , ordinal] = route.path;
+  const path = `/v1/sweeps/${encodeURIComponent(id)}/points/${encodeURIComponent(ordinal)}`;
+  const [point, sweep] = await Promise.all([get(path, {}, signal), get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal)]);
+  const asked = route.query.get("view");
+  const [view, name, make] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
+  const here = ["sweeps", id, "points", ordinal];
+  const heading = h("div", {});
+  const neighbour = (/** @type {number} */ step, /** @type {string} */ text) => {
+    const to = Number(ordinal) + step;
+    return to >= 1 && to <= sweep.counts.total && h("a", { class: "button", href: link(["sweeps", id, "points", String(to)], Object.fromEntries(route.query)) }, text);
+  };
+  const drawHeading = (/** @type {any} */ current) =>
+    fill(
+      heading,
+      h("nav", { class: "crumbs", "aria-label": "Breadcrumb" }, h("a", { href: "#/sweeps" }, "Sweeps"), " / ", h("a", { href: link(["sweeps", id]) }, sweep.name ?? `Sweep ${id.slice(-8)}`), " / "),
+      h(
+        "div",
+        { class: "head" },
+        h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, parameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "")),
+        h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), h("a", { class: "button", href: link(["compare"], { points: `${id}:${ordinal}`, view: "profiles" }) }, "Compare")),
+      ),
+      current.error && h("div", { class: "panel", role: "alert" }, h("h2", { class: "wrong" }, `Failed: ${current.error.class}`), h("p", {}, current.error.reason), h("p", { class: "soft" }, [typeof current.error.time === "number" && `at ${say("time", current.error.time)}`, current.error.node && `node ${current.error.node}`].filter(Boolean).join(", "))),
+    );
+  drawHeading(point);
+
+  if (!point.summary) {
+    const isWaiting = point.state === "queued" || point.state === "running";
+    fill(main, heading, h("p", { class: "empty", role: "status" }, isWaiting ? "Results appear here when the point is complete." : "This point has no result."));
+    const timer = setInterval(async () => {
+      const current = await get(path, {}, signal).catch(() => null);
+      if (!current) return;
+      drawHeading(current);
+      if (current.state !== "queued" && current.state !== "running") {
+        clearInterval(timer);
+        dispatchEvent(new HashChangeEvent("hashchange"));
+      }
+    }, POLL_MS);
+    if (!isWaiting) clearInterval(timer);
+    signal.addEventListener("abort", () => clearInterval(timer));
+    return `Point ${ordinal}`;
+  }
+
+  const query = new URLSearchParams(route.query);
+  const taken = lines(() => {
+    const { table, query: asks, python } = part.request();
+    const start = `from drillsweep import Client, plot\n\npoint = Client("${location.origin}").sweep("${id}").point(${ordinal})\n`;
+    return tableLines(`${path}/${table}`, asks, start + python);
+  });
+  /** @type {PointContext} */
+  const context = {
+    point,
+    path,
+    query,
+    keep: (changes) => {
+      for (const [key, value] of Object.entries(changes)) {
+        if (value === null) query.delete(key);
+        else query.set(key, value);
+      }
+      keep(changes);
+      taken.dispatchEvent(new Event("redraw"));
+    },
+    table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
+    signal,
+  };
+  const part = make(context);
+  fill(
+    main,
+    heading,
+    h("nav", { class: "tabs", "aria-label": "Views of the point" }, PARTS.map(([entry, text]) => h("a", { href: link(here, { view: entry }), "aria-current": entry === view && "page" }, text))),
+    h("section", { class: view === "profiles" || view === "well" || view === "energy" ? "panel" : "", "aria-label": name }, part.element),
+    taken,
+  );
+  // Pictures wait for their place in the page, which the view takes when it is complete.
+  part.draw().catch((error) => {
+    if (signal.aborted) return;
+    if (!(error instanceof Problem)) console.error(error);
+    fill(part.element, h("p", { class: "empty", role: "alert" }, error instanceof Error ? error.message : String(error)));
+  });
+  return `Point ${ordinal}`;
+}

@@ -116,7 +116,7 @@ export function spectrumLayout(table, isLog) {
 }
 
 /**
- * What a line is a multiple of, such as `2 × rotation`, where it is one within the resolution.
+ * What a line is a multiple of, such as `2 × rotation`, where it is one nearer than half the resolution.
  * @param {number} frequency [Hz]
  * @param {number} rotation [Hz]
  * @param {number} resolution [Hz]
@@ -124,5 +124,5 @@ export function spectrumLayout(table, isLog) {
 export function multiple(frequency, rotation, resolution) {
   if (rotation <= 0) return "";
   const order = Math.round(Math.abs(frequency) / rotation);
-  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * rotation) <= resolution ? `${order} × rotation` : "";
+  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * rotation) <= resolution / 2 ? `${order} × rotation` : "";
 }

@@ -131,6 +131,17 @@ export function bytes(count) {
   return `${number(count / 1000 ** step, 3)} ${units[step]}`;
 }
 
+/** @returns {string[]} the paths of the scenario's fields that the registry knows */
+export function pathNames() {
+  return Object.keys(registry).filter((name) => name.includes("."));
+}
+
+/** @param {string} name @returns {string} the unit in which a name is served and requests give it; empty where it has none */
+export function servedUnit(name) {
+  const { entry } = parse(name);
+  return entry?.unit && entry.unit !== "1" ? written(entry.unit) : "";
+}
+
 /** @param {string} symbol a unit in the registry's spelling, such as `N s/m2` */
 function written(symbol) {
   return symbol

@@ -1,0 +1,332 @@
+// A new sweep: what it varies, and beside it what the service says it would become.
+
+import { get, Problem, send } from "./api.js";
+import { choice, debounced, fill, h } from "./dom.js";
+import { lines, python, shell } from "./lines.js";
+import { canvas, draw, LINES } from "./plots.js";
+import { go, keep, link } from "./router.js";
+import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
+
+/** Characters of a request that a link may hold. */
+const LINKED = 4000;
+const DRAWN = ["latin_hypercube", "sobol"];
+
+/** @type {import("./main.js").View} */
+export async function show(main, route, signal) {
+  const { scenarios } = await get("/v1/scenarios", {}, signal);
+  const start = await begun(route.query, signal);
+  /** @type {{name: string, values: string}[]} */
+  const axes = Object.entries(start.axes ?? { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } }).map(([name, axis]) => ({ name, values: written(axis) }));
+  /** @type {{name: string, values: string}[]} */
+  const changes = Object.entries(start.set ?? {}).filter(([name]) => name !== "accuracy").map(([name, value]) => ({ name, values: JSON.stringify(value) }));
+  const form = {
+    preset: start.preset ?? (start.scenario ? "" : "paper-200m-damped"),
+    scenario: start.scenario ? JSON.stringify(start.scenario, null, 2) : "",
+    accuracy: typeof start.set?.accuracy === "string" ? start.set.accuracy : "",
+    design: start.design ?? "grid",
+    outputs: typeof start.outputs === "string" ? start.outputs : "",
+  };
+
+  const changed = debounced(() => void plan(), 400);
+  const box = (/** @type {string} */ value, /** @type {Record<string, any>} */ attributes = {}) => h("input", { value, oninput: changed, ...attributes });
+  const name = box(start.name ?? "", { maxlength: 200 });
+  const tags = box((start.tags ?? []).join(", "), { placeholder: "separated by commas" });
+  const samples = box(String(start.samples ?? 64), { type: "number", min: 1 });
+  const seed = box(String(start.seed ?? 0), { type: "number", min: 0 });
+  const verify = box(start.verify ? String(start.verify) : "", { placeholder: "such as 0.05 or 10" });
+  const scenario = h("textarea", { class: "code", "aria-label": "Scenario as JSON", spellcheck: "false", oninput: changed, value: form.scenario });
+  const field = (/** @type {string} */ text, /** @type {HTMLElement} */ element, /** @type {string} */ pointer) => h("label", { class: "field", "data-pointer": pointer }, h("span", {}, text), element);
+
+  const axesPart = h("div", {});
+  const changesPart = h("div", {});
+  const sourcePart = h("div", { "data-pointer": "/scenario" });
+  const drawnPart = h("div", { class: "controls" });
+  const general = h("p", { class: "wrong", role: "alert" });
+  const planned = h("div", {});
+  const preview = canvas("Preview of the points");
+  const submit = h("button", { class: "main", type: "submit", disabled: true }, "Submit");
+  const paths = h("datalist", { id: "paths" }, ["flow_rate", "mud_density", ...pathNames()].map((entry) => h("option", { value: entry }, label(entry))));
+
+  /** @param {HTMLElement} place @param {{name: string, values: string}[]} rows @param {string} kind */
+  function drawRows(place, rows, kind) {
+    const isAxis = kind === "axes";
+    fill(
+      place,
+      rows.map((row, index) => {
+        const hint = h("span", { class: "small soft" });
+        const say = () => fill(hint, [label(row.name) !== row.name.replaceAll("_", " ") && label(row.name), servedUnit(row.name) && `in ${servedUnit(row.name)}`].filter(Boolean).join(", "));
+        const path = h("input", { value: row.name, list: "paths", "aria-label": isAxis ? "Parameter" : "Field", size: 26, oninput: () => {
+          row.name = path.value.trim();
+          say();
+          changed();
+        } });
+        const values = h("input", { value: row.values, "aria-label": isAxis ? "Values" : "Value", size: 22, placeholder: isAxis ? "0.01, 0.02 or 0.01:0.06:6" : "value", oninput: () => {
+          row.values = values.value;
+          changed();
+        } });
+        say();
+        path.title = meaning(row.name);
+        return h("div", { class: "controls", style: "margin-bottom:.35rem", "data-pointer": `/${kind}/${row.name}` }, path, values, h("button", { type: "button", "aria-label": `Remove ${row.name}`, onclick: () => {
+          rows.splice(index, 1);
+          drawRows(place, rows, kind);
+          changed();
+        } }, "✕"), hint);
+      }),
+      h("button", { type: "button", onclick: () => {
+        rows.push({ name: "", values: "" });
+        drawRows(place, rows, kind);
+      } }, isAxis ? "Add a parameter" : "Add a change"),
+    );
+  }
+
+  function drawSource() {
+    const options = [/** @type {[string, string]} */ (["", "— my own, pasted as JSON"]), ...scenarios.map((/** @type {any} */ entry) => /** @type {[string, string]} */ ([entry.name, entry.name]))];
+    fill(
+      sourcePart,
+      choice("Scenario", options, form.preset, async (value) => {
+        if (!value && !scenario.value && form.preset) scenario.value = JSON.stringify((await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal)).scenario, null, 2);
+        form.preset = value;
+        drawSource();
+        changed();
+      }),
+      h("p", { class: "small soft" }, scenarios.find((/** @type {any} */ entry) => entry.name === form.preset)?.description ?? "A scenario file's JSON; its fields are in SI units."),
+      !form.preset && scenario,
+    );
+  }
+
+  function drawDrawn() {
+    const isDrawn = DRAWN.includes(form.design);
+    fill(
+      drawnPart,
+      choice("Design", [["grid", "grid: all combinations"], ["zip", "zip: values side by side"], ["latin_hypercube", "Latin hypercube"], ["sobol", "Sobol sequence"]], form.design, (value) => {
+        form.design = value;
+        drawDrawn();
+        changed();
+      }),
+      isDrawn && [field("Points", samples, "/samples"), field("Seed", seed, "/seed")],
+    );
+  }
+
+  /** The request that the form stands for; throws where a text cannot be read. */
+  function request() {
+    /** @type {any} */
+    const body = {};
+    if (name.value.trim()) body.name = name.value.trim();
+    if (form.preset) body.preset = form.preset;
+    else body.scenario = parsed(scenario.value, "/scenario");
+    const set = Object.fromEntries(changes.filter((row) => row.name).map((row) => [row.name, read(row.values)]));
+    if (form.accuracy) set.accuracy = form.accuracy;
+    if (Object.keys(set).length) body.set = set;
+    const isDrawn = DRAWN.includes(form.design);
+    const used = axes.filter((row) => row.name);
+    if (used.length) body.axes = Object.fromEntries(used.map((row) => [row.name, span(row.values, row.name, isDrawn)]));
+    if (form.design !== "grid") body.design = form.design;
+    if (isDrawn) Object.assign(body, { samples: Number(samples.value), seed: Number(seed.value) });
+    const words = tags.value.split(",").map((word) => word.trim()).filter(Boolean);
+    if (words.length) body.tags = words;
+    if (form.outputs) body.outputs = form.outputs;
+    if (verify.value.trim()) body.verify = Number(verify.value);
+    return body;
+  }
+
+  /** @param {{pointer?: string, detail: string}[]} problems */
+  function mark(problems) {
+    for (const old of form_.querySelectorAll(".wrong[data-problem]")) old.remove();
+    for (const old of form_.querySelectorAll("[aria-invalid]")) old.removeAttribute("aria-invalid");
+    const places = /** @type {HTMLElement[]} */ ([...form_.querySelectorAll("[data-pointer]")]);
+    const rest = [];
+    for (const problem of problems) {
+      const at = problem.pointer ?? "";
+      const place = places.filter((entry) => at === entry.dataset.pointer || at.startsWith(`${entry.dataset.pointer}/`)).sort((a, b) => (b.dataset.pointer?.length ?? 0) - (a.dataset.pointer?.length ?? 0))[0];
+      if (!place) {
+        rest.push(problem.pointer ? `${problem.pointer}: ${problem.detail}` : problem.detail);
+        continue;
+      }
+      place.querySelector("input, select, textarea")?.setAttribute("aria-invalid", "true");
+      place.append(h("span", { class: "wrong", "data-problem": true }, at === place.dataset.pointer ? problem.detail : `${at.slice((place.dataset.pointer ?? "").length + 1)}: ${problem.detail}`));
+    }
+    general.textContent = rest.join(" ");
+  }
+
+  let generation = 0;
+  async function plan() {
+    const mine = ++generation;
+    taken.dispatchEvent(new Event("redraw"));
+    submit.disabled = true;
+    try {
+      const body = request();
+      const text = JSON.stringify(body);
+      keep({ from: null, request: text.length <= LINKED ? text : null });
+      const answer = await send("POST", "/v1/sweeps?dry_run=true", body, signal);
+      if (mine !== generation) return;
+      mark(answer.warnings ?? []);
+      fill(planned, ...plannedPart(answer));
+      submit.disabled = false;
+      submit.textContent = `Submit ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
+      await drawPreview(answer.points);
+    } catch (error) {
+      if (signal.aborted || mine !== generation) return;
+      if (error instanceof Problem) mark(error.errors.length ? error.errors : [{ detail: error.message }]);
+      else if (error instanceof Unreadable) mark([{ pointer: error.pointer, detail: error.message }]);
+      else general.textContent = error instanceof Error ? error.message : String(error);
+      fill(planned, h("p", { class: "soft" }, "The plan appears here once the request can be read."));
+    }
+  }
+
+  /** @param {any[]} points */
+  async function drawPreview(points) {
+    const names = Object.keys(points[0]?.parameters ?? {});
+    preview.hidden = names.length === 0;
+    if (!names.length) return;
+    const [x, y] = names;
+    const values = (/** @type {string} */ of) => shown(of, points.map((point) => point.parameters[of]));
+    await draw(preview, [{ type: points.length > 3000 ? "scattergl" : "scatter", mode: "markers", x: values(x), y: y ? values(y) : points.map(() => 0), marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 }, hoverinfo: y ? "x+y" : "x" }], { xaxis: { title: title(x) }, yaxis: y ? { title: title(y) } : { visible: false } }, signal);
+  }
+
+  const taken = lines(() => {
+    try {
+      return requestLines(request());
+    } catch {
+      return { curl: "# The request cannot be read yet." };
+    }
+  });
+
+  const form_ = h(
+    "form",
+    { novalidate: true, onsubmit: async (/** @type {Event} */ event) => {
+      event.preventDefault();
+      submit.disabled = true;
+      try {
+        const sweep = await send("POST", "/v1/sweeps", request());
+        go(link(["sweeps", sweep.id]));
+      } catch (error) {
+        mark(error instanceof Problem && error.errors.length ? error.errors : [{ detail: error instanceof Error ? error.message : String(error) }]);
+        submit.disabled = false;
+      }
+    } },
+    h("section", { class: "panel", "aria-label": "Scenario" }, sourcePart, h("div", { class: "controls" }, choice("Accuracy", [["", "the scenario's"], ["draft", "draft"], ["standard", "standard"], ["reference", "reference"]], form.accuracy, (value) => {
+      form.accuracy = value;
+      changed();
+    }), choice("Kept of each point", [["", "the scenario's"], ["full", "everything, with histories"], ["spectra", "spectra, no histories"], ["summary", "its row of the table only"]], form.outputs, (value) => {
+      form.outputs = value;
+      changed();
+    })), h("h3", {}, "Changes to the scenario"), changesPart),
+    h("section", { class: "panel", "aria-label": "Parameters", "data-pointer": "/axes" }, h("h2", {}, "What is varied"), h("p", { class: "small soft" }, "Values separated by commas, or from:to:count, with :log for logarithmic spacing. Drawn designs take from:to."), drawnPart, axesPart),
+    h("section", { class: "panel", "aria-label": "Name" }, h("div", { class: "controls" }, field("Name", name, "/name"), field("Tags", tags, "/tags"), field("Verify a sample", verify, "/verify")), general, submit),
+    paths,
+  );
+  drawRows(axesPart, axes, "axes");
+  drawRows(changesPart, changes, "set");
+  drawSource();
+  drawDrawn();
+  fill(
+    main,
+    h("div", { class: "head" }, h("h1", {}, "New sweep")),
+    h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), h("section", { class: "panel", "aria-label": "Preview" }, h("h2", {}, "Points"), h("figure", {}, preview, h("figcaption", {}, "Over the first two parameters."))))),
+    taken,
+  );
+  void plan();
+  return "New sweep";
+}
+
+/**
+ * The request that the form begins with: that of the link, of another sweep, or none.
+ * @param {URLSearchParams} query
+ * @param {AbortSignal} signal
+ */
+async function begun(query, signal) {
+  const from = query.get("from");
+  if (from) {
+    const { request } = await get(`/v1/sweeps/${encodeURIComponent(from)}`, {}, signal);
+    return { ...request, tags: request?.tags ?? [] };
+  }
+  try {
+    return { ...(query.has("preset") ? { preset: query.get("preset") } : {}), ...JSON.parse(query.get("request") ?? "{}") };
+  } catch {
+    return {};
+  }
+}
+
+/** A text of the form that cannot be read. */
+class Unreadable extends Error {
+  /** @param {string} pointer @param {string} text */
+  constructor(pointer, text) {
+    super(text);
+    this.pointer = pointer;
+  }
+}
+
+/** @param {string} text @param {string} pointer */
+function parsed(text, pointer) {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new Unreadable(pointer, `This is not JSON: ${error instanceof Error ? error.message : ""}`);
+  }
+}
+
+/** A value of the scenario: JSON, or else a word. @param {string} text */
+function read(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return text;
+  }
+}
+
+/**
+ * @param {string} text such as `0.01, 0.02` or `0.01:0.06:6:log`
+ * @param {string} name
+ * @param {boolean} isDrawn whether the design draws the values
+ */
+export function span(text, name, isDrawn) {
+  const pointer = `/axes/${name}`;
+  const numbers = (/** @type {string[]} */ words) => words.map((word) => {
+    const value = Number(word);
+    if (word.trim() === "" || Number.isNaN(value)) throw new Unreadable(pointer, `${word.trim() || "An empty value"} is not a number`);
+    return value;
+  });
+  if (!text.includes(":")) return { values: numbers(text.split(",")) };
+  const parts = text.split(":").map((part) => part.trim());
+  const scale = parts.at(-1) === "log" ? { scale: "log" } : {};
+  const [from, to, count] = numbers("scale" in scale ? parts.slice(0, -1) : parts);
+  if (to === undefined) throw new Unreadable(pointer, "A range is written from:to:count");
+  if (count === undefined && !isDrawn) throw new Unreadable(pointer, "A range needs a count: from:to:count");
+  return count === undefined ? { from, to, ...scale } : { from, to, count, ...scale };
+}
+
+/** An axis of a request as the form writes it. @param {any} axis */
+export function written(axis) {
+  if (axis.values) return axis.values.join(", ");
+  return [axis.from, axis.to, axis.count, axis.scale === "log" ? "log" : undefined].filter((part) => part !== undefined).join(":");
+}
+
+/** @param {any} answer of a dry run */
+function plannedPart(answer) {
+  const row = (/** @type {string} */ name, /** @type {any} */ value) => [h("dt", {}, name), h("dd", {}, value)];
+  const { plan } = answer;
+  const accuracies = (plan?.accuracies ?? []).map((/** @type {any} */ one, /** @type {number} */ index) => h("tr", {}, h("td", {}, one.name, index === 0 && h("span", { class: "soft" }, " (chosen)")), h("td", { class: "number" }, duration(one.step)), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time) : "–"), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time * (answer.total - answer.known)) : "–")));
+  const growing = plan?.undamped_torsion?.growing_modes;
+  return [
+    h("dl", { class: "facts" }, row("Points", String(answer.total)), row("Known already", `${answer.known}, not computed again`), answer.verification && row("Verified", String(answer.verification.points ?? answer.verification.total ?? "")), row("Time", answer.wall_time !== undefined && answer.wall_time !== null ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time; no worker is there now` : "not known"), row("Storage", `about ${bytes(answer.table_bytes)} before compression`), plan && row("String", `${plan.elements} elements, ${number(plan.simulated_time)} s simulated`)),
+    accuracies.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "All on one core"))), h("tbody", {}, accuracies)) : null,
+    (plan?.warnings ?? []).map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
+    growing ? h("p", { class: "small soft" }, `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz.`) : null,
+  ];
+}
+
+/** The same request for other programs. @param {any} body @returns {import("./lines.js").Lines} */
+function requestLines(body) {
+  const server = location.origin;
+  const { preset, scenario, set, axes = {}, design, samples, seed, ...rest } = body;
+  const axisLine = (/** @type {any} */ axis) => (axis.values ? python(axis.values) : axis.count ? `Range(${axis.from}, ${axis.to}, ${axis.count}${axis.scale ? ', scale="log"' : ""})` : `Interval(${axis.from}, ${axis.to}${axis.scale ? ', scale="log"' : ""})`);
+  const arguments_ = [preset ? JSON.stringify(preset) : "json.load(open(\"scenario.json\"))", set && `set=${python(set)}`, Object.keys(axes).length && `axes={${Object.entries(axes).map(([name, axis]) => `${JSON.stringify(name)}: ${axisLine(axis)}`).join(", ")}}`, ...Object.entries(rest).map(([name, value]) => `${name}=${python(value)}`)].filter(Boolean);
+  if (design) arguments_.push(`design="${design}"`, ...(samples ? [`samples=${samples}`, `seed=${seed}`] : []));
+  const options = [...Object.entries(set ?? {}).map(([name, value]) => `--set ${shell(`${name}=${typeof value === "string" ? value : JSON.stringify(value)}`)}`), ...Object.entries(axes).map(([name, axis]) => `--axis ${shell(`${name}=${written(axis).replaceAll(" ", "")}`)}`), ...(design ? [`--design ${design}`] : []), ...(samples ? [`--samples ${samples} --seed ${seed}`] : []), ...(rest.outputs ? [`--outputs ${rest.outputs}`] : []), ...(rest.verify ? [`--verify ${rest.verify}`] : []), ...(rest.name ? [`--name ${shell(rest.name)}`] : []), ...(rest.tags ?? []).map((/** @type {string} */ tag) => `--tag ${shell(tag)}`)];
+  return {
+    curl: `curl -s ${server}/v1/sweeps -H 'Content-Type: application/json' -d ${shell(JSON.stringify(body))}`,
+    python: `${scenario ? "import json\n\n" : ""}from drillsweep import Client, Interval, Range\n\nsweep = Client("${server}").submit(\n    ${arguments_.join(",\n    ")},\n)\nsweep.wait()`,
+    matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90);\nsweep = webwrite("${server}/v1/sweeps", '${JSON.stringify(body).replaceAll("'", "''")}', json);`,
+    cli: `drillsweep submit ${preset ?? "scenario.json"} ${options.join(" \\\n    ")} --server ${server}`,
+  };
+}

@@ -1,10 +1,17 @@
 // Pictures with plotly: loaded when the first one is drawn, in the page's theme, with PNG and SVG to take away.
 
 import { h } from "./dom.js";
-import { theme } from "./settings.js";
+import { settings, theme } from "./settings.js";
 
-/** Lines that differ (Okabe and Ito), readable on both themes and for colour-blind readers. */
-export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+/** Lines that differ, for colour-blind readers too (after Okabe and Ito); lighter on the dark theme. */
+const PALETTES = {
+  light: ["#0072b2", "#d55e00", "#009e73", "#b5568c", "#b57b00", "#56b4e9"],
+  dark: ["#56b4e9", "#ff9d5c", "#33cfa4", "#e09bc4", "#f0d442", "#7a93c8"],
+};
+/** The lines of the theme that holds. */
+export let LINES = PALETTES[theme()];
+settings.addEventListener("change", () => (LINES = PALETTES[theme()]));
+
 /** Dashes that go with them, so that colour is not all that tells lines apart. */
 export const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
 /** The scale of every coloured quantity. */

@@ -68,7 +68,6 @@ export function send(method, path, body, signal) {
 async function ask(method, url, body, signal) {
   /** @type {Record<string, string>} */
   const headers = { Accept: "application/json" };
-  if (method !== "GET") headers["X-Drillsweep-CSRF"] = "1";
   if (body !== undefined) headers["Content-Type"] = "application/json";
   let answer;
   try {

@@ -1,8 +1,10 @@
 // The frame: which view the link asks for, the session, settings, and what is said when the service is gone.
 
-import { connection, Problem, send, get, Unreachable } from "./api.js";
+import { connection, Problem, Unreachable } from "./api.js";
 import { fill, h } from "./dom.js";
+import { reported } from "./notices.js";
 import { route } from "./router.js";
+import { loadSession, logIn, logOut, onLoginNeeded, session } from "./session.js";
 import { apply, choose, settings, theme, unitSystem } from "./settings.js";
 import { loadQuantities } from "./units.js";
 
@@ -92,67 +94,33 @@ function failure(error) {
   return h("div", { class: "empty", role: "alert" }, h("h1", {}, "This could not be shown"), h("p", {}, text), again);
 }
 
-/** @type {any} */
-let session = null;
-
-async function loadSession() {
-  session = await get("/v1/session").catch(() => null);
-  drawSwitches();
-  if (session?.tokens_required && !session.name) login();
-}
-
 function drawSwitches() {
   const isDark = theme() === "dark";
   const units = unitSystem();
   const other = units === "si" ? "field" : "si";
+  const { owner, name, scope, tokens_required } = session();
   fill(
     switches,
     h("button", { onclick: () => choose("units", other), title: "Units of all numbers and axes", "aria-label": `Units: ${units === "si" ? "SI" : "field"}. Switch` }, units === "si" ? "SI units" : "Field units"),
     h("button", { onclick: () => choose("theme", isDark ? "light" : "dark"), "aria-label": isDark ? "Light theme" : "Dark theme" }, isDark ? "Light" : "Dark"),
-    session?.name ? h("button", { onclick: logout, title: `Logged in as ${session.name}, may ${(session.scopes ?? []).join(", ")}` }, "Log out") : session?.tokens_required && h("button", { onclick: login }, "Log in"),
+    owner ? h("button", { onclick: leave, title: `Logged in as ${owner}${name ? `, by the token ${name}` : ""}; may ${scope}` }, "Log out") : tokens_required && h("button", { onclick: enter }, "Log in"),
   );
 }
 
-async function logout() {
-  await send("DELETE", "/v1/session").catch(() => {});
-  await loadSession();
+async function leave() {
+  await reported(logOut());
+  drawSwitches();
   void show();
 }
 
-function login() {
-  if (document.querySelector("dialog[open]")) return;
-  const token = h("input", { type: "password", autocomplete: "current-password", required: true, name: "token" });
-  const wrong = h("p", { class: "wrong", role: "alert" });
-  const dialog = h("dialog", { "aria-labelledby": "login-title" });
-  const form = h(
-    "form",
-    {
-      onsubmit: async (/** @type {Event} */ event) => {
-        event.preventDefault();
-        try {
-          await send("POST", "/v1/session", { token: token.value });
-          dialog.close();
-          await loadSession();
-          void show();
-        } catch (error) {
-          wrong.textContent = error instanceof Error ? error.message : String(error);
-          token.setAttribute("aria-invalid", "true");
-        }
-      },
-    },
-    h("h2", { id: "login-title" }, "Log in"),
-    h("p", { class: "soft" }, "This service needs a token. It stays with this browser until it ends or you log out."),
-    h("label", { class: "field wide" }, h("span", {}, "Token"), token),
-    wrong,
-    h("button", { class: "main", type: "submit" }, "Log in"),
-  );
-  dialog.append(form);
-  dialog.addEventListener("close", () => dialog.remove());
-  document.body.append(dialog);
-  dialog.showModal();
+function enter() {
+  logIn(() => {
+    drawSwitches();
+    void show();
+  });
 }
 
-connection.addEventListener("login", login);
+onLoginNeeded(enter);
 connection.addEventListener("lost", (event) => {
   const { retryAt } = /** @type {CustomEvent} */ (event).detail;
   const seconds = Math.max(1, Math.round((retryAt - Date.now()) / 1000));
@@ -170,6 +138,6 @@ settings.addEventListener("change", () => {
 addEventListener("hashchange", () => void show());
 
 apply();
-drawSwitches();
 await Promise.all([loadQuantities(), loadSession()]);
+drawSwitches();
 await show();

@@ -5,6 +5,7 @@ import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, shell } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
+import { MAY_NOT, maySubmit } from "./session.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
 /** Characters of a request that a link may hold. */
@@ -161,7 +162,8 @@ export async function show(main, route, signal) {
       if (mine !== generation) return;
       mark(answer.warnings ?? []);
       fill(planned, ...plannedPart(answer));
-      submit.disabled = false;
+      submit.disabled = !maySubmit();
+      submit.title = maySubmit() ? "" : MAY_NOT;
       submit.textContent = `Submit ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
       await drawPreview(answer.points);
     } catch (error) {

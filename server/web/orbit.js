@@ -103,16 +103,31 @@ export function spectrumLayout(table, isLog) {
   const last = table ? Math.max(...table.columns.frequency.map(Math.abs)) : 0;
   const beyond = resolved && resolved < last ? [[resolved, last], [-last, -resolved]] : [];
   return {
-    xaxis: { title: "frequency [Hz]: − backward whirl, + forward whirl", zerolinecolor: soft },
+    xaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
     yaxis: { title: title("amplitude"), type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
     shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
     annotations: table
-      ? namedLines(table).map((peak) => {
+      ? readable(namedLines(table), last).map((peak) => {
           const height = Number(shown("amplitude", [peak.amplitude])[0]);
           return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11 } };
         })
       : [],
   };
+}
+
+/**
+ * The lines whose names do not cover that of a higher one.
+ * @param {ReturnType<typeof namedLines>} peaks from the highest down
+ * @param {number} last highest frequency of the picture [Hz]
+ */
+function readable(peaks, last) {
+  /** @type {ReturnType<typeof namedLines>} */
+  const kept = [];
+  for (const peak of peaks) {
+    const isCovered = kept.some((other) => Math.sign(other.frequency) === Math.sign(peak.frequency) && Math.abs(other.frequency - peak.frequency) < 0.25 * last && other.amplitude - peak.amplitude < 0.06 * peaks[0].amplitude);
+    if (!isCovered) kept.push(peak);
+  }
+  return kept;
 }
 
 /**

@@ -2,14 +2,16 @@
 
 /** Parts into which a parameter's range is divided where its values do not repeat. */
 const LARGEST_BINS = 10;
-const RESAMPLES = 200;
+/** Parts that are left out in turn. */
+const PARTS = 40;
+const TWO_SIDED_95 = 1.96;
 /** Points from which an index is estimated at least. */
 export const LEAST_POINTS = 8;
 
 /**
  * @typedef {object} Share
  * @property {number} first first-order index: the share of the variance that the parameter explains alone
- * @property {[number, number] | null} interval 95 % interval of the first-order index; null where it is exact on the grid
+ * @property {[number, number] | null} interval 95 % interval of the first-order index, estimated; null where it is exact on the grid
  * @property {number | null} total total index: with all that it does together with others; null where points are no full grid
  * @property {{value: number, mean: number, error: number, count: number}[]} levels the mean result at the parameter's values, with its standard error
  */
@@ -101,15 +103,27 @@ function adjusted(of, values) {
   return 1 - within / (values.length - count) / (all / (values.length - 1));
 }
 
-/** By resampling the points. @param {number[]} of @param {number[]} values @returns {[number, number]} */
+/**
+ * By leaving out one part of the points after the other (jackknife).
+ * @param {number[]} of
+ * @param {number[]} values
+ * @returns {[number, number]}
+ */
 function interval(of, values) {
+  const parts = Math.min(PARTS, values.length);
   const random = generator(1);
-  const drawn = Array.from({ length: values.length > 20_000 ? RESAMPLES / 10 : RESAMPLES }, () => {
-    const rows = values.map(() => Math.floor(random() * values.length));
+  const order = values.map((_, row) => row);
+  for (let row = order.length - 1; row > 0; row -= 1) {
+    const other = Math.floor(random() * (row + 1));
+    [order[row], order[other]] = [order[other], order[row]];
+  }
+  const found = Array.from({ length: parts }, (_, part) => {
+    const rows = order.filter((__, rank) => rank % parts !== part);
     return adjusted(rows.map((row) => of[row]), rows.map((row) => values[row]));
-  }).sort((a, b) => a - b);
-  const at = (/** @type {number} */ part) => drawn[Math.min(drawn.length - 1, Math.floor(part * drawn.length))];
-  return [at(0.025), at(0.975)];
+  });
+  const error = Math.sqrt(((parts - 1) / parts) * squares(found));
+  const whole = adjusted(of, values);
+  return [whole - TWO_SIDED_95 * error, whole + TWO_SIDED_95 * error];
 }
 
 /** The same numbers every time, so that a view shown again is the same (mulberry32). @param {number} seed */

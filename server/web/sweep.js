@@ -5,6 +5,7 @@ import { choice, fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
 import { reported, notice } from "./notices.js";
 import { go, keep, link } from "./router.js";
+import { MAY_NOT, maySubmit } from "./session.js";
 import { effects } from "./sweep-effects.js";
 import { failures } from "./sweep-failures.js";
 import { map } from "./sweep-map.js";
@@ -156,7 +157,7 @@ const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
  * @param {(changes: any) => void} change
  */
 function headPart(sweep, pace, act, change) {
-  const button = (/** @type {string} */ verb, /** @type {string} */ text, /** @type {boolean} */ isShown, kind = "") => isShown && h("button", { class: kind, onclick: () => act(verb) }, text);
+  const button = (/** @type {string} */ verb, /** @type {string} */ text, /** @type {boolean} */ isShown, kind = "") => isShown && h("button", { class: kind, disabled: !maySubmit(), title: !maySubmit() && MAY_NOT, onclick: () => act(verb) }, text);
   const canRetry = isFinal(sweep) && sweep.counts.failed + sweep.counts.cancelled > 0;
   const priority = choice("Priority", Array.from({ length: 21 }, (_, index) => [String(10 - index), String(10 - index)]), String(sweep.priority), (value) => change({ priority: Number(value) }));
   const { worst, warnings = [] } = sweep.verification ?? {};
@@ -175,9 +176,9 @@ function headPart(sweep, pace, act, change) {
         { class: "controls" },
         button("pause", "Pause", sweep.state === "running"),
         button("resume", "Resume", sweep.state === "paused"),
-        !isFinal(sweep) && h("button", { class: "danger", onclick: () => confirm("Cancel this sweep? Queued points are not started, running ones are stopped. Results so far stay.") && act("cancel") }, "Cancel"),
+        !isFinal(sweep) && h("button", { class: "danger", disabled: !maySubmit(), title: !maySubmit() && MAY_NOT, onclick: () => confirm("Cancel this sweep? Queued points are not started, running ones are stopped. Results so far stay.") && act("cancel") }, "Cancel"),
         button("retry", "Retry failed and cancelled", canRetry),
-        !isFinal(sweep) && priority,
+        !isFinal(sweep) && maySubmit() && priority,
         h("a", { class: "button", href: link(["new"], { from: sweep.id }) }, "New sweep like this"),
         h("a", { class: "button", href: sweep.links.export, download: "" }, "Download all"),
       ),

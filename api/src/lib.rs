@@ -34,8 +34,8 @@ pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
 pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
-    Collected, Collection, Health, LIMITS, Limits, Queue, Retention, ScenarioDetail, ScenarioEntry,
-    ScenarioList, Worker, WorkerList,
+    Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
+    ScenarioList, Session, Worker, WorkerList,
 };
 pub use sweep::{PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList, SweepState, SweepVerification};
 pub use verify::{promise_of_scenario, sample};

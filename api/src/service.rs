@@ -181,3 +181,30 @@ pub struct Health {
     /// `ok`.
     pub status: String,
 }
+
+/// A token to log in by.
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Login {
+    /// Its text.
+    pub token: String,
+}
+
+/// The session of a browser.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Session {
+    /// Whether the service asks for tokens.
+    pub tokens_required: bool,
+    /// Whose sweeps are submitted in the session; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub owner: Option<String>,
+    /// The name of its token.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// What the token allows: `read`, `submit` or `admin`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scope: Option<String>,
+    /// When the session ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expires: Option<Timestamp>,
+}

@@ -19,7 +19,8 @@ use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
-    cost, docs, events, export, files, health, points, results, scenarios, status, sweeps, verification,
+    cost, docs, events, export, files, health, points, results, scenarios, session, status, sweeps,
+    verification, web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -69,8 +70,11 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(status::queue))
         .routes(routes!(status::limits))
         .routes(routes!(status::retention))
+        .routes(routes!(session::show, session::open, session::close))
         .routes(routes!(show))
         // For people: no part of what programs talk to.
+        .route("/", get(web::page))
+        .route("/web/{version}/{*path}", get(web::file))
         .route("/docs", get(docs::start))
         .route("/docs/{name}", get(docs::file))
         .routes(routes!(health::alive))

@@ -20,7 +20,7 @@ mod servers;
 
 /// A server as one would run it, and not as the tests do: what it has confirmed is on the disk.
 const SETTINGS: &[&str] =
-    &["fsync=on", "full_page_writes=on", "max_connections=600", "shared_buffers=512MB", "max_wal_size=4GB"];
+    &["fsync=on", "full_page_writes=on", "max_connections=800", "shared_buffers=512MB", "max_wal_size=4GB"];
 
 const SWEEP: &str = "0190";
 

@@ -14,11 +14,13 @@ const SQLITE: &[File] = &[
     (1, "schema", include_str!("../../migrations/sqlite/0001_schema.sql")),
     (2, "worker note", include_str!("../../migrations/sqlite/0002_worker_note.sql")),
     (3, "uploads", include_str!("../../migrations/sqlite/0003_uploads.sql")),
+    (4, "sessions", include_str!("../../migrations/sqlite/0004_sessions.sql")),
 ];
 
 const POSTGRES: &[File] = &[
     (1, "schema", include_str!("../../migrations/postgres/0001_schema.sql")),
     (2, "queues", include_str!("../../migrations/postgres/0002_queues.sql")),
+    (3, "sessions", include_str!("../../migrations/postgres/0003_sessions.sql")),
 ];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A

@@ -251,6 +251,7 @@ async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i6
     }
     query(sql::retention::DELETE_UPLOADS).execute(&mut *tx).await?;
     query(sql::retention::DELETE_REMOVALS).execute(&mut *tx).await?;
+    query(sql::retention::DELETE_SESSIONS).execute(&mut *tx).await?;
     query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
     Ok(events)
 }

@@ -139,6 +139,7 @@ statements! {
         DELETE_REMOVALS = "delete_removals",
         DELETE_RESULTS = "delete_results",
         DELETE_SCENARIOS = "delete_scenarios",
+        DELETE_SESSIONS = "delete_sessions",
         DELETE_SWEEPS = "delete_sweeps",
         DELETE_TURNS = "delete_turns",
         DELETE_UPLOADS = "delete_uploads",
@@ -148,6 +149,11 @@ statements! {
         EXPIRE_ARTIFACTS = "expire_artifacts",
         IS_BLOB_IN_USE = "is_blob_in_use",
         TRUNCATE_LOG = "truncate_log",
+    }
+    session {
+        CLOSE = "close",
+        OPEN = "open",
+        TOKEN = "token",
     }
     submit {
         APPENDED = "appended",
@@ -276,6 +282,7 @@ mod tests {
         ("retention/delete_removals", "removal"),
         ("retention/delete_results", "result"),
         ("retention/delete_scenarios", "scenario"),
+        ("retention/delete_sessions", "session"),
         ("retention/delete_sweeps", "sweep"),
         ("retention/delete_uploads", "upload"),
         ("retention/delete_work", "work"),

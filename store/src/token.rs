@@ -122,7 +122,7 @@ impl TokenSecret {
         self.hash().to_hex()[..12].to_owned()
     }
 
-    fn hash(&self) -> blake3::Hash {
+    pub(crate) fn hash(&self) -> blake3::Hash {
         blake3::hash(self.0.as_bytes())
     }
 }
@@ -207,7 +207,7 @@ impl Store {
 }
 
 impl TokenRecord {
-    fn read(row: &Row) -> Result<Self> {
+    pub(crate) fn read(row: &Row) -> Result<Self> {
         Ok(Self {
             id: row.get("id")?,
             owner: row.get("owner")?,

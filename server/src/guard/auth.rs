@@ -16,9 +16,20 @@ use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
 use crate::answer::error::{Error, Result};
 use crate::app::App;
 use crate::guard::audit;
+use crate::route::session::session_cookie;
 
-/// What everybody may ask for: health checks have no tokens, and the document is what a client begins with.
-const OPEN: [&str; 5] = ["/livez", "/readyz", "/openapi.json", "/docs", "/docs/{name}"];
+/// What everybody may ask for: health checks have no tokens, the document is what a client begins with, and the page what people do.
+const OPEN: [&str; 8] = [
+    "/livez",
+    "/readyz",
+    "/openapi.json",
+    "/docs",
+    "/docs/{name}",
+    "/",
+    "/web/{version}/{*path}",
+    // Whoever has no token yet logs in here; what it tells of the session, it tells its bearer alone.
+    "/v1/session",
+];
 
 /// Who asks.
 #[derive(Debug, Clone)]
@@ -114,6 +125,14 @@ async fn admit(
 
 async fn identify(app: &App, headers: &HeaderMap) -> Result<Caller> {
     let Some(value) = headers.get(header::AUTHORIZATION) else {
+        // Pages of other sites cannot use it: the cookie is not sent with their requests (`SameSite`), and what they ask to be changed
+        // is refused before (`CsrfLayer`).
+        if let Some(secret) = session_cookie(headers)
+            && let Some(session) = app.store.session(&secret).await?
+        {
+            note_use(app, &session.token).await;
+            return Ok(Caller::Bearer(session.token));
+        }
         return match app.store.tokens_present().await? {
             TokensPresent::None => local(headers),
             TokensPresent::OnlyVoid | TokensPresent::Valid => Err(Error::unauthorized(
@@ -131,10 +150,14 @@ async fn identify(app: &App, headers: &HeaderMap) -> Result<Caller> {
     let Some(token) = token else {
         return Err(Error::unauthorized("the token is unknown, expired or revoked"));
     };
-    if let Err(error) = app.store.touch_token(&token).await {
+    note_use(app, &token).await;
+    Ok(Caller::Bearer(token))
+}
+
+async fn note_use(app: &App, token: &TokenRecord) {
+    if let Err(error) = app.store.touch_token(token).await {
         tracing::warn!(%error, token.id, "the use of a token could not be noted");
     }
-    Ok(Caller::Bearer(token))
 }
 
 /// A name that leads here from elsewhere (DNS rebinding) must not stand in for this machine.

@@ -10,6 +10,8 @@ pub(crate) mod metrics;
 pub(crate) mod points;
 pub(crate) mod results;
 pub(crate) mod scenarios;
+pub(crate) mod session;
 pub(crate) mod status;
 pub(crate) mod sweeps;
 pub(crate) mod verification;
+pub(crate) mod web;

@@ -12,6 +12,7 @@ mod files;
 mod follow;
 mod large;
 mod openapi;
+mod page;
 mod pictures;
 mod results;
 mod schema;

@@ -1,0 +1,51 @@
+//! Compresses the files of the web page, so that the program holds them as they are sent.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+/// What is served; the rest of the folder is for those who work on it.
+const SERVED: [&str; 4] = ["html", "css", "js", "svg"];
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-changed=web");
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?);
+    let mut paths = Vec::new();
+    collect(Path::new("web"), &mut paths)?;
+    paths.sort();
+    let mut list = String::from("&[\n");
+    for (number, path) in paths.iter().enumerate() {
+        let bytes = fs::read(path)?;
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&bytes)?;
+        let compressed = out.join(format!("{number}.gz"));
+        fs::write(&compressed, encoder.finish()?)?;
+        let name = path.strip_prefix("web").map_err(io::Error::other)?;
+        let hash = blake3::hash(&bytes).to_hex();
+        writeln!(list, "    ({:?}, {:?}, include_bytes!({compressed:?})),", name, hash.as_str())
+            .map_err(io::Error::other)?;
+    }
+    list.push_str("]\n");
+    fs::write(out.join("web.rs"), list)
+}
+
+fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default();
+        if path.is_dir() {
+            if name != "node_modules" {
+                collect(&path, paths)?;
+            }
+        } else if path.extension().is_some_and(|end| SERVED.iter().any(|served| end == *served))
+            || name == "quantities.json"
+        {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}

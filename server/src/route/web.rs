@@ -1,0 +1,116 @@
+//! The web page: the files of `server/web/`, which come with the program, so that the page needs no other network.
+
+use std::collections::BTreeMap;
+use std::io::{self, Read as _};
+use std::sync::LazyLock;
+
+use axum::http::{HeaderMap, HeaderValue, Uri, header};
+use axum::response::{IntoResponse, Response};
+use drillsweep_api::ProblemKind;
+use flate2::read::GzDecoder;
+
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::Path;
+
+/// Path, hash and compressed bytes of each file.
+const FILES: &[(&str, &str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
+
+/// What the page may load: files and answers of this service alone. plotly.js sets styles of its elements, and makes pictures from blobs.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
+    img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
+
+/// The name of all files together: the page loads files of its own version, however long a browser keeps them.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let mut hasher = blake3::Hasher::new();
+    for (path, hash, _) in FILES {
+        hasher.update(path.as_bytes()).update(hash.as_bytes());
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
+});
+
+static BY_PATH: LazyLock<BTreeMap<&str, &[u8]>> =
+    LazyLock::new(|| FILES.iter().map(|(path, _, bytes)| (*path, *bytes)).collect());
+
+/// The page, whose files are those of this version.
+pub(crate) async fn page(uri: Uri) -> Result<Response> {
+    static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| {
+        let text =
+            BY_PATH.get("index.html").map(|bytes| decompressed(bytes)).transpose()?.unwrap_or_default();
+        Ok(String::from_utf8(text)
+            .map_err(io::Error::other)?
+            .replace("\"web/", &format!("\"/web/{}/", *VERSION)))
+    });
+    let text = PAGE.as_ref().map_err(|error| Error::internal(error))?;
+    if text.is_empty() {
+        return Err(missing(&uri));
+    }
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static("text/html; charset=utf-8")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-cache")),
+        (header::ETAG, tag("page")?),
+    ];
+    Ok((headers, usual(), text.as_str()).into_response())
+}
+
+/// A file of the page, compressed as it is stored where the browser takes that.
+pub(crate) async fn file(
+    uri: Uri,
+    headers: HeaderMap,
+    Path((version, path)): Path<(String, String)>,
+) -> Result<Response> {
+    let bytes = BY_PATH.get(path.as_str()).filter(|_| version == *VERSION && path != "index.html");
+    let bytes = *bytes.ok_or_else(|| missing(&uri))?;
+    let caching = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(content_type(&path))),
+        (header::CACHE_CONTROL, HeaderValue::from_static("public, max-age=31536000, immutable")),
+        (header::VARY, HeaderValue::from_static("accept-encoding")),
+        (header::ETAG, tag(&path)?),
+    ];
+    let accepted = headers.get(header::ACCEPT_ENCODING).and_then(|value| value.to_str().ok());
+    let takes_gzip = accepted.is_some_and(|accepted| {
+        accepted.split(',').any(|coding| matches!(coding.split(';').next().map(str::trim), Some("gzip")))
+            && !accepted.contains("gzip;q=0")
+    });
+    if takes_gzip {
+        return Ok((caching, usual(), [(header::CONTENT_ENCODING, "gzip")], bytes).into_response());
+    }
+    let text = decompressed(bytes).map_err(|error| Error::internal(&error))?;
+    Ok((caching, usual(), text).into_response())
+}
+
+fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut text = Vec::new();
+    GzDecoder::new(bytes).read_to_end(&mut text)?;
+    Ok(text)
+}
+
+fn missing(uri: &Uri) -> Error {
+    Error::new(ProblemKind::NoSuchRoute, format!("there is nothing at {}", uri.path()))
+}
+
+fn tag(path: &str) -> Result<HeaderValue> {
+    let tag = blake3::hash(format!("{} {path}", *VERSION).as_bytes()).to_hex();
+    HeaderValue::try_from(format!("\"{}\"", &tag[..16])).map_err(|error| Error::internal(&error))
+}
+
+fn usual() -> [(header::HeaderName, HeaderValue); 4] {
+    [
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
+        (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        (
+            header::HeaderName::from_static("cross-origin-opener-policy"),
+            HeaderValue::from_static("same-origin"),
+        ),
+    ]
+}
+
+fn content_type(path: &str) -> &'static str {
+    match path.rsplit('.').next() {
+        Some("css") => "text/css; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        Some("json") => "application/json",
+        _ => "application/octet-stream",
+    }
+}

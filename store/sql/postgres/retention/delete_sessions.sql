@@ -1,0 +1,2 @@
+-- Deletes sessions that have expired.
+DELETE FROM session WHERE expires <= (SELECT now FROM clock)

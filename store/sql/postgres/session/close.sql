@@ -1,0 +1,3 @@
+-- Closes a session.
+-- $1 hash of its text.
+DELETE FROM session WHERE hash = $1

@@ -45,19 +45,10 @@ impl DataArguments {
             config.objects = objects.clone();
         }
         if let Some(path) = &self.database_password_file {
-            let password = std::fs::read_to_string(path)
-                .with_context(|| format!("the password cannot be read from {}", path.display()))?;
-            let password = password.trim_end_matches(['\r', '\n']);
-            config.database = config
-                .database
-                .with_password(password)
-                .context("--database-password-file is for a PostgreSQL database")?;
+            config.database = with_password(&config.database, path, "--database-password-file")?;
         }
         if let Some(path) = &self.objects_credentials_file {
-            let ObjectsLocation::S3 { settings, .. } = &mut config.objects else {
-                anyhow::bail!("--objects-credentials-file is for a bucket (--objects s3://BUCKET/PREFIX)");
-            };
-            settings.extend(credentials(path)?);
+            add_credentials(&mut config.objects, path, "--objects-credentials-file")?;
         }
         Ok(config)
     }
@@ -91,6 +82,32 @@ impl DataArguments {
             command.arg("--objects-credentials-file").arg(path);
         }
     }
+}
+
+/// A database with the password from a file that an option names.
+pub(crate) fn with_password(
+    database: &DatabaseLocation,
+    path: &Path,
+    option: &str,
+) -> anyhow::Result<DatabaseLocation> {
+    let password = std::fs::read_to_string(path)
+        .with_context(|| format!("the password cannot be read from {}", path.display()))?;
+    database
+        .with_password(password.trim_end_matches(['\r', '\n']))
+        .with_context(|| format!("{option} is for a PostgreSQL database"))
+}
+
+/// Gives a bucket the credentials from a file that an option names.
+pub(crate) fn add_credentials(
+    objects: &mut ObjectsLocation,
+    path: &Path,
+    option: &str,
+) -> anyhow::Result<()> {
+    let ObjectsLocation::S3 { settings, .. } = objects else {
+        anyhow::bail!("{option} is for a bucket (s3://BUCKET/PREFIX)");
+    };
+    settings.extend(credentials(path)?);
+    Ok(())
 }
 
 /// Settings of an object store from the profile `[default]` of a shared credentials file.

@@ -7,6 +7,7 @@ mod data;
 mod fetch;
 mod gc;
 mod health;
+mod migrate;
 mod modes;
 mod plan;
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
@@ -103,6 +104,8 @@ enum Command {
     Token(token::TokenCommand),
     /// Verify a data directory in full and report what is wrong with it, if anything.
     Check(check::CheckArguments),
+    /// Carry a store over to another database and object store: from one machine to PostgreSQL and S3, or back.
+    Migrate(migrate::MigrateArguments),
     /// Report by the exit status whether the server, or a worker on this machine, is ready; for supervisors.
     Health(health::HealthArguments),
     /// Print the OpenAPI document of the service.
@@ -190,6 +193,7 @@ fn run() -> anyhow::Result<()> {
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Migrate(arguments) => migrate::migrate(&arguments),
         Command::Health(arguments) => health::health(&arguments),
         Command::Openapi => {
             print(drillsweep_server::openapi_json());

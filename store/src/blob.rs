@@ -13,7 +13,7 @@ use std::sync::Arc;
 use bytes::Bytes;
 use futures::TryStreamExt;
 use object_store::path::Path as ObjectPath;
-use object_store::{ObjectMeta, ObjectStoreExt, PutMode, PutOptions, PutPayload};
+use object_store::{MultipartUpload, ObjectMeta, ObjectStoreExt, PutMode, PutOptions, PutPayload};
 
 use self::backend::Backend;
 pub use self::location::{LocationError, ObjectsLocation};
@@ -120,23 +120,25 @@ impl BlobStore {
             return Ok((id, bytes));
         }
         let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
-        let mut written = 0;
-        while written < bytes {
-            let part = read_part(&file, written).await?;
-            written += part.len() as u64;
-            let sent = if part.is_empty() {
-                Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")))
-            } else {
-                upload.put_part(PutPayload::from(part)).await.map_err(StoreError::from)
-            };
-            if let Err(error) = sent {
-                // What cannot be taken back is left to the collector, or to the bucket's rule. A service that was waited for in vain
-                // is not waited for again.
-                if !error.is_unavailable() {
-                    let _ = upload.abort().await;
-                }
-                return Err(error);
+        let sent = send_file(upload.as_mut(), &file, bytes).await;
+        self.end_upload(id, upload, sent).await?;
+        Ok((id, bytes))
+    }
+
+    /// Completes an upload whose parts have all been sent, and takes any other one back.
+    async fn end_upload(
+        &self,
+        id: BlobId,
+        mut upload: Box<dyn MultipartUpload>,
+        sent: Result<()>,
+    ) -> Result<()> {
+        if let Err(error) = sent {
+            // What cannot be taken back is left to the collector, or to the bucket's rule. A service that was waited for in vain
+            // is not waited for again.
+            if !error.is_unavailable() {
+                let _ = upload.abort().await;
             }
+            return Err(error);
         }
         if let Err(error) = upload.complete().await {
             // The answer may have been lost. Asked again, the service knows no such upload.
@@ -144,7 +146,45 @@ impl BlobStore {
                 return Err(error.into());
             }
         }
-        Ok((id, bytes))
+        Ok(())
+    }
+
+    /// Writes a blob of another store, unless it is here and whole. What does not agree with its name there is not written here, and a
+    /// large one is never in memory as a whole. Gives its size \[bytes\]; none of one that was here.
+    ///
+    /// # Errors
+    /// [Damage](StoreError::is_damage) where the other store has lost it; else when either object store fails.
+    pub(crate) async fn copy_from(&self, other: &BlobStore, id: BlobId) -> Result<Option<u64>> {
+        if !self.is_to_be_written(id).await? {
+            return Ok(None);
+        }
+        let length = other.length(id).await?;
+        if length < PART as u64 {
+            self.put_as(id, PutPayload::from(other.get(id).await?)).await?;
+        } else {
+            let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
+            let sent = other.send(id, length, upload.as_mut()).await;
+            self.end_upload(id, upload, sent).await?;
+        }
+        Ok(Some(length))
+    }
+
+    /// Sends a blob of so many bytes to an upload, part by part, and fails at its end if it is not what its name says.
+    async fn send(&self, id: BlobId, length: u64, upload: &mut dyn MultipartUpload) -> Result<()> {
+        let (path, mut hasher) = (id.path(), blake3::Hasher::new());
+        while hasher.count() < length {
+            let range = hasher.count()..length.min(hasher.count() + PART as u64);
+            let part = self.backend.objects.get_range(&path, range).await?;
+            if part.is_empty() {
+                return Err(StoreError::BlobDamaged(id));
+            }
+            hasher.update(&part);
+            upload.put_part(PutPayload::from(part)).await?;
+        }
+        if hasher.finalize() != id.0 {
+            return Err(StoreError::BlobDamaged(id));
+        }
+        Ok(())
     }
 
     async fn write(&self, id: BlobId, payload: PutPayload, mode: PutMode) -> Result<()> {
@@ -344,6 +384,20 @@ impl NamedFile {
         }
         Ok(Self { file, id: BlobId(hasher.finalize()), bytes: hasher.count(), whole: None })
     }
+}
+
+/// Sends a file of so many bytes to an upload, part by part.
+async fn send_file(upload: &mut dyn MultipartUpload, file: &Arc<File>, bytes: u64) -> Result<()> {
+    let mut written = 0;
+    while written < bytes {
+        let part = read_part(file, written).await?;
+        if part.is_empty() {
+            return Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")));
+        }
+        written += part.len() as u64;
+        upload.put_part(PutPayload::from(part)).await?;
+    }
+    Ok(())
 }
 
 /// A part of a file, shorter at its end.

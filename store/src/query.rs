@@ -46,10 +46,10 @@ pub(crate) enum Session<'c> {
 #[derive(Debug, Clone)]
 pub(crate) enum Value {
     Integer(Option<i64>),
-    Real(f64),
+    Real(Option<f64>),
     Flag(Option<bool>),
     Text(Option<String>),
-    Bytes(Vec<u8>),
+    Bytes(Option<Vec<u8>>),
 }
 
 /// A row of either engine, whose columns are read by name.
@@ -241,7 +241,7 @@ impl Changed for PgQueryResult {
     }
 }
 
-fn sqlite_arguments(parameters: Vec<Value>) -> Result<SqliteArguments> {
+pub(crate) fn sqlite_arguments(parameters: Vec<Value>) -> Result<SqliteArguments> {
     let mut arguments = SqliteArguments::default();
     for parameter in parameters {
         match parameter {
@@ -256,7 +256,7 @@ fn sqlite_arguments(parameters: Vec<Value>) -> Result<SqliteArguments> {
     Ok(arguments)
 }
 
-fn postgres_arguments(parameters: Vec<Value>) -> Result<PgArguments> {
+pub(crate) fn postgres_arguments(parameters: Vec<Value>) -> Result<PgArguments> {
     let mut arguments = PgArguments::default();
     for parameter in parameters {
         match parameter {
@@ -307,7 +307,7 @@ impl From<Option<i64>> for Value {
 
 impl From<f64> for Value {
     fn from(value: f64) -> Self {
-        Value::Real(value)
+        Value::Real(Some(value))
     }
 }
 
@@ -355,6 +355,6 @@ impl From<Option<String>> for Value {
 
 impl From<&[u8]> for Value {
     fn from(value: &[u8]) -> Self {
-        Value::Bytes(value.to_owned())
+        Value::Bytes(Some(value.to_owned()))
     }
 }

@@ -215,6 +215,13 @@ statements! {
         TOUCH = "touch",
         VALID = "valid",
     }
+    transfer {
+        BLOBS = "blobs",
+        COLUMNS = "columns",
+        COUNT_BLOBS = "count_blobs",
+        RELEASE = "release",
+        USERS = "users",
+    }
     upload {
         RESERVE = "reserve",
         UNRESERVED = "unreserved",

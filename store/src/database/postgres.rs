@@ -92,8 +92,11 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
 
 /// Connects to a server to look at what it has: nothing of it is made or changed.
 pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Database> {
-    let options =
-        options.clone().application_name("drillsweep").options([("default_transaction_read_only", "on")]);
+    let options = options.clone().application_name("drillsweep").options([
+        ("default_transaction_read_only", "on"),
+        // It locks nothing that others want. Who carries the store away keeps its snapshot while objects are copied.
+        ("idle_in_transaction_session_timeout", "0"),
+    ]);
     let pool = PgPoolOptions::new()
         .max_connections(1)
         .acquire_timeout(CONNECT_TIMEOUT)

@@ -1,0 +1,144 @@
+//! Carrying a store over to another database and object store.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, ensure};
+use clap::Args;
+use drillsweep_store::{
+    DatabaseLocation, ObjectsLocation, Progress, Role, SourceUse, StoreConfig, TransferReport, transfer,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use crate::data::{DataArguments, add_credentials, with_password};
+use crate::print;
+
+#[derive(Args)]
+pub(crate) struct MigrateArguments {
+    #[command(flatten)]
+    data: DataArguments,
+    #[command(flatten)]
+    target: TargetArguments,
+    /// Take the store as it is now though workers use it: what they and the server change later is not carried over, and running
+    /// points arrive as queued.
+    #[arg(long)]
+    while_running: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Where the data is carried to. None of it is taken from the environment, which says where it is now; but for the service that has
+/// the bucket.
+#[derive(Args)]
+struct TargetArguments {
+    /// Directory for the database and the object store, where these are not to lie elsewhere.
+    #[arg(long, value_name = "DIRECTORY")]
+    to_data: Option<PathBuf>,
+    /// Database to carry the store to, which must be an empty one: `postgres://user@host/name`, or the path of a SQLite file;
+    /// `drillsweep.sqlite` in the directory of `--to-data` unless given.
+    #[arg(long, visible_alias = "to", value_name = "DATABASE")]
+    to_database: Option<DatabaseLocation>,
+    /// Object store to carry the tables of results to: `s3://BUCKET/PREFIX`, or a directory; `blobs` in the directory of `--to-data`
+    /// unless given. That which has them already may be named: they are verified, and stay.
+    #[arg(long, value_name = "OBJECTS")]
+    to_objects: Option<ObjectsLocation>,
+    /// File with the password for the PostgreSQL database to carry the store to.
+    #[arg(long, value_name = "FILE")]
+    to_database_password_file: Option<PathBuf>,
+    /// File with the credentials for the bucket to carry the tables to, as `--objects-credentials-file` takes it.
+    #[arg(long, value_name = "FILE")]
+    to_objects_credentials_file: Option<PathBuf>,
+}
+
+impl TargetArguments {
+    fn store(&self) -> anyhow::Result<StoreConfig> {
+        let mut config = match (&self.to_data, &self.to_database, &self.to_objects) {
+            (Some(data), ..) => StoreConfig::in_directory(data, Role::Server),
+            // Nothing of it stays.
+            (None, Some(_), Some(_)) => StoreConfig::in_directory(&PathBuf::new(), Role::Server),
+            (None, ..) => {
+                anyhow::bail!("where to? Give --to-database and --to-objects, or --to-data for a directory")
+            }
+        };
+        if let Some(database) = &self.to_database {
+            config.database = database.clone();
+        }
+        if let Some(objects) = &self.to_objects {
+            config.objects = objects.clone();
+        }
+        if let Some(path) = &self.to_database_password_file {
+            config.database = with_password(&config.database, path, "--to-database-password-file")?;
+        }
+        if let Some(path) = &self.to_objects_credentials_file {
+            add_credentials(&mut config.objects, path, "--to-objects-credentials-file")?;
+        }
+        Ok(config)
+    }
+}
+
+/// Carries a store over, and fails if a blob of it was lost already.
+pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
+    let source = arguments.data.existing_store(Role::Worker)?;
+    let target = arguments.target.store()?;
+    let source_use = if arguments.while_running { SourceUse::Running } else { SourceUse::Idle };
+    let bar = ProgressBar::no_length();
+    bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} tables of results, {msg}")?);
+    let show = |progress| match progress {
+        Progress::Blobs { done, of } => {
+            bar.set_length(of);
+            bar.set_position(done);
+            bar.set_message("copying");
+        }
+        Progress::Rows(table) => bar.set_message(format!("copying the rows of {table}")),
+        Progress::Compared(table) => bar.set_message(format!("comparing the rows of {table}")),
+    };
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
+    let report = runtime.block_on(transfer(&source, &target, source_use, show));
+    bar.finish_and_clear();
+    let report = report.with_context(|| {
+        format!("the store was not carried over to {} and {}", target.database, target.objects)
+    })?;
+    print(&if arguments.json { as_json(&report)? } else { as_text(&report, &target) });
+    ensure!(
+        report.lost.is_empty(),
+        "{} tables or checkpoints were lost before, and are not in the new store either; `drillsweep check --repair` there computes them \
+         again",
+        report.lost.len()
+    );
+    Ok(())
+}
+
+fn as_text(report: &TransferReport, target: &StoreConfig) -> String {
+    let rows: u64 = report.rows.iter().map(|(_, rows)| rows).sum();
+    let copied = report.blobs - report.blobs_present - report.lost.len() as u64;
+    let mut lines = vec![
+        format!(
+            "{rows} rows of {} tables were carried over to {}, and compared",
+            report.rows.len(),
+            target.database
+        ),
+        format!(
+            "{copied} blobs of {} bytes were copied to {}, {} were there",
+            report.bytes_copied, target.objects, report.blobs_present
+        ),
+    ];
+    if report.released > 0 {
+        lines.push(format!("{} points were running, and are queued there", report.released));
+    }
+    lines.extend(report.lost.iter().map(|lost| format!("  {lost}")));
+    lines.join("\n")
+}
+
+fn as_json(report: &TransferReport) -> anyhow::Result<String> {
+    let rows: serde_json::Map<String, serde_json::Value> =
+        report.rows.iter().map(|(table, rows)| ((*table).to_owned(), (*rows).into())).collect();
+    Ok(serde_json::to_string_pretty(&json!({
+        "rows": rows,
+        "blobs": report.blobs,
+        "blobs_present": report.blobs_present,
+        "bytes_copied": report.bytes_copied,
+        "released": report.released,
+        "lost": report.lost,
+    }))?)
+}

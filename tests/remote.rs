@@ -19,18 +19,18 @@ use crate::{BINARY, PATIENCE, completed, wait};
 const PACE: &str = "18";
 
 /// What all processes have in common, wherever they run.
-struct Site {
-    postgres: Postgres,
-    objects: Seaweed,
+pub(crate) struct Site {
+    pub(crate) postgres: Postgres,
+    pub(crate) objects: Seaweed,
     scratch: tempfile::TempDir,
 }
 
 impl Site {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Site { postgres: Postgres::start(), objects: Seaweed::start(), scratch: tempfile::tempdir().unwrap() }
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let location = self.objects.location(&self.objects.address(), "team");
         let ObjectsLocation::S3 { settings, .. } = &location else { panic!("a bucket") };
         let mut command = Command::new(BINARY);
@@ -50,13 +50,13 @@ impl Site {
         command
     }
 
-    fn serve(&self) -> (Logged, String) {
+    pub(crate) fn serve(&self) -> (Logged, String) {
         let server = Logged::start(&mut self.command(&["serve", "--listen", "127.0.0.1:0"]));
         let address = server.address();
         (server, address)
     }
 
-    fn worker(&self) -> Logged {
+    pub(crate) fn worker(&self) -> Logged {
         Logged::start(&mut self.command(&["worker", "--lease-seconds", "2", "--pace", PACE]))
     }
 

@@ -5,6 +5,7 @@
 mod commands;
 mod faults;
 mod hostile;
+mod migrate;
 mod remote;
 #[path = "../store/tests/servers/mod.rs"]
 #[allow(dead_code, reason = "of the store's tests")]

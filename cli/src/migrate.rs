@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use anyhow::{Context as _, ensure};
 use clap::Args;
 use drillsweep_store::{
-    DatabaseLocation, ObjectsLocation, Progress, Role, SourceUse, StoreConfig, TransferReport, transfer,
+    DatabaseLocation, ObjectsLocation, Role, SourceUse, StoreConfig, TransferProgress, TransferReport,
+    transfer,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -85,13 +86,13 @@ pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
     let bar = ProgressBar::no_length();
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} tables of results, {msg}")?);
     let show = |progress| match progress {
-        Progress::Blobs { done, of } => {
+        TransferProgress::Blobs { done, of } => {
             bar.set_length(of);
             bar.set_position(done);
             bar.set_message("copying");
         }
-        Progress::Rows(table) => bar.set_message(format!("copying the rows of {table}")),
-        Progress::Compared(table) => bar.set_message(format!("comparing the rows of {table}")),
+        TransferProgress::Rows(table) => bar.set_message(format!("copying the rows of {table}")),
+        TransferProgress::Compared(table) => bar.set_message(format!("comparing the rows of {table}")),
     };
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
     let report = runtime.block_on(transfer(&source, &target, source_use, show));

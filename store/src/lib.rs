@@ -53,6 +53,6 @@ pub use state::{Stage, StateCounts, TRANSITIONS, Transition, WorkKey, WorkState}
 pub use submit::{Addition, AppendOutcome, CachePolicy, NewPoint, NewSweep, NewVerification, SubmitOutcome};
 pub use sweep::{ChangeOutcome, DeleteOutcome, SweepChanges, SweepFilter, SweepRecord};
 pub use token::{NewToken, TokenRecord, TokenScope, TokenSecret, TokensPresent};
-pub use transfer::{Progress, SourceUse, TransferError, TransferReport, transfer};
+pub use transfer::{SourceUse, TransferError, TransferProgress, TransferReport, transfer};
 pub use verification::VerificationRecord;
 pub use worker::WorkerRecord;

@@ -296,6 +296,10 @@ mod tests {
         ("retention/expire_artifacts", "result"),
         ("retention/is_blob_in_use", "work"),
         ("sweep/list", "sweep"),
+        ("transfer/blobs", "work"),
+        ("transfer/columns", "pragma_table_xinfo"),
+        ("transfer/count_blobs", "artifact"),
+        ("transfer/count_blobs", "work"),
     ];
 
     /// An engine: its folder, the sign before the number of a parameter, and its text of a statement.

@@ -44,7 +44,7 @@ const LEFT: &[&str] = &["removal", "upload", "worker"];
 const WORKER_SILENCE: Duration = Duration::from_secs(100);
 
 /// Names of blobs that are in memory at once.
-const PAGE: i64 = 1_000;
+const PAGE: i64 = 10_000;
 
 /// Blobs that are copied at the same time; a large one has a part of some megabytes in memory.
 const AT_ONCE: usize = 8;
@@ -60,7 +60,7 @@ pub enum SourceUse {
 
 /// How far a transfer has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Progress {
+pub enum TransferProgress {
     /// Blobs are being copied, or were there.
     Blobs {
         /// How many are done.
@@ -136,7 +136,7 @@ pub async fn transfer(
     source: &StoreConfig,
     target: &StoreConfig,
     source_use: SourceUse,
-    mut progress: impl FnMut(Progress),
+    mut progress: impl FnMut(TransferProgress),
 ) -> Result<TransferReport, TransferError> {
     if is_same(&source.database, &target.database) {
         return Err(TransferError::Itself);
@@ -165,11 +165,11 @@ pub async fn transfer(
     refuse_rows(&target_tables, &mut writing).await?;
     let mut sums = Vec::new();
     for (table, target) in tables.iter().zip(&target_tables) {
-        progress(Progress::Rows(table.name));
+        progress(TransferProgress::Rows(table.name));
         sums.push(table.copy(&mut snapshot, target, &mut writing).await?);
     }
     for (target, sum) in target_tables.iter().zip(&sums) {
-        progress(Progress::Compared(target.name));
+        progress(TransferProgress::Compared(target.name));
         if target.sum(&mut writing).await? != *sum {
             return Err(TransferError::Differs(target.name));
         }
@@ -230,13 +230,13 @@ async fn copy_blobs(
     snapshot: &mut Transaction,
     target: &Store,
     report: &mut TransferReport,
-    progress: &mut impl FnMut(Progress),
+    progress: &mut impl FnMut(TransferProgress),
 ) -> Result<(), StoreError> {
     let of: i64 = query(sql::transfer::COUNT_BLOBS).scalar(&mut *snapshot).await?;
     let of = of.unsigned_abs();
     let mut last = String::new();
     loop {
-        progress(Progress::Blobs { done: report.blobs, of });
+        progress(TransferProgress::Blobs { done: report.blobs, of });
         let page: Vec<String> =
             query(sql::transfer::BLOBS).bind(&last).bind(PAGE).scalars(&mut *snapshot).await?;
         let Some(end) = page.last() else { return Ok(()) };
@@ -254,7 +254,7 @@ async fn copy_blobs(
                 (None, Some(lost)) => report.lost.push(lost),
                 (None, None) => report.blobs_present += 1,
             }
-            progress(Progress::Blobs { done: report.blobs, of });
+            progress(TransferProgress::Blobs { done: report.blobs, of });
         }
     }
 }

@@ -199,7 +199,7 @@ fn program(name: &str) -> Command {
 }
 
 /// The directory of PostgreSQL's programs: of the latest version where there are several.
-fn programs() -> PathBuf {
+pub(crate) fn programs() -> PathBuf {
     if let Some(directory) = std::env::var_os(PROGRAMS) {
         return PathBuf::from(directory);
     }

@@ -173,4 +173,5 @@ mod sqlite;
 mod state;
 mod submit;
 mod token;
+mod transfer;
 mod verification;

@@ -16,7 +16,8 @@ pub(crate) struct Sqlite<P = Directory> {
 }
 
 impl<P> Sqlite<P> {
-    fn directory(&self) -> PathBuf {
+    /// The directory of the file.
+    pub(crate) fn directory(&self) -> PathBuf {
         self.temporary.path().join("data")
     }
 }

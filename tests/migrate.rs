@@ -1,0 +1,289 @@
+//! A store that moves between a machine's own disk and servers, and one that comes back from a backup: by the commands that people type.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+use serde_json::{Value, json};
+
+use crate::faults::{Logged, bytes, checked, command, request, serve, submit};
+use crate::remote::Site;
+use crate::servers::proxy::{Behaviour, Proxy};
+use crate::{BINARY, PATIENCE, Process, completed, get, wait};
+
+/// Points of the sweep that is moved.
+const POINTS: u64 = 6;
+
+/// A data directory with a sweep that is finished and one that is not; its server was killed, and has left its write-ahead log behind.
+struct Laptop {
+    data: tempfile::TempDir,
+    finished: String,
+    queued: String,
+}
+
+impl Laptop {
+    fn new() -> Self {
+        let data = tempfile::tempdir().unwrap();
+        let mut up =
+            Logged::start(&mut command(data.path(), &["up", "--workers", "2", "--listen", "127.0.0.1:0"]));
+        let server = up.address();
+        let finished = submit(&server, &swept());
+        assert_eq!(wait(&server, &finished, completed)["counts"]["succeeded"], POINTS);
+        // The workers take themselves off the list.
+        up.process.signal(Signal::TERM);
+        assert!(up.process.0.wait().unwrap().success());
+        let (mut server, address) = serve(data.path(), None);
+        let queued = submit(&address, &request(1.0, 1, 2));
+        server.kill();
+        assert!(data.path().join("drillsweep.sqlite-wal").exists(), "it was killed");
+        Laptop { data, finished, queued }
+    }
+
+    fn path(&self) -> &Path {
+        self.data.path()
+    }
+
+    /// Database, log and objects, by name.
+    fn files(&self) -> BTreeMap<String, Vec<u8>> {
+        let mut files = BTreeMap::new();
+        collect_files(&self.path().join("blobs"), &mut files);
+        for name in ["drillsweep.sqlite", "drillsweep.sqlite-wal"] {
+            files.insert(name.to_owned(), std::fs::read(self.path().join(name)).unwrap());
+        }
+        files
+    }
+}
+
+fn collect_files(directory: &Path, files: &mut BTreeMap<String, Vec<u8>>) {
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect_files(&path, files);
+        } else {
+            files.insert(path.display().to_string(), std::fs::read(&path).unwrap());
+        }
+    }
+}
+
+/// What is computed before the move.
+fn swept() -> Value {
+    let mut request = request(0.5, 3, 2);
+    request["set"]["accuracy"] = "draft".into();
+    request
+}
+
+/// Moves a data directory to a site whose database and object store are reached at some address.
+fn to_site(site: &Site, data: &Path, database: &str, objects: Option<&str>) -> Command {
+    let mut command = site.command(&["migrate", "--json"]);
+    let bucket = command
+        .get_envs()
+        .find_map(|(name, value)| (name == "DRILLSWEEP_OBJECTS").then(|| value.unwrap().to_owned()))
+        .unwrap();
+    command.env_remove("DRILLSWEEP_DATABASE").env_remove("DRILLSWEEP_OBJECTS");
+    // The last one counts.
+    command.env("DRILLSWEEP_DATA", data).arg("--to").arg(database).arg("--to-objects").arg(bucket);
+    if let Some(address) = objects {
+        command.env("AWS_ENDPOINT_URL", format!("http://{address}"));
+    }
+    command
+}
+
+fn report(output: Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// What a server tells of a sweep that is finished: all of it, to the byte.
+fn told(server: &str, sweep: &str) -> Vec<Vec<u8>> {
+    let url = format!("{server}/v1/sweeps/{sweep}");
+    let mut told: Vec<Vec<u8>> = ["?", "/points?limit=500", "/table?format=csv", "/events"]
+        .map(|part| bytes(&format!("{url}{part}")))
+        .into();
+    for point in 1..=POINTS {
+        for table in ["profile", "statics", "contacts", "energy", "history"] {
+            told.push(bytes(&format!("{url}/points/{point}/{table}?format=parquet")));
+        }
+    }
+    told
+}
+
+#[test]
+fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
+    let (laptop, site) = (Laptop::new(), Site::new());
+    let files = laptop.files();
+    let moved = report(to_site(&site, laptop.path(), &site.postgres.url(), None).output().unwrap());
+    assert_eq!(moved["rows"]["sweep"], 2, "{moved}");
+    assert_eq!(moved["rows"]["result"], POINTS);
+    assert!(moved["blobs"].as_u64().unwrap() >= 5 * POINTS && moved["blobs_present"] == 0, "{moved}");
+    assert!(laptop.files() == files, "what it was read from is untouched");
+    let whole = (POINTS, Vec::<Value>::new());
+    assert_eq!(checked(&mut site.command(&["check", "--json"])), whole);
+
+    let again = to_site(&site, laptop.path(), &site.postgres.url(), None).output().unwrap();
+    let reason = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(!again.status.success() && reason.contains("it must be an empty one"), "{reason}");
+
+    let (mut local, local_server) = serve(laptop.path(), None);
+    let (mut remote, remote_server) = site.serve();
+    assert!(told(&remote_server, &laptop.finished) == told(&local_server, &laptop.finished));
+    let list = |server: &str| get(&format!("{server}/v1/sweeps"));
+    assert_eq!(list(&remote_server), list(&local_server));
+    local.kill();
+    // Nobody is there to compute anything.
+    let known = submit(&remote_server, &swept());
+    let known = get(&format!("{remote_server}/v1/sweeps/{known}"));
+    assert_eq!((&known["counts"]["succeeded"], &known["state"]), (&json!(POINTS), &json!("completed")));
+    // What was queued goes on there.
+    let mut worker = site.worker();
+    assert_eq!(wait(&remote_server, &laptop.queued, completed)["counts"]["succeeded"], 2);
+    let busy = site.command(&["migrate", "--to-data"]).arg(laptop.path().join("busy")).output().unwrap();
+    let reason = String::from_utf8_lossy(&busy.stderr).into_owned();
+    assert!(!busy.status.success() && reason.contains("1 workers were heard of"), "{reason}");
+    worker.process.signal(Signal::TERM);
+    worker.process.0.wait().unwrap();
+
+    let home = laptop.path().join("home");
+    let moved = report(site.command(&["migrate", "--json", "--to-data"]).arg(&home).output().unwrap());
+    assert_eq!(moved["rows"]["sweep"], 3);
+    assert_eq!(checked(&mut command(&home, &["check", "--json"])), (POINTS + 2, vec![]));
+    let (_home, home_server) = serve(&home, None);
+    for sweep in [&laptop.finished, &laptop.queued] {
+        let table = |server: &str| bytes(&format!("{server}/v1/sweeps/{sweep}/table?format=csv"));
+        assert!(table(&home_server) == table(&remote_server));
+    }
+    assert!(told(&home_server, &laptop.finished) == told(&remote_server, &laptop.finished));
+    assert_eq!(list(&home_server), list(&remote_server));
+    remote.kill();
+}
+
+#[test]
+fn a_migration_that_is_killed_leaves_no_half_and_goes_on_where_it_was() {
+    let (laptop, site) = (Laptop::new(), Site::new());
+    let files = laptop.files();
+    let database = site.postgres.url();
+    let count = |table: &str| site.postgres.query(&format!("SELECT count(*) FROM {table}"));
+
+    // Among the blobs: at some moment nothing gets through any more.
+    const ENOUGH: u64 = 400_000;
+    let proxy = Proxy::before(&site.objects.address());
+    proxy.set(Behaviour::StallAfter(ENOUGH));
+    let mut stalled = to_site(&site, laptop.path(), &database, Some(proxy.address()));
+    let stalled = Process(stalled.stdout(Stdio::null()).spawn().unwrap());
+    proxy.wait_for(ENOUGH);
+    stalled.kill();
+    assert_eq!(count("sweep"), "0");
+
+    // Among the rows: one table cannot be written for a while.
+    std::thread::scope(|scope| {
+        let lock = "BEGIN; LOCK TABLE event IN SHARE MODE; SELECT pg_sleep(600);";
+        scope.spawn(|| site.postgres.run_script(lock, &[]));
+        let is_true = |what: &str| {
+            let deadline = Instant::now() + PATIENCE;
+            while site.postgres.query(&format!("SELECT {what}")) != "t" {
+                assert!(Instant::now() < deadline, "not so: {what}");
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        };
+        is_true("EXISTS (SELECT 1 FROM pg_locks WHERE relation = 'event'::regclass AND mode = 'ShareLock')");
+        let mut held_up = to_site(&site, laptop.path(), &database, None);
+        let held_up = Process(held_up.stdout(Stdio::null()).spawn().unwrap());
+        is_true("EXISTS (SELECT 1 FROM pg_locks WHERE relation = 'event'::regclass AND NOT granted)");
+        held_up.kill();
+        assert_eq!(count("sweep"), "0", "what is not whole is not seen");
+        site.postgres.query(
+            "SELECT pg_cancel_backend(pid) FROM pg_stat_activity WHERE query LIKE '%pg_sleep(600)%' AND pid <> pg_backend_pid()",
+        );
+        is_true("NOT EXISTS (SELECT 1 FROM pg_stat_activity WHERE application_name = 'drillsweep')");
+    });
+    for table in ["scenario", "work", "sweep", "point", "event"] {
+        assert_eq!(count(table), "0", "{table}");
+    }
+
+    let moved = report(to_site(&site, laptop.path(), &database, None).output().unwrap());
+    assert_eq!(moved["blobs_present"], moved["blobs"], "none was copied again: {moved}");
+    assert_eq!(moved["rows"]["result"], POINTS);
+    assert_eq!(checked(&mut site.command(&["check", "--json"])), (POINTS, vec![]));
+    assert!(laptop.files() == files);
+}
+
+#[test]
+fn where_to_is_said_in_full() {
+    let (nothing, laptop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (mut server, _) = serve(laptop.path(), None);
+    server.kill();
+    let refused = |data: &Path, arguments: &[&str]| {
+        let output = command(data, &["migrate"]).args(arguments).output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = refused(nothing.path(), &["--to-data", "elsewhere"]);
+    assert!(said.contains("there is no store in"), "{said}");
+    for arguments in [&[][..], &["--to-database", "there.sqlite"], &["--to-objects", "blobs"]] {
+        let said = refused(laptop.path(), arguments);
+        assert!(said.contains("where to?"), "{said}");
+    }
+    let itself = laptop.path().to_str().unwrap();
+    let said = refused(laptop.path(), &["--to-data", itself]);
+    assert!(said.contains("cannot be carried over to itself"), "{said}");
+}
+
+/// The commands that the documents give for backups, in their order.
+fn recipes() -> Vec<String> {
+    let text = include_str!("../docs/operations.md");
+    let section = text.split_once("## Backup and restore").unwrap().1;
+    let section = section.split("\n## ").next().unwrap();
+    section.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// Runs commands of the documents, each of which must succeed.
+fn run_recipe(recipe: &str, directory: &Path, environment: &Command) {
+    let programs = Path::new(BINARY).parent().unwrap();
+    let path = std::env::join_paths(
+        std::iter::once(programs.to_owned())
+            .chain(std::env::split_paths(&std::env::var_os("PATH").unwrap()))
+            .chain([crate::servers::postgres::programs()]),
+    );
+    let mut shell = Command::new("sh");
+    shell.args(["-euxc", recipe]).current_dir(directory).env("PATH", path.unwrap());
+    shell.envs(environment.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let output = shell.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{}{said}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_backups_of_the_documents_bring_a_whole_store_back() {
+    let [local_backup, local_restore, remote_backup, remote_restore] =
+        recipes().try_into().expect("a backup and a restore of either engine");
+    let (laptop, site, work) = (Laptop::new(), Site::new(), tempfile::tempdir().unwrap());
+    report(to_site(&site, laptop.path(), &site.postgres.url(), None).output().unwrap());
+
+    // The service runs while its backup is made.
+    std::os::unix::fs::symlink(laptop.path(), work.path().join("data")).unwrap();
+    let (mut server, address) = serve(laptop.path(), None);
+    let before = told(&address, &laptop.finished);
+    let nothing = Command::new("true");
+    run_recipe(&local_backup, work.path(), &nothing);
+    server.kill();
+    std::fs::remove_file(work.path().join("data")).unwrap();
+    run_recipe(&local_restore, work.path(), &nothing);
+    let (mut server, address) = serve(&work.path().join("data"), None);
+    assert!(told(&address, &laptop.finished) == before, "of the directory");
+    server.kill();
+
+    let (mut server, address) = site.serve();
+    assert!(told(&address, &laptop.finished) == before);
+    run_recipe(&remote_backup, work.path(), &site.command(&[]));
+    server.kill();
+    site.postgres.query("CREATE DATABASE restored");
+    let url = site.postgres.url();
+    let restored = url.replace("/postgres", "/restored").replace("restored://", "postgres://");
+    let mut environment = site.command(&[]);
+    environment.env("DRILLSWEEP_DATABASE", &restored);
+    run_recipe(&remote_restore, work.path(), &environment);
+    let mut server = site.command(&["serve", "--listen", "127.0.0.1:0"]);
+    let server = Logged::start(server.env("DRILLSWEEP_DATABASE", &restored));
+    assert!(told(&server.address(), &laptop.finished) == before, "of the server");
+}

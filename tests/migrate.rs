@@ -74,16 +74,17 @@ fn swept() -> Value {
     request
 }
 
-/// Moves a data directory to a site whose database and object store are reached at some address.
+/// Moves a data directory to a site, to a database and an object store that are reached at some address.
 fn to_site(site: &Site, data: &Path, database: &str, objects: Option<&str>) -> Command {
-    let mut command = site.command(&["migrate", "--json"]);
-    let bucket = command
-        .get_envs()
-        .find_map(|(name, value)| (name == "DRILLSWEEP_OBJECTS").then(|| value.unwrap().to_owned()))
-        .unwrap();
-    command.env_remove("DRILLSWEEP_DATABASE").env_remove("DRILLSWEEP_OBJECTS");
-    // The last one counts.
-    command.env("DRILLSWEEP_DATA", data).arg("--to").arg(database).arg("--to-objects").arg(bucket);
+    let mut command = command(data, &["migrate", "--json", "--to", database]);
+    let of_site = site.command(&[]);
+    for (name, value) in of_site.get_envs().filter_map(|(name, value)| Some((name.to_str()?, value?))) {
+        match name {
+            "DRILLSWEEP_OBJECTS" => command.arg("--to-objects").arg(value),
+            "DRILLSWEEP_DATABASE" => &mut command,
+            _ => command.env(name, value),
+        };
+    }
     if let Some(address) = objects {
         command.env("AWS_ENDPOINT_URL", format!("http://{address}"));
     }
@@ -279,7 +280,7 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     server.kill();
     site.postgres.query("CREATE DATABASE restored");
     let url = site.postgres.url();
-    let restored = url.replace("/postgres", "/restored").replace("restored://", "postgres://");
+    let restored = url.strip_suffix("postgres").unwrap().to_owned() + "restored";
     let mut environment = site.command(&[]);
     environment.env("DRILLSWEEP_DATABASE", &restored);
     run_recipe(&remote_restore, work.path(), &environment);

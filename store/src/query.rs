@@ -277,14 +277,16 @@ impl Value {
         match self {
             Value::Integer(Some(value)) => format!("{value}::bigint"),
             Value::Integer(None) => "NULL::bigint".to_owned(),
-            Value::Real(value) => format!("'{value:e}'::double precision"),
+            Value::Real(Some(value)) => format!("'{value:e}'::double precision"),
+            Value::Real(None) => "NULL::double precision".to_owned(),
             Value::Flag(Some(value)) => value.to_string(),
             Value::Flag(None) => "NULL::boolean".to_owned(),
             Value::Text(Some(value)) => {
                 format!("convert_from(decode('{}', 'hex'), 'UTF8')", hexadecimal(value.as_bytes()))
             }
             Value::Text(None) => "NULL::text".to_owned(),
-            Value::Bytes(value) => format!("decode('{}', 'hex')", hexadecimal(value)),
+            Value::Bytes(Some(value)) => format!("decode('{}', 'hex')", hexadecimal(value)),
+            Value::Bytes(None) => "NULL::bytea".to_owned(),
         }
     }
 }

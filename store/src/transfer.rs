@@ -36,9 +36,9 @@ const TABLES: &[&str] = &[
     "token",
 ];
 
-/// What is left behind: who works at the store, and which blobs are being written or deleted.
+/// What is left behind: who works at the store, who has logged in, and which blobs are being written or deleted.
 #[cfg(test)]
-const LEFT: &[&str] = &["removal", "upload", "worker"];
+const LEFT: &[&str] = &["removal", "session", "upload", "worker"];
 
 /// How lately a worker has been heard of that is taken to be alive: it renews its entry several times within that.
 const WORKER_SILENCE: Duration = Duration::from_secs(100);

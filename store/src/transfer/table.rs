@@ -84,7 +84,7 @@ impl Table {
                 sqlx::query_scalar(statement).fetch_one(&mut **transaction).await?
             }
             Transaction::Postgres(transaction) => {
-                sqlx::query_scalar(statement).fetch_one(&mut **transaction).await?
+                sqlx::query_scalar(statement).fetch_one(transaction.connection()).await?
             }
         };
         Ok(!has_rows)
@@ -139,7 +139,7 @@ impl Table {
                 rows.map(|row| self.values(&row?)).boxed()
             }
             Transaction::Postgres(transaction) => {
-                let rows = sqlx::query(statement).fetch(&mut **transaction);
+                let rows = sqlx::query(statement).fetch(transaction.connection());
                 rows.map(|row| self.values(&row?)).boxed()
             }
         }
@@ -192,7 +192,7 @@ impl Table {
             }
             Transaction::Postgres(transaction) => {
                 let arguments = postgres_arguments(values)?;
-                sqlx::query_with(statement, arguments).execute(&mut **transaction).await.map(drop)
+                sqlx::query_with(statement, arguments).execute(transaction.connection()).await.map(drop)
             }
         }
         .map_err(StoreError::from)

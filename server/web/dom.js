@@ -52,7 +52,7 @@ export function fill(parent, ...children) {
  * @param {(value: string) => void} onChange
  */
 export function choice(label, options, chosen, onChange) {
-  const select = h("select", { onchange: () => onChange(select.value) });
+  const select = h("select", { "aria-label": label, onchange: () => onChange(select.value) });
   for (const [value, text] of options) select.append(h("option", { value, selected: value === chosen }, text));
   select.value = chosen;
   return h("label", { class: "field" }, h("span", {}, label), select);

@@ -1,0 +1,243 @@
+"""The web page in a real browser, over a real server: what an engineer does there, and that nothing goes wrong unseen."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from drillsweep import Client, Sweep
+from service import SHORT, Service
+
+sync_api = pytest.importorskip("playwright.sync_api")
+Page = sync_api.Page
+expect = sync_api.expect
+
+CHROMIUM = "/usr/bin/chromium"
+OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
+NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="taken"</script>'
+"""A name that would be markup where it was taken for it."""
+GONE = re.compile(r"net::ERR_|502|Failed to load resource")
+"""What a browser itself writes on its console of a server that is gone."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[sync_api.Browser]:
+    if not Path(CHROMIUM).exists():
+        pytest.skip(f"{CHROMIUM} is missing")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
+        yield browser
+        browser.close()
+
+
+Opens = Callable[..., Page]
+
+
+@pytest.fixture
+def troubles() -> list[str]:
+    """What pages have complained of; a test fails by them at its end, and takes away those that it caused."""
+    return []
+
+
+@pytest.fixture
+def opened(browser: sync_api.Browser, server: str, troubles: list[str]) -> Iterator[Opens]:
+    """Opens a view of the page. Errors on its console, violations of its policy among them, fail the test."""
+    contexts = []
+
+    def open_view(view: str = "", address: str = server, **options: object) -> Page:
+        context = browser.new_context(**options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.goto(f"{address}/{view}")
+        return page
+
+    yield open_view
+    for context in contexts:
+        context.close()
+    assert troubles == []
+
+
+@pytest.fixture(scope="module")
+def named(client: Client) -> Sweep:
+    """Six points of three parameters, complete, with a name and a tag of markup."""
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800], "operation.rotation_speed_rpm": [90, 120]}
+    return client.submit("paper-200m", set=SHORT, axes=axes, name=NASTY, tags=["<b>bold</b>"]).wait(timeout=120.0)
+
+
+def drawn(page: Page, name: str) -> sync_api.Locator:
+    """A picture, once plotly has drawn it."""
+    picture = page.get_by_role("img", name=re.compile(name)).filter(has=page.locator(".main-svg"))
+    expect(picture.first).to_be_visible()
+    return picture.first
+
+
+def until(page: Page, holds: Callable[[], bool]) -> None:
+    """Waits until something holds; the page's policy forbids Playwright's own way, which evaluates a text."""
+    deadline = time.monotonic() + 10.0
+    while not holds():
+        assert time.monotonic() < deadline, "it never came to hold"
+        page.wait_for_timeout(50)
+
+
+def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:
+    page = opened()
+    expect(page.get_by_role("link", name=NASTY)).to_be_visible()
+    expect(page.get_by_role("link", name="<b>bold</b>")).to_be_visible()
+    page.get_by_role("link", name=NASTY).click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(NASTY)
+    assert page.locator("main img, main script").count() == 0
+    assert page.title() == f"{NASTY} · drillsweep"
+
+
+def test_a_sweep_is_submitted_and_watched_until_it_is_complete(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    page.get_by_role("textbox", name="Name", exact=True).fill("from the page")
+    rows = page.get_by_role("region", name="Parameters")
+    rows.get_by_role("textbox", name="Values").nth(0).fill("0.015, 0.035")
+    rows.get_by_role("textbox", name="Values").nth(1).fill("1300")
+    page.get_by_label("Accuracy", exact=True).select_option("draft")
+    for field, value in [("duration", "0.5"), ("recording.spectrum_windows", "[]"), ("recording.orbit_window", "null")]:
+        page.get_by_role("button", name="Add a change").click()
+        page.get_by_role("combobox", name="Field").last.fill(field)
+        page.get_by_role("textbox", name="Value", exact=True).last.fill(value)
+    page.get_by_role("button", name="Submit 2 points").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("from the page")
+    expect(page.get_by_text("2 of 2 succeeded")).to_be_visible(timeout=60_000)
+    drawn(page, "over flow rate")
+
+
+def test_a_problem_stands_at_its_field(opened: Opens, troubles: list[str]) -> None:
+    page = opened("#/new?preset=paper-200m")
+    rows = page.get_by_role("region", name="Parameters")
+    rows.get_by_role("textbox", name="Values").nth(0).fill("0.01:0.06")
+    expect(rows.get_by_text("A range needs a count")).to_be_visible()
+    rows.get_by_role("textbox", name="Values").nth(0).fill("-1")
+    expect(rows.locator("[data-problem]")).to_be_visible()
+    expect(rows.get_by_role("textbox", name="Values").nth(0)).to_be_visible()
+    expect(page.get_by_role("button", name="Submit")).to_be_disabled()
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 422" not in text]
+
+
+@pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "table", "failures"])
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_every_view_of_a_sweep_is_shown(opened: Opens, named: Sweep, view: str, theme: str) -> None:
+    page = opened(f"#/sweeps/{named.id}?view={view}", color_scheme=theme)
+    if view == "table":
+        expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(8)
+    elif view == "failures":
+        expect(page.get_by_text("No point of this sweep has failed.")).to_be_visible()
+    else:
+        drawn(page, "." if view != "effects" else "Shares of the variance")
+
+
+def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=friction_coefficient_max")
+    drawn(page, "friction coefficient C_f max|friction coefficient max")
+    cells = "() => document.querySelector('.js-plotly-plot').data[0].z.flat().filter((z) => z !== null)"
+    table = named.table().to_pandas()
+    for speed in (90, 120):
+        page.get_by_label("rotation speed", exact=True).select_option(str(speed))
+        held = table[table["operation.rotation_speed_rpm"] == speed]
+        expected = sorted(held["friction_coefficient_max"])
+        until(page, lambda expected=expected: sorted(page.evaluate(cells)) == pytest.approx(expected, rel=1e-12))
+
+
+def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&sort=flow_rate&order=down")
+    first = page.locator(".rows tbody tr:not(.gap)").first
+    expect(first.locator("td").nth(2)).to_have_text("0.04")
+    page.get_by_role("searchbox").fill("mud_density>1500 flow_rate=0.01")
+    expect(page.get_by_text("2 of 8 points")).to_be_visible()
+    page.get_by_role("button", name=re.compile("Units")).click()
+    # The same numbers, now in gallons a minute and pounds a gallon.
+    expect(page.get_by_text("0 of 8 points")).to_be_visible()
+    page.get_by_role("searchbox").fill("mud_density<11")
+    expect(page.get_by_text("4 of 8 points")).to_be_visible()
+    page.get_by_role("searchbox").fill("nonsense>1")
+    expect(page.get_by_text("There is no column nonsense.")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("view", "picture"),
+    [("profiles", "Profiles"), ("motion", "Orbit of node"), ("well", "The well"), ("energy", "Energy by account")],
+)
+def test_every_view_of_a_point_is_shown(opened: Opens, named: Sweep, view: str, picture: str) -> None:
+    drawn(opened(f"#/sweeps/{named.id}/points/1?view={view}"), picture)
+
+
+def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}/points/1?view=about")
+    effects = page.get_by_role("region", name="Effects")
+    expect(effects.get_by_text("the wall has friction").first).to_be_visible()
+    expect(page.get_by_role("region", name="Downloads").get_by_role("link", name="history.parquet")).to_be_visible()
+
+
+def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1")
+    history = drawn(page, "History of node")
+    box = history.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 50, steps=8)
+    page.mouse.up()
+    until(page, lambda: "from=" in page.url and "to=" in page.url)
+    start, end = (float(page.get_by_label(f"{name} [s]").input_value()) for name in ("From", "To"))
+    assert (start, end) == pytest.approx((0.2, 0.35), abs=0.01)
+    table = named.point(1).orbit(node=named.point(1).scenario["recording"]["nodes"][1]["node"], time=(start, end))
+    u, v = table["u"], table["v"]
+    size = float((((u - u.mean()) ** 2 + (v - v.mean()) ** 2).mean()) ** 0.5)
+    shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    # As the page writes it: four digits, in millimetres.
+    expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
+
+
+def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
+    keys = ",".join(f"{named.id}:{number}" for number in (1, 2, 8))
+    for view, picture in [("profiles", "Profiles"), ("orbit", "Orbits"), ("spectrum", "Full spectra")]:
+        page = opened(f"#/compare?points={keys}&view={view}&node=1")
+        drawn(page, picture)
+        expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)
+
+
+def test_keys_move_search_and_open(opened: Opens, named: Sweep, sweep: Sweep) -> None:
+    page = opened()
+    expect(page.get_by_role("link", name=NASTY)).to_be_visible()
+    page.keyboard.press("/")
+    page.keyboard.type("short")
+    expect(page.get_by_role("link", name=NASTY)).not_to_be_visible()
+    expect(page.get_by_role("link", name="short")).to_be_visible()
+    page.keyboard.press("Escape")
+    page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    page.wait_for_url(re.compile(f"#/sweeps/{sweep.id}"))
+
+
+def test_the_page_recovers_when_the_server_comes_back(opened: Opens, troubles: list[str], tmp_path: Path) -> None:
+    service = Service("up", "--workers", "1", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    address = service.server
+    page = opened("", address)
+    expect(page.get_by_text("There are no sweeps yet.")).to_be_visible()
+    service.kill()
+    expect(page.get_by_text("The server does not answer.")).to_be_visible(timeout=15_000)
+    service = Service("up", "--workers", "1", "--listen", address.removeprefix("http://"), "--data", str(tmp_path))
+    try:
+        expect(page.get_by_text("The server does not answer.")).not_to_be_visible(timeout=40_000)
+        expect(page.get_by_text("There are no sweeps yet.")).to_be_visible()
+    finally:
+        service.stop()
+    troubles[:] = [text for text in troubles if not GONE.search(text)]
+
+
+def test_a_phone_shows_every_view_without_sideways_scrolling(opened: Opens, named: Sweep) -> None:
+    for view in ["", f"#/sweeps/{named.id}", f"#/sweeps/{named.id}/points/1", "#/new"]:
+        page = opened(view, viewport={"width": 390, "height": 844})
+        page.wait_for_load_state("networkidle")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, view

@@ -1,4 +1,4 @@
-"""The web page in a real browser, over a real server: what an engineer does there, and that nothing goes wrong unseen."""
+"""The web page in a real browser, over a real server: what an engineer does there, and that nothing fails unseen."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 import pytest
 
 from drillsweep import Sweep, quantity
+from service import REPOSITORY
 
 
 def test_names_lead_to_their_quantity() -> None:
@@ -46,3 +47,9 @@ def test_units_are_those_that_tables_are_served_with(sweep: Sweep) -> None:
             found = quantity(name)
             assert found is not None, name
             assert found.unit == table.units.get(name), name
+
+
+def test_the_web_page_has_the_same_vocabulary() -> None:
+    page = REPOSITORY / "server" / "web" / "quantities.json"
+    client = REPOSITORY / "api" / "python" / "src" / "drillsweep" / "quantities.json"
+    assert page.read_bytes() == client.read_bytes(), f"copy {client} to {page}"

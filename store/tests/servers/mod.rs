@@ -13,6 +13,7 @@ use std::fs::File;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Names a directory with the servers' programs.
 const SERVERS: &str = "DRILLSWEEP_TEST_SERVERS";
@@ -57,8 +58,20 @@ fn run(command: &mut Command) {
     assert!(output.status.success(), "{what}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Ports of this machine that nobody listens on.
+/// Ports of this machine that nobody listens on. They are none of those that the system gives to outgoing connections (from 32768 on
+/// Linux), one of which might take a port before its server does; and each process looks for them somewhere else.
 fn free_ports<const N: usize>() -> [u16; N] {
-    let listeners = [(); N].map(|()| TcpListener::bind("127.0.0.1:0").expect("a free port"));
-    listeners.map(|listener| listener.local_addr().expect("its address").port())
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    let mut candidates = std::iter::from_fn(|| {
+        let number = std::process::id().wrapping_mul(64).wrapping_add(NEXT.fetch_add(1, Ordering::Relaxed));
+        Some(PORTS.start + u16::try_from(number % PORTS.len() as u32).expect("less than a port"))
+    });
+    [(); N].map(|()| {
+        let tries = candidates.by_ref().take(PORTS.len());
+        let mut free = tries.filter(|port| TcpListener::bind(("127.0.0.1", *port)).is_ok());
+        free.next().expect("a free port")
+    })
 }
+
+/// Where free ports are looked for.
+const PORTS: std::ops::Range<u16> = 12_000..32_000;

@@ -139,14 +139,14 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     // What was queued goes on there.
     let mut worker = site.worker();
     assert_eq!(wait(&remote_server, &laptop.queued, completed)["counts"]["succeeded"], 2);
-    let busy = site.command(&["migrate", "--to-data"]).arg(laptop.path().join("busy")).output().unwrap();
+    let busy = site.command(&["migrate"]).arg("--to-data").arg(laptop.path().join("busy")).output().unwrap();
     let reason = String::from_utf8_lossy(&busy.stderr).into_owned();
     assert!(!busy.status.success() && reason.contains("1 workers were heard of"), "{reason}");
     worker.process.signal(Signal::TERM);
     worker.process.0.wait().unwrap();
 
     let home = laptop.path().join("home");
-    let moved = report(site.command(&["migrate", "--json", "--to-data"]).arg(&home).output().unwrap());
+    let moved = report(site.command(&["migrate", "--json"]).arg("--to-data").arg(&home).output().unwrap());
     assert_eq!(moved["rows"]["sweep"], 3);
     assert_eq!(checked(&mut command(&home, &["check", "--json"])), (POINTS + 2, vec![]));
     let (_home, home_server) = serve(&home, None);

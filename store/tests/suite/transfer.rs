@@ -287,7 +287,7 @@ async fn claim_of(store: &Store, number: u32) -> drillsweep_store::Lease {
 /// Finishes the next work item with a table that is not copied in one piece.
 async fn finish_large(store: &Store) {
     let lease = claim_of(store, 6).await;
-    let content: Vec<u8> = (0..LARGE as u64).map(|at| (at * at >> 7) as u8).collect();
+    let content: Vec<u8> = (0..LARGE as u64).map(|at| ((at * at) >> 7) as u8).collect();
     let artifact = NewArtifact {
         name: "history".to_owned(),
         media_type: "application/vnd.apache.parquet".to_owned(),

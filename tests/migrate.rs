@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
@@ -91,7 +91,9 @@ fn to_site(site: &Site, data: &Path, database: &str, objects: Option<&str>) -> C
     command
 }
 
-fn report(output: Output) -> Value {
+/// Runs a command that reports in JSON and must succeed.
+fn report(command: &mut Command) -> Value {
+    let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -114,7 +116,7 @@ fn told(server: &str, sweep: &str) -> Vec<Vec<u8>> {
 fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     let (laptop, site) = (Laptop::new(), Site::new());
     let files = laptop.files();
-    let moved = report(to_site(&site, laptop.path(), &site.postgres.url(), None).output().unwrap());
+    let moved = report(&mut to_site(&site, laptop.path(), &site.postgres.url(), None));
     assert_eq!(moved["rows"]["sweep"], 2, "{moved}");
     assert_eq!(moved["rows"]["result"], POINTS);
     assert!(moved["blobs"].as_u64().unwrap() >= 5 * POINTS && moved["blobs_present"] == 0, "{moved}");
@@ -146,7 +148,7 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     worker.process.0.wait().unwrap();
 
     let home = laptop.path().join("home");
-    let moved = report(site.command(&["migrate", "--json"]).arg("--to-data").arg(&home).output().unwrap());
+    let moved = report(site.command(&["migrate", "--json"]).arg("--to-data").arg(&home));
     assert_eq!(moved["rows"]["sweep"], 3);
     assert_eq!(checked(&mut command(&home, &["check", "--json"])), (POINTS + 2, vec![]));
     let (_home, home_server) = serve(&home, None);
@@ -202,7 +204,7 @@ fn a_migration_that_is_killed_leaves_no_half_and_goes_on_where_it_was() {
         assert_eq!(count(table), "0", "{table}");
     }
 
-    let moved = report(to_site(&site, laptop.path(), &database, None).output().unwrap());
+    let moved = report(&mut to_site(&site, laptop.path(), &database, None));
     assert_eq!(moved["blobs_present"], moved["blobs"], "none was copied again: {moved}");
     assert_eq!(moved["rows"]["result"], POINTS);
     assert_eq!(checked(&mut site.command(&["check", "--json"])), (POINTS, vec![]));
@@ -259,7 +261,7 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     let [local_backup, local_restore, remote_backup, remote_restore] =
         recipes().try_into().expect("a backup and a restore of either engine");
     let (laptop, site, work) = (Laptop::new(), Site::new(), tempfile::tempdir().unwrap());
-    report(to_site(&site, laptop.path(), &site.postgres.url(), None).output().unwrap());
+    report(&mut to_site(&site, laptop.path(), &site.postgres.url(), None));
 
     // The service runs while its backup is made.
     std::os::unix::fs::symlink(laptop.path(), work.path().join("data")).unwrap();

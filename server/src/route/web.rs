@@ -40,7 +40,7 @@ pub(crate) async fn page(uri: Uri) -> Result<Response> {
             .map_err(io::Error::other)?
             .replace("\"web/", &format!("\"/web/{}/", *VERSION)))
     });
-    let text = PAGE.as_ref().map_err(|error| Error::internal(error))?;
+    let text = PAGE.as_ref().map_err(Error::internal)?;
     if text.is_empty() {
         return Err(missing(&uri));
     }

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any, Literal
 
 import pytest
-from playwright import sync_api
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
@@ -23,8 +24,9 @@ GONE = re.compile(r"net::ERR_|502|Failed to load resource")
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[sync_api.Browser]:
-    with sync_api.sync_playwright() as playwright:
+def browser() -> Iterator[Browser]:
+    assert Path(CHROMIUM).exists(), f"{CHROMIUM} is missing: apt install chromium"
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         yield browser
         browser.close()
@@ -40,11 +42,11 @@ def troubles() -> list[str]:
 
 
 @pytest.fixture
-def opened(browser: sync_api.Browser, server: str, troubles: list[str]) -> Iterator[Opens]:
+def opened(browser: Browser, server: str, troubles: list[str]) -> Iterator[Opens]:
     """Opens a view of the page. Errors on its console, violations of its policy among them, fail the test."""
     contexts = []
 
-    def open_view(view: str = "", address: str = server, **options: object) -> Page:
+    def open_view(view: str = "", address: str = server, **options: Any) -> Page:
         context = browser.new_context(**options)
         contexts.append(context)
         page = context.new_page()
@@ -66,10 +68,11 @@ def named(client: Client) -> Sweep:
     return client.submit("paper-200m", set=SHORT, axes=axes, name=NASTY, tags=["<b>bold</b>"]).wait(timeout=120.0)
 
 
-def drawn(page: Page, name: str) -> sync_api.Locator:
+def drawn(page: Page, name: str) -> Locator:
     """A picture, once plotly has drawn it."""
     picture = page.get_by_role("img", name=re.compile(name)).filter(has=page.locator(".main-svg"))
-    expect(picture.first).to_be_visible()
+    # WebGL without a graphics card takes its time.
+    expect(picture.first).to_be_visible(timeout=30_000)
     return picture.first
 
 
@@ -123,7 +126,9 @@ def test_a_problem_stands_at_its_field(opened: Opens, troubles: list[str]) -> No
 
 @pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "table", "failures"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_every_view_of_a_sweep_is_shown(opened: Opens, named: Sweep, view: str, theme: str) -> None:
+def test_every_view_of_a_sweep_is_shown(
+    opened: Opens, named: Sweep, view: str, theme: Literal["light", "dark"]
+) -> None:
     page = opened(f"#/sweeps/{named.id}?view={view}", color_scheme=theme)
     if view == "table":
         expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(8)
@@ -136,13 +141,16 @@ def test_every_view_of_a_sweep_is_shown(opened: Opens, named: Sweep, view: str, 
 def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=friction_coefficient_max")
     drawn(page, "friction coefficient C_f max|friction coefficient max")
-    cells = "() => document.querySelector('.js-plotly-plot').data[0].z.flat().filter((z) => z !== null)"
+
+    def shows(expected: list[float]) -> bool:
+        cells = page.evaluate("() => document.querySelector('.js-plotly-plot').data[0].z.flat()")
+        return sorted(cells) == pytest.approx(sorted(expected), rel=1e-12)
+
     table = named.table().to_pandas()
     for speed in (90, 120):
         page.get_by_label("rotation speed", exact=True).select_option(str(speed))
         held = table[table["operation.rotation_speed_rpm"] == speed]
-        expected = sorted(held["friction_coefficient_max"])
-        until(page, lambda expected=expected: sorted(page.evaluate(cells)) == pytest.approx(expected, rel=1e-12))
+        until(page, functools.partial(shows, list(held["friction_coefficient_max"])))
 
 
 def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sweep) -> None:

@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
+from test_tokens import make_token
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
@@ -245,3 +246,26 @@ def test_a_phone_shows_every_view_without_sideways_scrolling(opened: Opens, name
         page = opened(view, viewport={"width": 390, "height": 844})
         page.wait_for_load_state("networkidle")
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, view
+
+
+def test_a_token_logs_in_and_out(opened: Opens, troubles: list[str], tmp_path: Path) -> None:
+    token = make_token(tmp_path, "read")
+    service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    try:
+        page = opened("", service.server)
+        page.get_by_label("Token").fill("not one of its tokens, but long enough")
+        dialog = page.get_by_role("dialog")
+        dialog.get_by_role("button", name="Log in").click()
+        expect(dialog.get_by_role("alert")).not_to_be_empty()
+        page.get_by_label("Token").fill(token)
+        dialog.get_by_role("button", name="Log in").click()
+        expect(page.get_by_text("There are no sweeps yet.")).to_be_visible()
+        page.get_by_role("link", name="New sweep").click()
+        expect(page.get_by_role("button", name="Submit")).to_be_disabled()
+        page.get_by_role("button", name="Log out").click()
+        expect(dialog).to_be_visible()
+        assert page.context.cookies() == []
+    finally:
+        service.stop()
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if not re.search("status of 40[13]", text)]

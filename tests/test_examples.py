@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import nbclient
+import nbformat
 import pytest
 
 from service import REPOSITORY, Service
@@ -58,3 +61,24 @@ def test_python_and_curl_give_the_same_table(server: str, tmp_path: Path) -> Non
 
 def test_the_guide_shows_the_example_as_it_is() -> None:
     assert (REPOSITORY / "examples" / "sweep.py").read_text() in (REPOSITORY / "docs" / "guide.md").read_text()
+
+
+def test_the_notebook_draws_the_papers_figures(server: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DRILLSWEEP_SERVER", server)
+    monkeypatch.setenv("ACCURACY", "draft")
+    text = (REPOSITORY / "examples" / "paper_figures.ipynb").read_text()
+    notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
+    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": tmp_path}}).execute()
+    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 8
+    printed = "".join(output.get("text", "") for output in outputs)
+    # The paper's: the mud damps less the faster it flows and, to a smaller extent, the denser it is.
+    friction = {
+        name: [float(of) for of in re.findall(rf"{name} .* C_f up to (\S+)", printed)]
+        for name in ("flow_rate", "mud_density")
+    }
+    for values in friction.values():
+        assert len(values) == 4
+        assert values == sorted(values, reverse=True)
+        assert values[0] > values[-1]
+    assert friction["flow_rate"][-1] < friction["mud_density"][-1]

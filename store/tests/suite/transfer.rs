@@ -306,14 +306,14 @@ async fn past(engine: &Local) -> SqlitePool {
     SqlitePool::connect_with(SqliteConnectOptions::new().filename(file)).await.unwrap()
 }
 
-/// All rows of all tables but of those that tell who is at work, as SQLite writes their values.
+/// All rows of all tables but of those that tell who is at work and who has logged in, as SQLite writes their values.
 async fn dump(engine: &Local) -> BTreeMap<String, Vec<String>> {
     let database = past(engine).await;
     let tables: Vec<(String, String)> = sqlx::query_as(
         "SELECT m.name, group_concat('quote(' || c.name || ')', ' || '','' || ')
          FROM sqlite_schema m, pragma_table_info(m.name) c
          WHERE m.type = 'table' AND m.name NOT LIKE '\\_sqlx%' ESCAPE '\\' AND m.name NOT LIKE 'sqlite\\_%' ESCAPE '\\'
-           AND m.name NOT IN ('worker', 'upload', 'removal')
+           AND m.name NOT IN ('worker', 'upload', 'removal', 'session')
          GROUP BY m.name",
     )
     .fetch_all(&database)

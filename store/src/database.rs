@@ -1,11 +1,10 @@
 //! The engine behind the store: a SQLite file, or a PostgreSQL server.
 //!
 //! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
-//! failure) runs beside others of its kind: it takes its locks in one order, the work item, the turn of its owner, the sweeps that
-//! have it by their identifiers. All that changes several (submitting, cancelling, pausing, collecting garbage) runs alone, as
-//! everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold shared. Triggers take the shared lock,
-//! so that no statement can forget it. What a change of state has as consequences for others, the former do one after the other, too
-//! (migrations/postgres/0002_queues.sql).
+//! failure) runs beside others of its kind, and what follows from it for others (the turn of its owner, the sweeps that have it) lies behind
+//! a turnstile that one passes at a time (migrations/postgres/0002_queues.sql). All that changes several (submitting, cancelling, pausing,
+//! collecting garbage) runs alone, as everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold
+//! shared. Triggers take the shared lock and the turnstile, so that no statement can forget them.
 
 mod location;
 pub(crate) mod postgres;

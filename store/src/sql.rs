@@ -156,6 +156,7 @@ statements! {
         TOKEN = "token",
     }
     submit {
+        ANALYZE = "analyze",
         APPENDED = "appended",
         COUNT = "count",
         ENDS_OF_ORDER = "ends_of_order",

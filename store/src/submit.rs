@@ -22,6 +22,9 @@ pub(crate) const POINTS_AT_ONCE: i64 = 500;
 /// Rows of one statement: enough that the calls do not count.
 pub(crate) const ROWS_AT_ONCE: usize = 1_000;
 
+/// Points of a sweep from which on the tables are counted again for the planner; it does so itself within a minute or so.
+const ANALYZED_FROM: usize = 10_000;
+
 /// A sweep to store.
 #[derive(Debug, Clone)]
 pub struct NewSweep {
@@ -234,6 +237,14 @@ impl Store {
             insert_points(&mut tx, &sweep.id, role, &rows).await?;
             count(&mut tx, &sweep.id, role, &rows, now).await?;
             place += PLACE_OF_A_POINT * rows.len() as i64;
+        }
+        if sweep.points.len() >= ANALYZED_FROM {
+            // Before it is seen, so that it is read by plans for its size, and while others may write. It can be read without.
+            tx.commit().await?;
+            if let Err(error) = query(sql::submit::ANALYZE).execute(&self.database).await {
+                tracing::warn!(%error, "the planner's statistics are left as they were");
+            }
+            tx = self.write().await?;
         }
         still_hidden(&mut tx, sql::submit::SHOW, &sweep.id).await?;
         tx.commit().await

@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{DefaultBodyLimit, Request};
-use axum::http::{HeaderName, HeaderValue, Response, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Response, StatusCode, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use drillsweep_api::{LIMITS, PROBLEM_MEDIA_TYPE, ProblemKind};
@@ -110,9 +110,7 @@ impl<P: Predicate> Predicate for Worthwhile<P> {
 /// Refuses requests that exclude both gzip and an answer without any encoding (RFC 9110 section 12.5.3), before anything is done for
 /// them, and sees that those that exclude only the latter get no part of an answer, since parts are not encoded.
 async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
-    let fields = request.headers().get_all(header::ACCEPT_ENCODING);
-    let accepted: Vec<&str> = fields.iter().filter_map(|value| value.to_str().ok()).collect();
-    let accepted = accepted.join(",");
+    let accepted = accepted_encodings(request.headers());
     let any = accepts(&accepted, &["*"]);
     if accepts(&accepted, &["identity"]).or(any).unwrap_or(true) {
         return next.run(request).await;
@@ -127,6 +125,18 @@ async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
     let mut response = next.run(request).await;
     response.extensions_mut().insert(MustBeEncoded);
     response
+}
+
+/// Whether a client has said that it takes an answer encoded as gzip.
+pub(crate) fn takes_gzip(headers: &HeaderMap) -> bool {
+    let accepted = accepted_encodings(headers);
+    accepts(&accepted, &["gzip", "x-gzip"]).or(accepts(&accepted, &["*"])).unwrap_or(false)
+}
+
+fn accepted_encodings(headers: &HeaderMap) -> String {
+    let fields = headers.get_all(header::ACCEPT_ENCODING).iter();
+    let accepted: Vec<&str> = fields.filter_map(|value| value.to_str().ok()).collect();
+    accepted.join(",")
 }
 
 /// Whether an `Accept-Encoding` header accepts an encoding of one of these names; none where it names none of them.

@@ -16,6 +16,9 @@ use crate::app::App;
 
 const COOKIE: &str = "drillsweep_session";
 
+/// The budget that all logins are taken from; no owner has this name.
+const LOGINS: &str = "\0logins";
+
 /// Whether there is a session
 ///
 /// Everybody may ask. Without tokens there are no sessions, and none is needed.
@@ -54,6 +57,7 @@ pub(crate) async fn open(
     headers: HeaderMap,
     login: extract::Json<Login>,
 ) -> Result<impl IntoResponse> {
+    app.limiter.admit(LOGINS)?;
     let token = match TokenSecret::parse(login.value.token.trim()) {
         Some(secret) => app.store.valid_token(&secret).await?,
         None => None,

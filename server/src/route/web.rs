@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _};
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use axum::http::{HeaderMap, HeaderValue, Uri, header};
 use axum::response::{IntoResponse, Response};
+use bytes::Bytes;
 use drillsweep_api::ProblemKind;
 use flate2::read::GzDecoder;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
+use crate::guard::middleware;
 
 /// Path, hash and compressed bytes of each file.
 const FILES: &[(&str, &str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
@@ -28,15 +30,22 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
     hasher.finalize().to_hex()[..16].to_owned()
 });
 
-static BY_PATH: LazyLock<BTreeMap<&str, &[u8]>> =
-    LazyLock::new(|| FILES.iter().map(|(path, _, bytes)| (*path, *bytes)).collect());
+/// A file, compressed, and as it is from when somebody first wants it so.
+struct File {
+    compressed: &'static [u8],
+    plain: OnceLock<Bytes>,
+}
+
+static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
+    let file = |compressed| File { compressed, plain: OnceLock::new() };
+    FILES.iter().map(|(path, _, bytes)| (*path, file(*bytes))).collect()
+});
 
 /// The page, whose files are those of this version.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
     static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| {
-        let text =
-            BY_PATH.get("index.html").map(|bytes| decompressed(bytes)).transpose()?.unwrap_or_default();
-        Ok(String::from_utf8(text)
+        let text = BY_PATH.get("index.html").map(File::plain).transpose()?.unwrap_or_default();
+        Ok(str::from_utf8(&text)
             .map_err(io::Error::other)?
             .replace("\"web/", &format!("\"/web/{}/", *VERSION)))
     });
@@ -58,30 +67,32 @@ pub(crate) async fn file(
     headers: HeaderMap,
     Path((version, path)): Path<(String, String)>,
 ) -> Result<Response> {
-    let bytes = BY_PATH.get(path.as_str()).filter(|_| version == *VERSION && path != "index.html");
-    let bytes = *bytes.ok_or_else(|| missing(&uri))?;
+    let file = BY_PATH.get(path.as_str()).filter(|_| version == *VERSION && path != "index.html");
+    let file = file.ok_or_else(|| missing(&uri))?;
+    let takes_gzip = middleware::takes_gzip(&headers);
+    let form = if takes_gzip { "gzip" } else { "plain" };
     let caching = [
         (header::CONTENT_TYPE, HeaderValue::from_static(content_type(&path))),
         (header::CACHE_CONTROL, HeaderValue::from_static("public, max-age=31536000, immutable")),
         (header::VARY, HeaderValue::from_static("accept-encoding")),
-        (header::ETAG, tag(&path)?),
+        (header::ETAG, tag(&format!("{path} {form}"))?),
     ];
-    let accepted = headers.get(header::ACCEPT_ENCODING).and_then(|value| value.to_str().ok());
-    let takes_gzip = accepted.is_some_and(|accepted| {
-        accepted.split(',').any(|coding| matches!(coding.split(';').next().map(str::trim), Some("gzip")))
-            && !accepted.contains("gzip;q=0")
-    });
     if takes_gzip {
-        return Ok((caching, usual(), [(header::CONTENT_ENCODING, "gzip")], bytes).into_response());
+        return Ok((caching, usual(), [(header::CONTENT_ENCODING, "gzip")], file.compressed).into_response());
     }
-    let text = decompressed(bytes).map_err(|error| Error::internal(&error))?;
-    Ok((caching, usual(), text).into_response())
+    let plain = file.plain().map_err(|error| Error::internal(&error))?;
+    Ok((caching, usual(), plain).into_response())
 }
 
-fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
-    let mut text = Vec::new();
-    GzDecoder::new(bytes).read_to_end(&mut text)?;
-    Ok(text)
+impl File {
+    fn plain(&self) -> io::Result<Bytes> {
+        if let Some(plain) = self.plain.get() {
+            return Ok(plain.clone());
+        }
+        let mut plain = Vec::new();
+        GzDecoder::new(self.compressed).read_to_end(&mut plain)?;
+        Ok(self.plain.get_or_init(|| plain.into()).clone())
+    }
 }
 
 fn missing(uri: &Uri) -> Error {

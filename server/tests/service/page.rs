@@ -200,9 +200,16 @@ async fn files_are_sent_as_the_client_takes_them() {
         page.text().split('"').find(|part| part.ends_with("main.js")).expect("the page loads it").to_owned();
     let as_is = bench.get(&main).await;
     assert!(!as_is.headers.contains_key(header::CONTENT_ENCODING));
-    let request =
-        Request::get(&main).header(header::ACCEPT_ENCODING, "br, gzip").body(Body::empty()).unwrap();
-    let compressed = bench.send(request).await;
+    let send = async |accepted: &str| {
+        bench
+            .send(Request::get(&main).header(header::ACCEPT_ENCODING, accepted).body(Body::empty()).unwrap())
+            .await
+    };
+    for refused in ["br", "gzip; q=0, identity", "gzip;q=0.0"] {
+        assert!(!send(refused).await.headers.contains_key(header::CONTENT_ENCODING), "{refused}");
+    }
+    let compressed = send("br;q=1.0, gzip;q=0.8").await;
+    assert_ne!(compressed.headers[header::ETAG], as_is.headers[header::ETAG], "other bytes");
     assert_eq!(compressed.headers[header::CONTENT_ENCODING], "gzip");
     let mut text = Vec::new();
     std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*compressed.body), &mut text).unwrap();

@@ -6,6 +6,7 @@ use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
 use serde_json::{Value, json};
+use tower::ServiceExt;
 
 use crate::bench::{Answer, Bench, json_request};
 
@@ -235,4 +236,29 @@ fn files_of_others_are_those_that_their_list_names() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(named.contains(&name), "{name} is in no list");
     }
+}
+
+#[tokio::test]
+async fn every_server_of_a_store_knows_a_session() {
+    let bench = Bench::new().await;
+    let secret = token(&bench, TokenScope::Submit, None).await;
+    let cookie = cookie(&log_in(&bench, secret.expose()).await);
+    let run = send(&bench, &cookie, Method::POST, "/v1/runs", run(), Some("same-origin")).await.json();
+    let (_stop, stopping) = tokio::sync::watch::channel(false);
+    let another =
+        drillsweep_server::router(bench.store.clone(), drillsweep_server::Config::default(), stopping);
+    // As a browser's EventSource asks, which can send nothing but cookies.
+    let path = format!("/v1/sweeps/{}/events", run["sweep"].as_str().or(run["id"].as_str()).unwrap());
+    let ask = |cookie: Option<&str>| {
+        let request = Request::get(&path).header(header::ACCEPT, "text/event-stream");
+        let request = match cookie {
+            Some(cookie) => request.header(header::COOKIE, cookie),
+            None => request,
+        };
+        another.clone().oneshot(request.body(Body::empty()).unwrap())
+    };
+    assert_eq!(ask(None).await.unwrap().status(), StatusCode::UNAUTHORIZED);
+    let stream = ask(Some(&cookie)).await.unwrap();
+    assert_eq!(stream.status(), StatusCode::OK);
+    assert_eq!(stream.headers()[header::CONTENT_TYPE], "text/event-stream");
 }

@@ -85,7 +85,7 @@ impl Transaction {
         Ok(())
     }
 
-    /// Commits a change of the state of a work item: the same, but for that those who commit such wait for each other in a better way.
+    /// Commits a change of the state of a work item. On PostgreSQL it goes through the turnstile.
     pub(crate) async fn commit_in_turn(self) -> Result<()> {
         match self {
             Transaction::Sqlite { .. } => self.commit().await,

@@ -72,6 +72,13 @@ impl Bench {
         self.routes = router(self.store.clone(), config, self.stop.subscribe());
     }
 
+    /// The same store as one sees it whose clock is ahead.
+    pub(crate) async fn later(&self, offset: Duration) -> Store {
+        let config = StoreConfig::in_directory(self.directory.path(), Role::Server);
+        let clock_offset_ms = i64::try_from(offset.as_millis()).unwrap();
+        Store::open(&StoreConfig { clock_offset_ms, ..config }).await.unwrap()
+    }
+
     /// From now on the blobs are in a bucket of a service that does not run.
     pub(crate) async fn lose_object_store(&mut self) {
         // No service has this port.

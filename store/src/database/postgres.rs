@@ -178,8 +178,7 @@ pub(crate) async fn in_turn(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>
 
 /// Statements in one message are one transaction. The first takes a lock.
 async fn script(pool: &PgPool, statements: String) -> Result<Vec<PgRow>> {
-    let mut rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
-    // What taking the lock gave.
-    rows.remove(0);
-    Ok(rows)
+    let rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
+    // The first row is what taking the lock gave.
+    Ok(rows.into_iter().skip(1).collect())
 }

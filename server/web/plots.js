@@ -109,6 +109,7 @@ function common() {
     margin: { l: 60, r: 16, t: 16, b: 50 },
     colorway: LINES,
     hovermode: "closest",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: text },
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } },
     xaxis: axis,
     yaxis: axis,
@@ -139,7 +140,9 @@ function config(Plotly, place) {
     icon: ICONS[format],
     click: () => Plotly.downloadImage(place, { format, filename, width: place.clientWidth, height: place.clientHeight, scale: format === "png" ? 2 : 1 }),
   });
-  return { displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d", "autoScale2d"], modeBarButtonsToAdd: [save("png"), save("svg")] };
+  // plotly would offer to send what is shown to a service of its own.
+  const nowhereElse = { showSendToCloud: false, plotlyServerURL: "" };
+  return { ...nowhereElse, displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d", "autoScale2d"], modeBarButtonsToAdd: [save("png"), save("svg")] };
 }
 
 /** Letters in a frame: `P` for PNG, `S` for SVG. */

@@ -177,6 +177,13 @@ def test_every_view_of_a_point_is_shown(opened: Opens, named: Sweep, view: str, 
     drawn(opened(f"#/sweeps/{named.id}/points/1?view={view}"), picture)
 
 
+def test_pictures_are_saved_here_and_sent_nowhere(opened: Opens, named: Sweep) -> None:
+    picture = drawn(opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1"), "History of node")
+    titles = [button.get_attribute("data-title") for button in picture.locator(".modebar-btn").all()]
+    assert {"Save as PNG", "Save as SVG"} <= set(titles)
+    assert not [title for title in titles if title is None or re.search("(?i)cloud|share|send|plotly|link", title)]
+
+
 def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=about")
     effects = page.get_by_role("region", name="Effects")

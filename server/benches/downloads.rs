@@ -1,47 +1,63 @@
-//! How long a list of sweeps takes, and how much memory the service, while clients download histories: over the network of this machine, a
-//! row of the table for each number of clients.
+//! How long a list of sweeps takes, and how much memory the service, while clients download histories and the table of a large sweep: over
+//! the network of this machine, a row of the table for each number of clients.
 //!
 //! `cargo bench -p drillsweep-server --bench downloads`. The clients are in the same process: their memory, 64 KiB each, is counted too.
 
 #![expect(clippy::print_stdout, reason = "what is measured is printed")]
 
+use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use axum::body::Body;
 use axum::http::{Request, header};
 use drillsweep_server::{Config, Listeners, router, serve};
-use drillsweep_store::{NewArtifact, NewResult, Role, Store, StoreConfig};
+use drillsweep_store::{Claim, NewArtifact, NewResult, Role, Store, StoreConfig};
 use drillsweep_table::{Column, Table, parquet};
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime::Runtime;
 use tokio::sync::watch;
 use tower::ServiceExt;
 
 /// Numbers of clients that download.
 const CLIENTS: [usize; 4] = [0, 12, 50, 200];
 
-/// Lists of sweeps that are asked for beside them, one after the other.
-const LISTS: usize = 300;
+/// How long lists of sweeps are asked for beside them, and what lies between two of them.
+const MEASURED: Duration = Duration::from_secs(20);
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Recorded nodes, and samples at 1 kHz.
 const NODES: u32 = 40;
 const SAMPLES: u32 = 60_000;
 
+/// Points of the sweep whose table is asked for, and fields of their summaries.
+const POINTS: u32 = 20_000;
+const FIELDS: u32 = 50;
+
 fn main() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
-    runtime.block_on(measure());
+    // Other clients than that of the lists compete for this machine's cores as little as if they were on others.
+    let clients = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .on_thread_start(|| {
+            rustix::process::nice(19).expect("Linux");
+        })
+        .build()
+        .expect("a runtime");
+    runtime.block_on(measure(&clients));
 }
 
-async fn measure() {
+async fn measure(others: &Runtime) {
     let directory = tempfile::tempdir().expect("a temporary directory");
     let config = StoreConfig::in_directory(directory.path(), Role::Server);
     let store = Store::open(&config).await.expect("a store");
     let point = finished(&store).await;
+    let sweep = large(&store).await;
     let listener = TcpListener::bind("127.0.0.1:0").await.expect("a port");
     let address = listener.local_addr().expect("an address");
     let listeners = Listeners { api: listener, metrics: None };
@@ -55,13 +71,14 @@ async fn measure() {
         let downloads: Vec<_> = (0..clients)
             .map(|client| {
                 let (is_over, bytes, refused) = (is_over.clone(), bytes.clone(), refused.clone());
-                let path = match client % 4 {
+                let path = match client % 5 {
                     0 => format!("{point}/history?format=csv"),
                     1 => format!("{point}/history?format=npz"),
                     2 => format!("{point}/artifacts/history"),
+                    3 => format!("{sweep}/table?format=csv"),
                     _ => format!("{point}/orbit?node=7&format=json"),
                 };
-                tokio::spawn(async move {
+                others.spawn(async move {
                     while !is_over.load(Ordering::Relaxed) {
                         if !download(address, &path, &bytes, &is_over).await {
                             refused.fetch_add(1, Ordering::Relaxed);
@@ -70,8 +87,10 @@ async fn measure() {
                 })
             })
             .collect();
-        let mut times = Vec::with_capacity(LISTS);
-        for _ in 0..LISTS {
+        let mut times = Vec::new();
+        let first = Instant::now();
+        while first.elapsed() < MEASURED {
+            tokio::time::sleep(PAUSE).await;
             let begin = Instant::now();
             assert!(download(address, "/v1/sweeps", &AtomicU64::new(0), &AtomicBool::new(false)).await);
             times.push(begin.elapsed().as_secs_f64() * 1e3);
@@ -83,8 +102,8 @@ async fn measure() {
         times.sort_by(f64::total_cmp);
         println!(
             "{clients:7} | {:13.1} | {:13.1} | {:16} | {:15} | {}",
-            times[LISTS / 2],
-            times[LISTS * 99 / 100],
+            times[times.len() / 2],
+            times[times.len() * 99 / 100],
             peak_kilobytes() / 1000,
             bytes.load(Ordering::Relaxed) / 1_000_000,
             refused.load(Ordering::Relaxed)
@@ -109,17 +128,8 @@ async fn download(address: SocketAddr, path: &str, bytes: &AtomicU64, is_over: &
 
 /// Makes a sweep of one point with a history that no compression makes smaller, and gives the point's path.
 async fn finished(store: &Store) -> String {
-    let (_stop, stopping) = watch::channel(false);
-    let routes = router(store.clone(), Config::default(), stopping);
-    let request = Request::post("/v1/sweeps")
-        .header(header::CONTENT_TYPE, "application/json")
-        .body(Body::from(json!({"preset": "paper-200m"}).to_string()))
-        .expect("a request");
-    let answer = routes.oneshot(request).await.expect("answered");
-    let body = answer.into_body().collect().await.expect("read").to_bytes();
-    let sweep: Value = serde_json::from_slice(&body).expect("JSON");
-    let version = drillsweep_api::PHYSICS_VERSION.into();
-    let claim = store.claim("bench", version, 60_000).await.expect("a claim").expect("a point waits");
+    let sweep = submit(store, &json!({"preset": "paper-200m"})).await;
+    let claim = claim(store).await;
     let mut artifacts = Vec::new();
     for (name, table) in [("history", history()), ("statics", statics())] {
         let bytes = parquet::write(&table).expect("a table");
@@ -134,7 +144,43 @@ async fn finished(store: &Store) -> String {
     let result =
         NewResult { summary_json: "{}", provenance_json: "{}", artifacts: &artifacts, is_repeatable: true };
     assert!(store.finish_done(&claim.lease, &result).await.expect("stored"));
-    format!("/v1/sweeps/{}/points/1", sweep["id"].as_str().expect("an id"))
+    format!("{sweep}/points/1")
+}
+
+/// Makes a sweep of many points, each with a summary of the usual size, and gives the sweep's path.
+async fn large(store: &Store) -> String {
+    let axes = json!({"flow_rate": {"from": 0.01, "to": 0.06}, "mud_density": {"from": 1200, "to": 2100}});
+    let request = json!({"preset": "paper-200m", "design": "sobol", "samples": POINTS, "axes": axes});
+    let sweep = submit(store, &request).await;
+    for point in 0..POINTS {
+        let claim = claim(store).await;
+        let field = |k: u32| (format!("orbit_largest_radius_{k}"), 0.037 / f64::from(point + k + 1));
+        let summary: BTreeMap<String, f64> = (0..FIELDS).map(field).collect();
+        let summary = json!(summary).to_string();
+        let result =
+            NewResult { summary_json: &summary, provenance_json: "{}", artifacts: &[], is_repeatable: true };
+        assert!(store.finish_done(&claim.lease, &result).await.expect("stored"));
+    }
+    sweep
+}
+
+async fn claim(store: &Store) -> Claim {
+    let version = drillsweep_api::PHYSICS_VERSION.into();
+    store.claim("bench", version, 60_000).await.expect("a claim").expect("a point waits")
+}
+
+/// Submits a sweep, and gives its path.
+async fn submit(store: &Store, request: &Value) -> String {
+    let (_stop, stopping) = watch::channel(false);
+    let routes = router(store.clone(), Config::default(), stopping);
+    let request = Request::post("/v1/sweeps")
+        .header(header::CONTENT_TYPE, "application/json")
+        .body(Body::from(request.to_string()))
+        .expect("a request");
+    let answer = routes.oneshot(request).await.expect("answered");
+    let body = answer.into_body().collect().await.expect("read").to_bytes();
+    let sweep: Value = serde_json::from_slice(&body).expect("JSON");
+    format!("/v1/sweeps/{}", sweep["id"].as_str().expect("an id"))
 }
 
 fn history() -> Table {

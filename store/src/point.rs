@@ -109,13 +109,14 @@ impl Store {
             .await
     }
 
-    /// One row a point, for the sweep's table, in order.
+    /// One row a point, for the sweep's table, in order: `limit` points at most, after the ordinal `after`.
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn table_rows(&self, sweep_id: &str) -> Result<Vec<TableRecord>> {
+    pub async fn table_rows(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<TableRecord>> {
         type Row = (i64, String, String, Option<String>, Option<String>);
-        let rows: Vec<Row> = query(sql::point::TABLE).bind(sweep_id).rows(&self.database).await?;
+        let rows: Vec<Row> =
+            query(sql::point::TABLE).bind(sweep_id).bind(after).bind(limit).rows(&self.database).await?;
         rows.into_iter()
             .map(|(ordinal, parameters_json, state, summary_json, error_json)| {
                 Ok(TableRecord {

@@ -2,7 +2,7 @@
 
 use drillsweep_table::quantity::{Variant, columns};
 use drillsweep_table::{Column, Table};
-use indexmap::{IndexMap, IndexSet};
+use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
 use crate::point::{PointError, PointState};
@@ -24,60 +24,139 @@ pub struct PointSummary {
     pub error: Option<PointError>,
 }
 
+/// The table of a sweep as it is put together point by point, so that besides it only the point at hand is in memory.
+///
 /// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, of points that are verified the bias of each
 /// statistic NAME against the reference as `bias_NAME`, and the `error` with its `error_time` \[s\] and `error_node`.
 ///
 /// Columns are the union over all points, in the order in which they are first met; a point that has no
 /// value has `null` there. Fields of the summary that are objects become columns named
 /// `outer.inner`; lists become JSON text.
-pub fn points(rows: &[PointSummary]) -> Table {
-    let mut table = Table::default()
-        .with(&columns::ORDINAL, Column::Integer(rows.iter().map(|row| Some(row.ordinal.into())).collect()))
-        .with(&columns::STATE, Column::Text(rows.iter().map(|row| Some(row.state.to_string())).collect()));
-
-    let parameters: IndexSet<&str> =
-        rows.iter().flat_map(|row| row.parameters.keys().map(String::as_str)).collect();
-    for name in &parameters {
-        let values = rows.iter().map(|row| row.parameters.get(*name).copied().unwrap_or(f64::NAN));
-        table.push(*name, Column::Number(values.collect()));
-    }
-
-    let summaries: Vec<IndexMap<String, Value>> =
-        rows.iter().map(|row| row.summary.as_ref().map_or_else(IndexMap::new, flatten)).collect();
-    let fields: IndexSet<&str> =
-        summaries.iter().flat_map(|summary| summary.keys().map(String::as_str)).collect();
-    for name in &fields {
-        // A summary's own flow rate would only repeat the parameter of that name.
-        if !table.columns.contains_key(*name) {
-            table
-                .push(*name, column(&summaries.iter().map(|summary| summary.get(*name)).collect::<Vec<_>>()));
-        }
-    }
-
-    let statistics: IndexSet<&str> =
-        rows.iter().flat_map(|row| row.biases.keys().map(String::as_str)).collect();
-    for name in statistics {
-        let values = rows.iter().map(|row| row.biases.get(name).copied().unwrap_or(f64::NAN));
-        table.push(Variant::Bias.of(name), Column::Number(values.collect()));
-    }
-
-    let errors = || rows.iter().map(|row| row.error.as_ref());
-    table
-        .with(
-            &columns::ERROR,
-            Column::Text(errors().map(|error| error.map(|error| error.reason.clone())).collect()),
-        )
-        .with(
-            &columns::ERROR_TIME,
-            Column::Number(errors().map(|error| error.and_then(|e| e.time).unwrap_or(f64::NAN)).collect()),
-        )
-        .with(
-            &columns::ERROR_NODE,
-            Column::Integer(errors().map(|error| error.and_then(|e| e.node).map(i64::from)).collect()),
-        )
+#[derive(Debug, Default)]
+pub struct PointsTable {
+    ordinals: Vec<Option<i64>>,
+    states: Vec<Option<String>>,
+    parameters: IndexMap<String, Vec<f64>>,
+    /// Columns of the summaries' fields, as far as these have a value; none where no point has one yet.
+    fields: IndexMap<String, Option<Column>>,
+    biases: IndexMap<String, Vec<f64>>,
+    errors: Vec<Option<String>>,
+    error_times: Vec<f64>,
+    error_nodes: Vec<Option<i64>>,
 }
 
-fn flatten(summary: &Map<String, Value>) -> IndexMap<String, Value> {
+impl PointsTable {
+    /// Adds the row of a point.
+    pub fn push(&mut self, point: PointSummary) {
+        let row = self.ordinals.len();
+        self.ordinals.push(Some(point.ordinal.into()));
+        self.states.push(Some(point.state.to_string()));
+        for (name, value) in point.parameters {
+            put(&mut self.parameters, name, row, value);
+        }
+        for (name, value) in point.summary.map(flatten).unwrap_or_default() {
+            put_field(self.fields.entry(name).or_default(), row, value);
+        }
+        for (name, value) in point.biases {
+            put(&mut self.biases, name, row, value);
+        }
+        self.error_times.push(point.error.as_ref().and_then(|error| error.time).unwrap_or(f64::NAN));
+        self.error_nodes.push(point.error.as_ref().and_then(|error| error.node).map(i64::from));
+        self.errors.push(point.error.map(|error| error.reason));
+    }
+
+    /// The names of the parameters so far.
+    pub fn parameters(&self) -> impl Iterator<Item = &str> {
+        self.parameters.keys().map(String::as_str)
+    }
+
+    /// The table of all rows.
+    pub fn finish(self) -> Table {
+        let rows = self.ordinals.len();
+        let mut table = Table::default()
+            .with(&columns::ORDINAL, Column::Integer(self.ordinals))
+            .with(&columns::STATE, Column::Text(self.states));
+        for (name, mut values) in self.parameters {
+            values.resize(rows, f64::NAN);
+            table.push(name, Column::Number(values));
+        }
+        for (name, column) in self.fields {
+            // A summary's own flow rate would only repeat the parameter of that name.
+            if !table.columns.contains_key(&name) {
+                let mut column = column.unwrap_or(Column::Number(Vec::new()));
+                fill(&mut column, rows);
+                table.push(name, column);
+            }
+        }
+        for (name, mut values) in self.biases {
+            values.resize(rows, f64::NAN);
+            table.push(Variant::Bias.of(&name), Column::Number(values));
+        }
+        table
+            .with(&columns::ERROR, Column::Text(self.errors))
+            .with(&columns::ERROR_TIME, Column::Number(self.error_times))
+            .with(&columns::ERROR_NODE, Column::Integer(self.error_nodes))
+    }
+}
+
+fn put(columns: &mut IndexMap<String, Vec<f64>>, name: String, row: usize, value: f64) {
+    let values = columns.entry(name).or_default();
+    values.resize(row, f64::NAN);
+    values.push(value);
+}
+
+/// Puts a value into its row of a column, which becomes the narrowest kind that holds all: whole numbers, numbers, texts.
+fn put_field(field: &mut Option<Column>, row: usize, value: Value) {
+    let column = match (&mut *field, &value) {
+        (_, Value::Null) => return,
+        (None, Value::Number(number)) if number.is_i64() => field.insert(Column::Integer(Vec::new())),
+        (None, Value::Number(_)) => field.insert(Column::Number(Vec::new())),
+        (None, _) => field.insert(Column::Text(Vec::new())),
+        (Some(column), Value::Number(number)) => {
+            if matches!(column, Column::Integer(_)) && !number.is_i64() {
+                *column = Column::Number(column.numbers().unwrap_or_default());
+            }
+            column
+        }
+        (Some(column), _) => {
+            *column = Column::Text(texts(column));
+            column
+        }
+    };
+    fill(column, row);
+    match column {
+        Column::Integer(values) => values.push(value.as_i64()),
+        Column::Number(values) => values.push(value.as_f64().unwrap_or(f64::NAN)),
+        Column::Single(values) => values.push(value.as_f64().unwrap_or(f64::NAN) as f32),
+        Column::Text(values) => values.push(Some(match value {
+            Value::String(text) => text,
+            other => other.to_string(),
+        })),
+    }
+}
+
+/// Missing values up to so many rows.
+fn fill(column: &mut Column, rows: usize) {
+    match column {
+        Column::Integer(values) => values.resize(rows, None),
+        Column::Number(values) => values.resize(rows, f64::NAN),
+        Column::Single(values) => values.resize(rows, f32::NAN),
+        Column::Text(values) => values.resize(rows, None),
+    }
+}
+
+/// The values as texts, numbers as JSON has them.
+fn texts(column: &mut Column) -> Vec<Option<String>> {
+    let number = |value: f64| value.is_finite().then(|| Value::from(value).to_string());
+    match column {
+        Column::Text(values) => std::mem::take(values),
+        Column::Integer(values) => values.iter().map(|value| value.map(|value| value.to_string())).collect(),
+        Column::Number(values) => values.iter().copied().map(number).collect(),
+        Column::Single(values) => values.iter().map(|value| number((*value).into())).collect(),
+    }
+}
+
+fn flatten(summary: Map<String, Value>) -> IndexMap<String, Value> {
     let mut fields = IndexMap::new();
     for (name, value) in summary {
         match value {
@@ -87,29 +166,11 @@ fn flatten(summary: &Map<String, Value>) -> IndexMap<String, Value> {
                 );
             }
             value => {
-                fields.insert(name.clone(), value.clone());
+                fields.insert(name, value);
             }
         }
     }
     fields
-}
-
-/// The narrowest kind of column that holds all values.
-fn column(values: &[Option<&Value>]) -> Column {
-    let given = || values.iter().flatten().filter(|value| !value.is_null());
-    if given().all(|value| value.is_i64()) && given().next().is_some() {
-        return Column::Integer(values.iter().map(|value| value.and_then(Value::as_i64)).collect());
-    }
-    if given().all(|value| value.is_number()) {
-        let number = |value: &Option<&Value>| value.and_then(Value::as_f64).unwrap_or(f64::NAN);
-        return Column::Number(values.iter().map(number).collect());
-    }
-    let text = |value: &Option<&Value>| match value {
-        None | Some(Value::Null) => None,
-        Some(Value::String(text)) => Some(text.clone()),
-        Some(other) => Some(other.to_string()),
-    };
-    Column::Text(values.iter().map(text).collect())
 }
 
 #[cfg(test)]
@@ -117,6 +178,40 @@ mod tests {
     use super::*;
     use crate::point::FailureClass;
     use serde_json::json;
+
+    fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
+        let mut table = PointsTable::default();
+        points.into_iter().for_each(|point| table.push(point));
+        table.finish()
+    }
+
+    #[test]
+    fn a_column_is_the_narrowest_kind_that_holds_all_its_values() {
+        let fields = [
+            json!({"whole": 1, "number": 1, "words": 2, "late": null, "text": true}),
+            json!({"whole": null, "number": 0.5, "words": "b", "text": [0.5]}),
+            json!({"number": 2, "words": 3, "late": 7, "nothing": null}),
+        ];
+        let points = fields.into_iter().zip(1..).map(|(summary, ordinal)| PointSummary {
+            ordinal,
+            state: PointState::Succeeded,
+            parameters: IndexMap::new(),
+            summary: summary.as_object().cloned(),
+            biases: IndexMap::new(),
+            error: None,
+        });
+        let table = table(points);
+        assert_eq!(table.columns["whole"], Column::Integer(vec![Some(1), None, None]));
+        assert_eq!(table.columns["number"], Column::Number(vec![1.0, 0.5, 2.0]));
+        let texts =
+            |values: [Option<&str>; 3]| Column::Text(values.map(|text| text.map(str::to_owned)).into());
+        assert_eq!(table.columns["words"], texts([Some("2"), Some("b"), Some("3")]));
+        assert_eq!(table.columns["text"], texts([Some("true"), Some("[0.5]"), None]));
+        assert_eq!(table.columns["late"], Column::Integer(vec![None, None, Some(7)]));
+        assert!(
+            matches!(&table.columns["nothing"], Column::Number(values) if values.iter().all(|v| v.is_nan()))
+        );
+    }
 
     #[test]
     fn points_without_a_result_have_null_where_others_have_a_value() {
@@ -145,7 +240,7 @@ mod tests {
                 details: Map::new(),
             }),
         };
-        let json = serde_json::to_value(points(&[done, failed])).unwrap();
+        let json = serde_json::to_value(table([done, failed])).unwrap();
         assert_eq!(
             json["columns"],
             json!({

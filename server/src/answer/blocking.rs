@@ -17,3 +17,17 @@ pub(crate) async fn blocking<T: Send + 'static>(
 ) -> Result<T> {
     tokio::task::spawn_blocking(work).await.map_err(|error| Error::internal(&error))?
 }
+
+/// Lowers the priority of threads that write large answers, so that short ones do not wait for them: as much as workers do.
+const NICENESS: i32 = 10;
+
+/// Starts what writes a large answer on a thread of its own, which gives way to the threads that answer short requests.
+pub(crate) fn beside(work: impl FnOnce() + Send + 'static) -> Result<()> {
+    let thread = std::thread::Builder::new().name("large-answer".to_owned());
+    let spawned = thread.spawn(|| {
+        // On Linux a thread has a niceness of its own. Without it the answer is written all the same.
+        let _ = rustix::process::nice(NICENESS);
+        work();
+    });
+    spawned.map(drop).map_err(|_| Error::unavailable("no further thread can be started"))
+}

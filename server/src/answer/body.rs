@@ -11,6 +11,7 @@ use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 use tokio::time::timeout;
 
+use crate::answer::blocking::beside;
 use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
 use crate::answer::stored::broken_off;
@@ -37,7 +38,7 @@ pub(crate) async fn send(
     let (sender, mut receiver) = mpsc::channel(WAITING_CHUNKS);
     let (head, heading) = oneshot::channel();
     let (span, handle) = (tracing::Span::current(), Handle::current());
-    tokio::task::spawn_blocking(move || {
+    beside(move || {
         let _entered = span.enter();
         let _held = held;
         let mut sink = Sink::new(sender, handle, Some(turns));
@@ -53,7 +54,7 @@ pub(crate) async fn send(
             Err(_) if sink.is_abandoned() => {}
             Err(error) => sink.fail(answer.problem(error)),
         }
-    });
+    })?;
     let ended = || Error::internal("the thread that writes an answer has ended");
     let first = receiver.recv().await.ok_or_else(ended)??;
     let head = heading.await.map_err(|_| ended())?;
@@ -152,6 +153,8 @@ impl Write for Sink {
             // The one who writes has been told; an archive that is dropped then writes its end, which goes nowhere.
             return Ok(bytes.len());
         }
+        // At once in full: a buffer that grows would leave holes of all sizes in memory.
+        self.buffer.reserve_exact(CHUNK - self.buffer.len());
         let count = bytes.len().min(CHUNK - self.buffer.len());
         self.buffer.extend_from_slice(&bytes[..count]);
         if self.buffer.len() == CHUNK {

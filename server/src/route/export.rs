@@ -5,9 +5,8 @@ use std::io::{self, Write};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::view::points;
 use drillsweep_api::{ExportManifest, MissingFile};
-use drillsweep_store::{Artifact, Store, WorkKey};
+use drillsweep_store::{Artifact, WorkKey};
 use drillsweep_table::csv;
 use serde::Deserialize;
 use tokio::runtime::Handle;
@@ -16,13 +15,14 @@ use utoipa::IntoParams;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
+use crate::answer::blocking::beside;
 use crate::answer::body::{self, Sink, WAITING_CHUNKS};
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::stored::Stored;
 use crate::app::App;
-use crate::route::verification::Verified;
+use crate::route::verification::{Verified, memory_of_points};
 
 /// Points whose files are looked up at once.
 const PAGE: i64 = 200;
@@ -58,12 +58,12 @@ pub(crate) async fn export(
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
     let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
+    let points = sweep.counts.total;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let place = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
-    let archive =
-        Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
-    tokio::task::spawn_blocking(move || {
+    let archive = Archive { app, id: id.clone(), points, wanted: query.artifacts, handle: Handle::current() };
+    beside(move || {
         let _place = place;
         let mut sink = Sink::new(sender, archive.handle.clone(), None);
         match archive.write(&mut sink, &sweep) {
@@ -72,7 +72,7 @@ pub(crate) async fn export(
             Err(_) if sink.is_abandoned() => {}
             Err(error) => sink.fail(Error::internal(&error)),
         }
-    });
+    })?;
     let body = body::body(None, receiver);
     let name = format!("attachment; filename=\"sweep-{id}.zip\"");
     let headers = [(header::CONTENT_TYPE, "application/zip".to_owned()), (header::CONTENT_DISPOSITION, name)];
@@ -83,8 +83,9 @@ type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
 
 /// An archive to be written by a thread that may wait.
 struct Archive {
-    store: Store,
+    app: App,
     id: String,
+    points: u64,
     wanted: Option<Vec<String>>,
     handle: Handle,
 }
@@ -95,11 +96,9 @@ impl Archive {
         let text = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
         zip.start_file("sweep.json", text)?;
         zip.write_all(sweep)?;
-        let records = self.handle.block_on(self.store.table_rows(&self.id)).map_err(io::Error::other)?;
-        let verified = self.handle.block_on(Verified::load(&self.store, &self.id)).map_err(failed)?;
+        let verified = self.handle.block_on(Verified::load(&self.app.store, &self.id)).map_err(failed)?;
         zip.start_file("table.csv", text.large_file(true))?;
-        let table = points::points(&verified.rows(&records).map_err(failed)?);
-        csv::write_to(&table, &mut zip).map_err(io::Error::other)?;
+        self.write_table(&verified, &mut zip)?;
         if !verified.points.is_empty() {
             zip.start_file("verification.csv", text)?;
             csv::write_to(&verified.table(), &mut zip).map_err(io::Error::other)?;
@@ -114,10 +113,17 @@ impl Archive {
         Ok(())
     }
 
+    fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
+        let memory = memory_of_points(&self.app, &self.id, self.points);
+        let _place = self.handle.block_on(memory).map_err(failed)?;
+        let table = verified.points(&self.app.store, &self.id, &self.handle).map_err(failed)?.finish();
+        csv::write_to(&table, zip).map_err(io::Error::other)
+    }
+
     fn write_points(&self, zip: &mut Zip<'_>, manifest: &mut ExportManifest) -> io::Result<()> {
         let mut after = 0;
         loop {
-            let page = self.store.point_artifacts(&self.id, after, PAGE);
+            let page = self.app.store.point_artifacts(&self.id, after, PAGE);
             let page = self.handle.block_on(page).map_err(io::Error::other)?;
             let Some((last, ..)) = page.last() else { return Ok(()) };
             after = *last;
@@ -146,7 +152,7 @@ impl Archive {
     /// A file that is there and whole: once it is begun in the archive it can no longer be left out.
     fn verified(&self, key: &WorkKey, artifact: &Artifact) -> Result<Stored> {
         let _runtime = self.handle.enter();
-        let stored = Stored::new(&self.store, key, artifact.clone())?;
+        let stored = Stored::new(&self.app.store, key, artifact.clone())?;
         self.handle.block_on(stored.verify())?;
         Ok(stored)
     }

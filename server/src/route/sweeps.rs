@@ -7,7 +7,6 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
-use drillsweep_api::view::points;
 use drillsweep_api::{
     AppendRequest, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails, ProblemKind,
     RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState, check_patch, expand,
@@ -20,6 +19,7 @@ use drillsweep_store::{
 };
 use jiff::Timestamp;
 use serde::Deserialize;
+use tokio::runtime::Handle;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
@@ -34,7 +34,7 @@ use crate::app::App;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
 use crate::route::status::WORKER_SILENCE;
-use crate::route::verification::{MEMORY_OF_POINT, Verified};
+use crate::route::verification::{Verified, memory_of_points};
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
@@ -745,19 +745,18 @@ pub(crate) async fn table(
     let spacing = spacing.unwrap_or_default().into();
     let view = chart::SweepView { spacing, slice: slice.unwrap_or_default() };
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
-    let place = app.view(sweep.counts.total.unsigned_abs() * MEMORY_OF_POINT).await?;
-    let records = app.store.table_rows(&id).await?;
+    let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
+    let runtime = Handle::current();
     place
         .answer(move || {
-            let rows = verified.rows(&records)?;
-            drop(records);
-            let mut table = points::points(&rows);
+            let points = verified.points(&app.store, &id, &runtime)?;
+            let parameters = points.parameters().map(str::to_owned).collect();
+            let mut table = points.finish();
             let findings = &verified.findings;
             if !findings.warnings.is_empty() {
                 table = table.attribute("warnings", findings.warnings.clone());
             }
-            let parameters = rows.iter().flat_map(|row| row.parameters.keys().cloned()).collect();
             let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
             Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), |table| {
                 chart::sweep(table, &parameters, fields, findings, title, &view)

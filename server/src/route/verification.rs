@@ -6,9 +6,10 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::promise_of_scenario;
-use drillsweep_api::view::points::PointSummary;
+use drillsweep_api::view::points::{PointSummary, PointsTable};
 use drillsweep_api::view::verification::{self, Findings, VerifiedPoint};
-use drillsweep_store::{Store, TableRecord};
+use drillsweep_store::{Store, WorkState};
+use tokio::runtime::Handle;
 
 use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, Problems, TableResponse};
@@ -17,10 +18,22 @@ use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Format};
 use crate::answer::records;
 use crate::app::App;
+use crate::app::lane::Place;
 use crate::route::results::TableQuery;
 
-/// Bytes of memory that a point takes on its way into a table of its sweep.
-pub(crate) const MEMORY_OF_POINT: u64 = 4 << 10;
+/// Bytes of memory that a point takes in a table of its sweep, besides its summary.
+const MEMORY_OF_POINT: u64 = 256;
+
+/// Takes the memory for a table of a sweep of so many points. A summary's field takes eight bytes in a column, twice that while the column
+/// grows, where its name and value take at least forty in the summary's JSON; one point stands for all.
+pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result<Place> {
+    let one = app.store.points(id, &[WorkState::Done], 0, 1).await?;
+    let summary = one.first().and_then(|point| point.summary_json.as_deref()).map_or(0, str::len) as u64;
+    app.view(points.saturating_mul(MEMORY_OF_POINT + summary * 2 / 5)).await
+}
+
+/// Points of a sweep's table that are read at once.
+const PAGE: i64 = 500;
 
 /// The points of a sweep that are verified, and what they show.
 #[derive(Default)]
@@ -46,16 +59,22 @@ impl Verified {
         .await
     }
 
-    /// The rows of the sweep's table, with the biases of the points that are verified.
-    pub(crate) fn rows(&self, records: &[TableRecord]) -> Result<Vec<PointSummary>> {
-        let by_ordinal: HashMap<u32, &VerifiedPoint> =
-            self.points.iter().map(|point| (point.ordinal, point)).collect();
-        let row = |record| {
-            let row = records::point_summary(record)?;
-            let biases = by_ordinal.get(&row.ordinal).map(|point| point.biases()).unwrap_or_default();
-            Ok(PointSummary { biases, ..row })
-        };
-        records.iter().map(row).collect()
+    /// The sweep's table, with the biases of the points that are verified. It is read in pages, each as it is at that moment; for a thread
+    /// that may wait.
+    pub(crate) fn points(&self, store: &Store, id: &str, runtime: &Handle) -> Result<PointsTable> {
+        let by_ordinal: HashMap<i64, &VerifiedPoint> =
+            self.points.iter().map(|point| (point.ordinal.into(), point)).collect();
+        let mut table = PointsTable::default();
+        let mut after = 0;
+        loop {
+            let page = runtime.block_on(store.table_rows(id, after, PAGE))?;
+            let Some(last) = page.last() else { return Ok(table) };
+            after = last.ordinal;
+            for record in &page {
+                let biases = by_ordinal.get(&record.ordinal).map(|point| point.biases()).unwrap_or_default();
+                table.push(PointSummary { biases, ..records::point_summary(record)? });
+            }
+        }
     }
 
     /// The table of the verified points.
@@ -91,7 +110,7 @@ pub(crate) async fn show(
         return Err(records::no_such_sweep(&id));
     }
     let verified = Verified::load(&app.store, &id).await?;
-    let place = app.view(verified.points.len() as u64 * MEMORY_OF_POINT).await?;
+    let place = memory_of_points(&app, &id, verified.points.len() as u64).await?;
     place
         .answer(move || {
             let name = format!("sweep-{id}-verification");

@@ -28,7 +28,7 @@ const JOURNAL_SIZE_LIMIT: &str = "67108864";
 
 /// Pages that a connection keeps, in KiB (hence the sign). A large submission touches the indexes of keys, which are hashes, all
 /// over: with SQLite's 2 MB it would read and write the same pages again and again.
-const SERVER_CACHE: &str = "-65536";
+const SERVER_CACHE: &str = "-16384";
 
 /// The same for a worker, which handles a point at a time.
 const WORKER_CACHE: &str = "-8192";

@@ -54,7 +54,7 @@ pub(crate) async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table
     assert_eq!(blob, key(1).as_slice());
     assert_eq!(store.artifacts(&key(2)).await.unwrap(), []);
 
-    let rows = store.table_rows("s").await.unwrap();
+    let rows = store.table_rows("s", 0, 100).await.unwrap();
     assert_eq!(rows.len(), 2);
     assert_eq!((rows[0].ordinal, rows[0].state), (1, WorkState::Done));
     assert_eq!(rows[0].summary_json.as_deref(), Some(r#"{"by":"w"}"#));

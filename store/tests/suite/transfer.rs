@@ -50,7 +50,12 @@ async fn a_store_goes_to_a_server_and_a_bucket_and_comes_back_as_it_was() {
         let [before, after] = [&before, &after].map(async |store: &Store| {
             let points = store.points(id, &[], 0, 100).await.unwrap();
             let runs = store.verifications(id).await.unwrap();
-            (points, runs, store.events(id, 0, 1_000).await.unwrap(), store.table_rows(id).await.unwrap())
+            (
+                points,
+                runs,
+                store.events(id, 0, 1_000).await.unwrap(),
+                store.table_rows(id, 0, 100).await.unwrap(),
+            )
         });
         assert_eq!(after.await, before.await, "{id}");
     }

@@ -25,8 +25,10 @@ const NICENESS: i32 = 10;
 pub(crate) fn beside(work: impl FnOnce() + Send + 'static) -> Result<()> {
     let thread = std::thread::Builder::new().name("large-answer".to_owned());
     let spawned = thread.spawn(|| {
-        // On Linux a thread has a niceness of its own. Without it the answer is written all the same.
-        let _ = rustix::process::nice(NICENESS);
+        // Only Linux gives a thread a niceness of its own; elsewhere it is that of the process. The answer is written without it, too.
+        if cfg!(target_os = "linux") {
+            let _ = rustix::process::nice(NICENESS);
+        }
         work();
     });
     spawned.map(drop).map_err(|_| Error::unavailable("no further thread can be started"))

@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ExportManifest, MissingFile};
-use drillsweep_store::{Artifact, WorkKey};
+use drillsweep_store::{Artifact, Store, WorkKey};
 use drillsweep_table::csv;
 use serde::Deserialize;
 use tokio::runtime::Handle;
@@ -22,6 +22,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::stored::Stored;
 use crate::app::App;
+use crate::app::lane::Place;
 use crate::route::verification::{Verified, memory_of_points};
 
 /// Points whose files are looked up at once.
@@ -58,15 +59,17 @@ pub(crate) async fn export(
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
     let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
-    let points = sweep.counts.total;
+    // Before there is an answer, which could only break off where there is no memory for the table.
+    let memory = memory_of_points(&app, &id, sweep.counts.total).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let place = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
-    let archive = Archive { app, id: id.clone(), points, wanted: query.artifacts, handle: Handle::current() };
+    let archive =
+        Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
     beside(move || {
         let _place = place;
         let mut sink = Sink::new(sender, archive.handle.clone(), None);
-        match archive.write(&mut sink, &sweep) {
+        match archive.write(&mut sink, &sweep, memory) {
             Ok(()) => sink.finish(),
             // A client that has gone away needs no word in the log.
             Err(_) if sink.is_abandoned() => {}
@@ -83,22 +86,23 @@ type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
 
 /// An archive to be written by a thread that may wait.
 struct Archive {
-    app: App,
+    store: Store,
     id: String,
-    points: u64,
     wanted: Option<Vec<String>>,
     handle: Handle,
 }
 
 impl Archive {
-    fn write(&self, sink: &mut Sink, sweep: &[u8]) -> io::Result<()> {
+    /// Writes all of it; the memory for the table is given back when that is written.
+    fn write(&self, sink: &mut Sink, sweep: &[u8], memory: Place) -> io::Result<()> {
         let mut zip = ZipWriter::new_stream(&mut *sink);
         let text = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
         zip.start_file("sweep.json", text)?;
         zip.write_all(sweep)?;
-        let verified = self.handle.block_on(Verified::load(&self.app.store, &self.id)).map_err(failed)?;
+        let verified = self.handle.block_on(Verified::load(&self.store, &self.id)).map_err(failed)?;
         zip.start_file("table.csv", text.large_file(true))?;
         self.write_table(&verified, &mut zip)?;
+        drop(memory);
         if !verified.points.is_empty() {
             zip.start_file("verification.csv", text)?;
             csv::write_to(&verified.table(), &mut zip).map_err(io::Error::other)?;
@@ -114,16 +118,14 @@ impl Archive {
     }
 
     fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
-        let memory = memory_of_points(&self.app, &self.id, self.points);
-        let _place = self.handle.block_on(memory).map_err(failed)?;
-        let table = verified.points(&self.app.store, &self.id, &self.handle).map_err(failed)?.finish();
+        let table = verified.points(&self.store, &self.id, &self.handle).map_err(failed)?.finish();
         csv::write_to(&table, zip).map_err(io::Error::other)
     }
 
     fn write_points(&self, zip: &mut Zip<'_>, manifest: &mut ExportManifest) -> io::Result<()> {
         let mut after = 0;
         loop {
-            let page = self.app.store.point_artifacts(&self.id, after, PAGE);
+            let page = self.store.point_artifacts(&self.id, after, PAGE);
             let page = self.handle.block_on(page).map_err(io::Error::other)?;
             let Some((last, ..)) = page.last() else { return Ok(()) };
             after = *last;
@@ -152,7 +154,7 @@ impl Archive {
     /// A file that is there and whole: once it is begun in the archive it can no longer be left out.
     fn verified(&self, key: &WorkKey, artifact: &Artifact) -> Result<Stored> {
         let _runtime = self.handle.enter();
-        let stored = Stored::new(&self.app.store, key, artifact.clone())?;
+        let stored = Stored::new(&self.store, key, artifact.clone())?;
         self.handle.block_on(stored.verify())?;
         Ok(stored)
     }

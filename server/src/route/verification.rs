@@ -68,13 +68,18 @@ impl Verified {
         let mut after = 0;
         loop {
             let page = runtime.block_on(store.table_rows(id, after, PAGE))?;
-            let Some(last) = page.last() else { return Ok(table) };
+            let Some(last) = page.last() else { break };
             after = last.ordinal;
             for record in &page {
                 let biases = by_ordinal.get(&record.ordinal).map(|point| point.biases()).unwrap_or_default();
                 table.push(PointSummary { biases, ..records::point_summary(record)? });
             }
         }
+        // A sweep that is deleted between two pages has no further ones: what there is of it is not its table.
+        if runtime.block_on(store.sweep_version(id))?.is_none() {
+            return Err(records::no_such_sweep(id));
+        }
+        Ok(table)
     }
 
     /// The table of the verified points.
@@ -117,4 +122,25 @@ pub(crate) async fn show(
             Answer::of_table(verified.table(), fields.as_deref(), format, &name)
         })
         .await
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_store::{Role, StoreConfig};
+
+    use crate::answer::error::Error;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn what_is_left_of_a_deleted_sweep_is_no_table() {
+        let directory = tempfile::tempdir().expect("a temporary directory");
+        let config = StoreConfig::in_directory(directory.path(), Role::Server);
+        let store = Store::open(&config).await.expect("a store");
+        let runtime = Handle::current();
+        // As the page after the deletion finds it.
+        let read = move || Verified::default().points(&store, "deleted", &runtime).map(|_| ());
+        let problem = blocking(read).await.map_err(Error::into_problem).expect_err("no table");
+        assert_eq!(problem.status, 404);
+    }
 }

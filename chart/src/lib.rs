@@ -5,14 +5,22 @@
 //! on a page and written by [`picture`], which knows nothing of tables.
 
 mod cost;
+mod history;
+mod orbit;
 pub mod picture;
-mod table;
+mod profile;
+mod shown;
+mod spectrum;
+mod sweep;
 
 pub use cost::work_precision;
+pub use history::{Place, history, shown_of_history};
+pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};
-pub use table::{
-    Hole, Place, SweepView, caption, history, orbit, profile, shown_of_history, spectrum, sweep,
-};
+pub use profile::profile;
+pub use shown::caption;
+pub use spectrum::spectrum;
+pub use sweep::{SweepView, sweep};
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

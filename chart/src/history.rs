@@ -1,0 +1,234 @@
+//! The picture of motion over time.
+
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::{Name, Quantity, Variant, units};
+use drillsweep_table::{Column, Table};
+
+use crate::picture::{Drawing, Line, LinePlot};
+use crate::shown::{Shown, node_of, numbers, shown_in, with_unit, words};
+
+/// The columns of a history that its picture shows, out of its `layout`: the time, and u and v, and rotation speed and torque of the lowest
+/// node, or the `fields` that are given.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, Box<ProblemDetails>> {
+    let rotation =
+        ROTATION.iter().filter(|_| fields.is_none()).filter_map(|quantity| lowest(layout, quantity));
+    let lines = lines_of_history(layout, fields).into_iter().chain(rotation);
+    let mut names: Vec<String> = lines.map(str::to_owned).collect();
+    names.push(TIME.name.to_owned());
+    layout.select(&names).map_err(|missing| Box::new(ProblemDetails::no_such_column(layout, &missing)))
+}
+
+/// Where a recorded node lies, for the legend of its history.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// Number of the node, 1 at the top.
+    pub node: u32,
+    /// Measured depth \[m\].
+    pub measured_depth: f64,
+    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    pub low_side: Option<f64>,
+}
+
+/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, the
+/// rotation speed and the torque of the lowest node stand below. The legend says of each line where its node lies and which way the motion goes, for
+/// nodes that are among the `places`.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn history(
+    table: &Table,
+    fields: Option<&[String]>,
+    places: &[Place],
+    title: &str,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let names = lines_of_history(table, fields);
+    let shown = Shown::of(table, &names)?;
+    let y_label = shown.label();
+    let mut drawing = over_time(table, shown, &y_label, places, [title, &node_of(table)])?;
+    if fields.is_some() {
+        return Ok(drawing);
+    }
+    for quantity in ROTATION {
+        let Some(name) = lowest(table, quantity).filter(|name| varies(table, name)) else { continue };
+        // Drillers read rotation speeds in rpm.
+        let unit = match quantity.units {
+            Some(units) if *units == units::ANGULAR_SPEED => Some(units.field),
+            _ => shown_in(name),
+        };
+        let shown = Shown::within(table, &[name], unit)?;
+        let y_label = match unit {
+            Some(unit) => format!("{} [{}]", quantity.label, unit.symbol),
+            None => quantity.label.to_owned(),
+        };
+        drawing = drawing.above(over_time(table, shown, &y_label, places, ["", ""])?);
+    }
+    Ok(drawing)
+}
+
+/// What stands below the lateral motion of a string that twists.
+const ROTATION: [&Quantity; 2] = [&ROTATION_SPEED, &TORQUE];
+
+fn over_time(
+    table: &Table,
+    shown: Shown,
+    y_label: &str,
+    places: &[Place],
+    [title, subtitle]: [&str; 2],
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let time = numbers(table, TIME.name)?;
+    let line = |(name, values): (&str, Vec<f64>)| Line {
+        name: at_place(name, places),
+        points: time.iter().zip(values).map(|(time, value)| [*time, value]).collect(),
+        is_marked: false,
+    };
+    let plot = LinePlot {
+        title: title.to_owned(),
+        subtitle: subtitle.to_owned(),
+        x_label: with_unit(TIME.name),
+        y_label: y_label.to_owned(),
+        lines: shown.columns.into_iter().map(line).collect(),
+        ..LinePlot::default()
+    };
+    Ok(plot.drawing())
+}
+
+/// The column of a quantity of the lowest node that has one.
+fn lowest<'t>(table: &'t Table, quantity: &Quantity) -> Option<&'t str> {
+    let columns = table.columns.keys().filter_map(|name| {
+        let parsed = Name::parse(name)?;
+        (parsed.quantity == quantity && parsed.variant == Variant::Value).then_some((parsed.node?, name))
+    });
+    columns.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
+}
+
+/// Whether the numbers of a column are not all the same.
+fn varies(table: &Table, name: &str) -> bool {
+    let values = table.columns.get(name).and_then(Column::numbers);
+    values.is_some_and(|values| values.iter().any(|value| *value != values[0]))
+}
+
+/// What a column of a node is, where the node lies, and which way it moves.
+fn at_place(name: &str, places: &[Place]) -> String {
+    let Some(parsed) = Name::parse(name) else { return words(name) };
+    let Some(place) = places.iter().find(|place| Some(place.node as usize) == parsed.node) else {
+        return words(name);
+    };
+    let what = parsed.quantity.label;
+    let direction = direction(parsed.quantity, place.low_side);
+    format!("{what} at {} m MD{direction}", grouped(place.measured_depth))
+}
+
+/// Which way a lateral displacement or speed counts, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
+/// e1 on the low side e2 is on the left.
+fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
+    /// Directions this near to one that has a name bear it \[deg\].
+    const NEAR: f64 = 1.0;
+    let own = match quantity {
+        quantity if quantity == &U || quantity == &U_RATE => 0.0,
+        quantity if quantity == &V || quantity == &V_RATE => 90.0,
+        quantity if quantity == &W || quantity == &W_RATE => return ", axial, downhole".to_owned(),
+        _ => return String::new(),
+    };
+    let Some(low_side) = low_side else {
+        return format!(", lateral, along {}", if own == 0.0 { "e1" } else { "e2" });
+    };
+    // From the low side to the left, within half a turn either way.
+    let angle = (own - low_side.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    let towards = match angle.abs() {
+        off if off < NEAR => "to the low side".to_owned(),
+        off if off > 180.0 - NEAR => "to the high side".to_owned(),
+        off => {
+            let side = if angle > 0.0 { "left" } else { "right" };
+            if (off - 90.0).abs() < NEAR {
+                format!("to the {side}")
+            } else {
+                format!("{off:.0}° {side} of the low side")
+            }
+        }
+    };
+    format!(", lateral, {towards}")
+}
+
+/// A depth in metres to the decimetre, whole ones from 1000 m on with their thousands apart.
+fn grouped(depth: f64) -> String {
+    let whole = depth.round() as i64;
+    if whole >= 1000 { format!("{} {:03}", whole / 1000, whole % 1000) } else { format!("{depth:.1}") }
+}
+
+fn lines_of_history<'t>(table: &'t Table, fields: Option<&'t [String]>) -> Vec<&'t str> {
+    let is_lateral =
+        |name: &&str| Name::parse(name).is_some_and(|name| name.quantity == &U || name.quantity == &V);
+    match fields {
+        Some(fields) => fields.iter().map(String::as_str).collect(),
+        None => table.columns.keys().map(String::as_str).filter(is_lateral).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+
+    fn column(values: &[f64]) -> Column {
+        Column::Number(values.to_vec())
+    }
+
+    #[test]
+    fn legends_say_where_a_node_is_and_which_way_it_moves() {
+        let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
+        let label = |name, low_side: Option<f64>| at_place(name, &place(low_side.map(f64::to_radians)));
+        // Seen down the hole with the low side down, a turn from u to v is clockwise: from down to the left.
+        for (name, low_side, words) in [
+            ("u_10", Some(0.0), "u at 3 412 m MD, lateral, to the low side"),
+            ("u_10", Some(180.0), "u at 3 412 m MD, lateral, to the high side"),
+            ("v_10", Some(0.0), "v at 3 412 m MD, lateral, to the left"),
+            ("v_10", Some(90.0), "v at 3 412 m MD, lateral, to the low side"),
+            ("u_10", Some(90.0), "u at 3 412 m MD, lateral, to the right"),
+            ("v_10", Some(-120.0), "v at 3 412 m MD, lateral, 150° right of the low side"),
+            ("u_10", None, "u at 3 412 m MD, lateral, along e1"),
+            ("w_10", Some(0.0), "w at 3 412 m MD, axial, downhole"),
+            ("u_11", Some(0.0), "u 11"),
+        ] {
+            assert_eq!(label(name, low_side), words);
+        }
+        assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
+    }
+
+    #[test]
+    fn a_history_of_a_string_that_twists_shows_rotation_speed_and_torque_of_its_lowest_node() {
+        let table = |speed: f64, torque: f64| {
+            Table::default()
+                .with("time", column(&[0.0, 1.0]))
+                .with("u_10", column(&[0.0, 1e-3]))
+                .with("rotation_speed_10", column(&[12.0, 12.0]))
+                .with("torque_10", column(&[5.0, 6.0]))
+                .with("rotation_speed_49", column(&[0.0, speed]))
+                .with("torque_49", column(&[-1e3, torque]))
+        };
+        let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
+        let picture = |table: &Table| history(table, None, &places, "").unwrap();
+        let still = picture(&table(0.0, -1e3));
+        let torque_alone = picture(&table(0.0, -4e3));
+        let twisting = picture(&table(60.0 * std::f64::consts::TAU / 60.0, -4e3));
+        assert!(!still.svg().contains("torque") && !still.svg().contains("speed"));
+        assert!(torque_alone.svg().contains(">torque [kN m]<") && !torque_alone.svg().contains("speed"));
+        assert!(torque_alone.height() > 1.8 * still.height() && twisting.height() > 2.7 * still.height());
+        let svg = twisting.svg();
+        assert!(
+            svg.contains("rotation speed at 200.0 m MD") && svg.contains(">rotation speed [rpm]<"),
+            "{svg}"
+        );
+        // Once around a second is 60 rpm.
+        assert!(svg.contains(">60<") && svg.contains(">−4<") && twisting.png(400).is_ok(), "{svg}");
+        let layout = table(1.0, 1.0);
+        let shown = shown_of_history(&layout, None).unwrap();
+        let names: Vec<_> = shown.columns.keys().map(String::as_str).collect();
+        assert_eq!(names, ["u_10", "rotation_speed_49", "torque_49", "time"]);
+        let chosen = history(&layout, Some(&["u_10".to_owned()]), &places, "").unwrap();
+        assert!(!chosen.svg().contains("torque"));
+    }
+}

@@ -1,0 +1,46 @@
+//! The picture of a node's path across its hole.
+
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_table::Table;
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::units;
+
+use crate::picture::{Drawing, OrbitPlot};
+use crate::shown::{node_of, numbers, width};
+
+/// Where and how the hole stands about a node, for the picture of its orbit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hole {
+    /// The radius at which the string touches the wall \[m\].
+    pub clearance: Option<f64>,
+    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    pub low_side: Option<f64>,
+}
+
+/// The path of a node across its hole: the whole hole, or with `zoom` the motion alone with the hole as an inset; unless that is said,
+/// the motion alone where it is below a tenth of the hole.
+///
+/// # Errors
+/// When the table is not an orbit.
+pub fn orbit(
+    table: &Table,
+    hole: &Hole,
+    title: &str,
+    zoom: Option<bool>,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
+    let window = match (time.first(), time.last()) {
+        (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
+        _ => String::new(),
+    };
+    let plot = OrbitPlot {
+        title: title.to_owned(),
+        subtitle: format!("{}{window}; the mark is the end", node_of(table)),
+        path: u.iter().zip(v).map(|(u, v)| [width(*u), width(v)]).collect(),
+        wall: hole.clearance.map(width),
+        low_side: hole.low_side,
+        unit: units::WIDTH.shown.symbol.to_owned(),
+        zoom,
+    };
+    Ok(plot.drawing())
+}

@@ -1,0 +1,79 @@
+//! The picture of values along the string.
+
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_table::Table;
+use drillsweep_table::quantity::columns::*;
+
+use crate::picture::{Drawing, Line, LinePlot, VerticalAxis};
+use crate::shown::{Shown, numbers, with_unit, words};
+
+/// Values along the string, depth downwards: C_f, or the first of the `fields` that are given.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them.
+pub fn profile(
+    table: &Table,
+    fields: Option<&[String]>,
+    title: &str,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
+        FRICTION_COEFFICIENT.name
+    } else {
+        ECCENTRICITY.name
+    };
+    let names: Vec<&str> = match fields {
+        Some(fields) => fields.iter().map(String::as_str).collect(),
+        None => vec![fallback],
+    };
+    let (top, bottom) =
+        (numbers(table, MEASURED_DEPTH_TOP.name)?, numbers(table, MEASURED_DEPTH_BOTTOM.name)?);
+    let shown = Shown::of(table, &names)?;
+    let line = |(name, values): (&str, Vec<f64>)| Line {
+        name: words(name),
+        // A value holds for its whole element.
+        points: values
+            .iter()
+            .enumerate()
+            .flat_map(|(e, value)| [[*value, top[e]], [*value, bottom[e]]])
+            .collect(),
+        is_marked: false,
+    };
+    let plot = LinePlot {
+        title: title.to_owned(),
+        x_label: shown.label(),
+        y_label: with_unit(MEASURED_DEPTH.name),
+        lines: shown.columns.into_iter().map(line).collect(),
+        vertical: VerticalAxis::Depth,
+        ..LinePlot::default()
+    };
+    Ok(plot.drawing())
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_table::Column;
+
+    use super::*;
+
+    fn column(values: &[f64]) -> Column {
+        Column::Number(values.to_vec())
+    }
+
+    #[test]
+    fn columns_of_one_picture_have_one_unit_and_exist() {
+        let table = Table::default()
+            .with("measured_depth_top", column(&[0.0, 10.0]))
+            .with("measured_depth_bottom", column(&[10.0, 20.0]))
+            .with("friction_coefficient", column(&[0.01, 0.02]))
+            .with("torque", column(&[9940.0, 5219.0]))
+            .with("regime", Column::Text(vec![None, None]));
+        let svg = profile(&table, None, "C_f").unwrap().svg();
+        assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
+        assert!(profile(&table, Some(&["torque".to_owned()]), "").unwrap().svg().contains("torque [kN m]"));
+        for fields in [&["torque", "friction_coefficient"][..], &["nothing"], &["regime"]] {
+            let fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
+            let problem = profile(&table, Some(&fields), "").unwrap_err();
+            assert_eq!((problem.status, problem.errors[0].parameter.as_deref()), (400, Some("fields")));
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Columns of a table in the words and units in which engineers read them.
+
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_table::Table;
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::{self, Name, Quantity, Unit, units};
+use indexmap::IndexMap;
+use serde_json::Value;
+
+use crate::picture::axis::three_digits;
+
+/// Columns that are shown on one axis, in its unit.
+pub(crate) struct Shown<'t> {
+    pub(crate) columns: Vec<(&'t str, Vec<f64>)>,
+    unit: Option<Unit>,
+}
+
+impl<'t> Shown<'t> {
+    /// The numeric columns of these names; they must have one unit.
+    pub(crate) fn of(table: &'t Table, names: &[&str]) -> Result<Self, Box<ProblemDetails>> {
+        Self::within(table, names, names.first().and_then(|name| shown_in(name)))
+    }
+
+    /// The same in a unit of one's own.
+    pub(crate) fn within(
+        table: &'t Table,
+        names: &[&str],
+        unit: Option<Unit>,
+    ) -> Result<Self, Box<ProblemDetails>> {
+        let mut columns = Vec::new();
+        for name in names {
+            let Some((name, _)) = table.columns.get_key_value(*name) else {
+                return Err(ProblemDetails::no_such_column(table, name).into());
+            };
+            if names.first().is_some_and(|first| quantity::unit(first) != quantity::unit(name)) {
+                let detail =
+                    format!("the columns of a picture must have one unit; {name} has another than the first");
+                return Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into());
+            }
+            columns.push((name.as_str(), numbers(table, name)?));
+        }
+        if let Some(unit) = unit {
+            for value in columns.iter_mut().flat_map(|(_, values)| values) {
+                *value = unit.of(*value);
+            }
+        }
+        Ok(Shown { columns, unit })
+    }
+
+    /// What stands at the axis.
+    pub(crate) fn label(&self) -> String {
+        let name = match self.columns.as_slice() {
+            [(only, _)] => words(only),
+            several => common_words(several.iter().map(|(name, _)| *name)),
+        };
+        match self.unit {
+            Some(unit) => format!("{name} [{}]", unit.symbol),
+            None => name,
+        }
+    }
+}
+
+/// The unit in which engineers read a column; none of ratios and numbers of things.
+pub(crate) fn shown_in(name: &str) -> Option<Unit> {
+    Name::parse(name)?.units().filter(|units| *units != &units::RATIO).map(|units| units.shown)
+}
+
+/// A value of a column in the unit in which it is shown.
+pub(crate) fn amount(name: &str, value: f64) -> String {
+    match shown_in(name) {
+        Some(unit) => format!("{} {}", three_digits(unit.of(value)), unit.symbol),
+        None => three_digits(value),
+    }
+}
+
+/// What columns have in common: their quantity, or else its dimension.
+fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let quantities: Vec<&Quantity> = names.filter_map(quantity::of).collect();
+    match quantities.as_slice() {
+        [] => String::new(),
+        [first, rest @ ..] if rest.iter().all(|other| other == first) => first.label.to_owned(),
+        [first, ..] if first.units == Some(&units::WIDTH) => "displacement".to_owned(),
+        [first, ..] => first.units.map_or("value", |units| units.dimension).to_owned(),
+    }
+}
+
+/// A length across the hole in the unit in which it is shown.
+pub(crate) fn width(value: f64) -> f64 {
+    units::WIDTH.shown.of(value)
+}
+
+/// A column's name in words; of a part of a list with which part it is.
+pub(crate) fn words(name: &str) -> String {
+    let label = Name::parse(name).map_or_else(|| name.replace('_', " "), |name| name.to_string());
+    match name.rfind(']') {
+        Some(end) => format!("{label} of {}", &name[..=end]),
+        None => label,
+    }
+}
+
+pub(crate) fn with_unit(name: &str) -> String {
+    match shown_in(name) {
+        Some(unit) => format!("{} [{}]", words(name), unit.symbol),
+        None => words(name),
+    }
+}
+
+/// The values of an axis, in the unit in which it is shown.
+pub(crate) fn axis(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
+    let values = numbers(table, name)?;
+    let unit = shown_in(name);
+    Ok(values.into_iter().map(|value| unit.map_or(value, |unit| unit.of(value))).collect())
+}
+
+/// The node that a table is of.
+pub(crate) fn node_of(table: &Table) -> String {
+    let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
+    match (attribute(NODE.name), attribute(MEASURED_DEPTH.name)) {
+        (Some(node), Some(depth)) => format!("node {node} at {depth:.2} m"),
+        _ => String::new(),
+    }
+}
+
+/// The values of a numeric column; missing ones are not finite.
+pub(crate) fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
+    match table.columns.get(name) {
+        Some(column) => column.numbers().ok_or_else(|| {
+            let detail = "is a column of texts, which a picture cannot show";
+            ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
+        }),
+        None => Err(ProblemDetails::no_such_column(table, name).into()),
+    }
+}
+
+/// The title of a picture: what it shows, and at which parameters.
+pub fn caption(what: &str, parameters: &IndexMap<String, f64>) -> String {
+    let value = |(name, value): (&String, &f64)| format!(", {} {}", words(name), amount(name, *value));
+    let values: String = parameters.iter().map(value).collect();
+    format!("{what}{values}")
+}

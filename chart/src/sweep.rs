@@ -1,0 +1,359 @@
+//! The picture of a sweep's table: lines over one parameter, or a map over two.
+
+use drillsweep_api::problem::ProblemDetails;
+use drillsweep_api::view::verification::{Findings, is_bias_column};
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::{Column, Table};
+use indexmap::{IndexMap, IndexSet};
+
+use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
+use crate::shown::{Shown, amount, axis, numbers, with_unit, words};
+
+/// What of a sweep is shown, and how.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SweepView {
+    /// How the values of parameters are placed on a map.
+    pub spacing: Spacing,
+    /// Parameters that are held, with their values in the units of the table.
+    pub slice: Vec<(String, f64)>,
+}
+
+/// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
+/// over two a map. Over more, a map over the first two that the view's slice does not hold; further ones are held at the first value that
+/// they have, and the picture says so. Those of a design that is no grid cannot be held: all points are shown, which it says as
+/// well. Texts have a colour each, the most frequent eight or, with others, seven. Points that are verified are marked on a map, and
+/// what that shows stands below the title.
+///
+/// # Errors
+/// A problem that names the columns there are, where a field is none of them, or none is given; or the values that there are, where
+/// the slice is at none of them.
+pub fn sweep(
+    table: &Table,
+    parameters: &IndexSet<String>,
+    fields: Option<&[String]>,
+    findings: &Findings,
+    title: &str,
+    view: &SweepView,
+) -> Result<Drawing, Box<ProblemDetails>> {
+    let fields = fields.unwrap_or_default();
+    let Some(first) = fields.first() else {
+        let detail = format!(
+            "a picture needs the column that it shows; there are {}",
+            numeric(table).filter(|name| !parameters.contains(*name)).collect::<Vec<_>>().join(", ")
+        );
+        return Err(ProblemDetails::invalid_parameter("fields", None, detail).into());
+    };
+    let Slice { rows, axes, notes } = Slice::of(table, parameters, &view.slice)?;
+    let x = axes.first().copied().unwrap_or(ORDINAL.name);
+    let pick = |values: Vec<f64>| -> Vec<f64> { rows.iter().map(|row| values[*row]).collect() };
+    let xs = pick(axis(table, x)?);
+    let texts = match table.columns.get(first) {
+        Some(Column::Text(texts)) => Some(texts),
+        _ => None,
+    };
+    let verified = findings.caption(first);
+    if axes.len() < 2 && texts.is_none() {
+        let names: Vec<&str> = fields.iter().map(String::as_str).collect();
+        let shown = Shown::of(table, &names)?;
+        let y_label = shown.label();
+        let line = |(name, values): (&str, Vec<f64>)| {
+            let mut points: Vec<[f64; 2]> =
+                xs.iter().zip(pick(values)).map(|(x, value)| [*x, value]).collect();
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Line { name: words(name), points, is_marked: true }
+        };
+        let plot = LinePlot {
+            title: title.to_owned(),
+            subtitle: notes.into_iter().chain(verified).collect::<Vec<_>>().join("; "),
+            x_label: with_unit(x),
+            y_label,
+            lines: shown.columns.into_iter().map(line).collect(),
+            ..LinePlot::default()
+        };
+        return Ok(plot.drawing());
+    }
+    let ys = match axes.get(1) {
+        Some(y) => pick(axis(table, y)?),
+        None => vec![0.0; rows.len()],
+    };
+    let (kinds, values, value_label) = match texts {
+        Some(texts) => {
+            let texts: Vec<Option<&str>> = rows.iter().map(|row| texts[*row].as_deref()).collect();
+            let (kinds, values) = kinds(&texts);
+            (kinds, values, words(first))
+        }
+        None => {
+            let mut shown = Shown::of(table, &[first.as_str()])?;
+            let value_label = shown.label();
+            let (_, values) = shown.columns.swap_remove(0);
+            (Vec::new(), pick(values), value_label)
+        }
+    };
+    let is_marked = verified_rows(table);
+    let points = xs.iter().zip(ys).zip(values).zip(&rows);
+    let points =
+        points.map(|(((x, y), value), row)| MapPoint { x: *x, y, value, is_marked: is_marked[*row] });
+    let verified = verified.map(|verified| format!("diamonds: {verified}"));
+    let plot = SweepMap {
+        title: title.to_owned(),
+        subtitle: notes.into_iter().chain(verified).collect::<Vec<_>>().join("; "),
+        x_label: with_unit(x),
+        y_label: axes.get(1).map(|y| with_unit(y)).unwrap_or_default(),
+        value_label,
+        points: points.collect(),
+        words: kinds,
+        spacing: view.spacing,
+    };
+    Ok(plot.drawing())
+}
+
+/// What of a sweep's table one picture shows.
+struct Slice<'t> {
+    /// Rows of the table, in order.
+    rows: Vec<usize>,
+    /// The parameters that it is over: two, or fewer where fewer vary.
+    axes: Vec<&'t str>,
+    /// Where it is, in words.
+    notes: Vec<String>,
+}
+
+impl<'t> Slice<'t> {
+    fn of(
+        table: &Table,
+        parameters: &'t IndexSet<String>,
+        held: &[(String, f64)],
+    ) -> Result<Self, Box<ProblemDetails>> {
+        let mut slice = Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new() };
+        for (name, value) in held {
+            if !parameters.contains(name) {
+                let names: Vec<&str> = parameters.iter().map(String::as_str).collect();
+                let detail = format!("the sweep has no such parameter; it has {}", names.join(", "));
+                return Err(ProblemDetails::invalid_parameter("slice", Some(name), detail).into());
+            }
+            slice.hold(name, &numbers(table, name)?, *value)?;
+        }
+        let is_held = |name: &&String| held.iter().any(|(held, _)| held == *name);
+        let free: Vec<&String> = parameters.iter().filter(|name| !is_held(name)).collect();
+        for name in free {
+            let values = numbers(table, name)?;
+            let differing = slice.values(&values);
+            if differing.len() < 2 {
+                continue;
+            }
+            if slice.axes.len() < 2 {
+                slice.axes.push(name);
+            } else if 2 * differing.len() <= slice.rows.len() {
+                slice.hold(name, &values, values[slice.rows[0]])?;
+            } else {
+                let (low, high) = (differing[0], differing[differing.len() - 1]);
+                let range = format!("{} to {}", amount(name, low), amount(name, high));
+                slice.notes.push(format!("points at any {}, {range}", words(name)));
+            }
+        }
+        Ok(slice)
+    }
+
+    /// The values that occur in the rows, in order.
+    fn values(&self, column: &[f64]) -> Vec<f64> {
+        let mut values: Vec<f64> =
+            self.rows.iter().map(|row| column[*row]).filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    }
+
+    /// Leaves the rows in which a parameter has this value.
+    fn hold(&mut self, name: &str, column: &[f64], value: f64) -> Result<(), Box<ProblemDetails>> {
+        /// The most values that a refusal names.
+        const NAMED_VALUES: usize = 20;
+        let values = self.values(column);
+        // As texts of a value differ: in the last digits.
+        let is_it = |other: f64| (other - value).abs() <= 1e-9 * value.abs();
+        if !values.iter().any(|other| is_it(*other)) {
+            let mut nearest = values;
+            nearest.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+            nearest.truncate(NAMED_VALUES);
+            let nearest: Vec<String> = nearest.iter().map(f64::to_string).collect();
+            let detail = format!("no point has this value of {name}; the nearest are {}", nearest.join(", "));
+            return Err(ProblemDetails::invalid_parameter("slice", Some(&value.to_string()), detail).into());
+        }
+        self.notes.push(format!(
+            "slice at {} {} (one of {})",
+            words(name),
+            amount(name, value),
+            values.len()
+        ));
+        self.rows.retain(|row| is_it(column[*row]));
+        Ok(())
+    }
+}
+
+/// The texts in order of the alphabet, and for each row the index of its own; rare ones are others where a map has not enough colours.
+fn kinds(texts: &[Option<&str>]) -> (Vec<String>, Vec<f64>) {
+    const OTHER: &str = "other";
+    let mut counts: IndexMap<&str, usize> = IndexMap::new();
+    texts.iter().flatten().for_each(|text| *counts.entry(text).or_default() += 1);
+    counts.sort_by(|a, a_count, b, b_count| b_count.cmp(a_count).then(a.cmp(b)));
+    let has_others = counts.len() > SweepMap::MOST_WORDS;
+    if has_others {
+        counts.truncate(SweepMap::MOST_WORDS - 1);
+    }
+    counts.sort_keys();
+    let index = |text: &Option<&str>| match text {
+        None => f64::NAN,
+        Some(text) => counts.get_index_of(text).unwrap_or(counts.len()) as f64,
+    };
+    let values = texts.iter().map(index).collect();
+    let other = has_others.then(|| OTHER.to_owned());
+    (counts.keys().map(|text| (*text).to_owned()).chain(other).collect(), values)
+}
+
+/// Which rows of a sweep's table are of points that are verified: those with the bias of any statistic.
+fn verified_rows(table: &Table) -> Vec<bool> {
+    let mut is_verified = vec![false; table.rows()];
+    for (_, column) in table.columns.iter().filter(|(name, _)| is_bias_column(name)) {
+        if let Column::Number(biases) = column {
+            is_verified
+                .iter_mut()
+                .zip(biases)
+                .for_each(|(is_verified, bias)| *is_verified |= bias.is_finite());
+        }
+    }
+    is_verified
+}
+
+fn numeric(table: &Table) -> impl Iterator<Item = &str> {
+    table
+        .columns
+        .iter()
+        .filter(|(_, column)| !matches!(column, Column::Text(_)))
+        .map(|(name, _)| name.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+
+    fn column(values: &[f64]) -> Column {
+        Column::Number(values.to_vec())
+    }
+
+    #[test]
+    fn a_sweep_is_lines_over_one_parameter_and_a_map_over_two() {
+        let parameters: IndexSet<String> = ["flow_rate".to_owned(), "mud_density".to_owned()].into();
+        let table = |density: &[f64]| {
+            Table::default()
+                .with("ordinal", Column::Integer((1..=4).map(Some).collect()))
+                .with("flow_rate", column(&[0.01, 0.01, 0.04, 0.04]))
+                .with("mud_density", column(density))
+                .with("orbit_radius_rms_49", column(&[0.001, 0.002, 0.003, f64::NAN]))
+        };
+        let none = Findings::default();
+        let fields = ["orbit_radius_rms_49".to_owned()];
+        let map = sweep(
+            &table(&[1200.0, 1500.0, 1200.0, 1500.0]),
+            &parameters,
+            Some(&fields),
+            &none,
+            "",
+            &SweepView::default(),
+        )
+        .unwrap()
+        .svg();
+        assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms 49 [mm]"));
+        assert!(map.contains("flow rate [m3/s]") && map.contains("mud density [kg/m3]"));
+        let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), &none, "", &SweepView::default())
+            .unwrap()
+            .svg();
+        assert!(lines.contains(r#"class="series""#) && !lines.contains("mud density"));
+        let problem =
+            sweep(&table(&[1200.0; 4]), &parameters, None, &none, "", &SweepView::default()).unwrap_err();
+        assert!(problem.detail.contains("orbit_radius_rms_49"), "{}", problem.detail);
+    }
+
+    /// A sweep over 3 by 3 by 2 values with a number and a text each.
+    fn cube() -> (Table, IndexSet<String>) {
+        let names = ["mud.flow_rate", "operation.weight_on_bit", "string.sections[1].length"];
+        let index = |stride: usize, count: usize| (0..18).map(move |row| (row / stride % count) as f64);
+        let values =
+            |stride, count, of: fn(f64) -> f64| column(&index(stride, count).map(of).collect::<Vec<_>>());
+        let verdict = (0..18).map(|row| Some(if row % 4 == 0 { "false" } else { "true" }.to_owned()));
+        let table = Table::default()
+            .with("ordinal", Column::Integer((1..=18).map(Some).collect()))
+            .with(names[0], values(6, 3, |index| 0.01 * (index + 1.0)))
+            .with(names[1], values(2, 3, |index| -50e3 * (index + 1.0)))
+            .with(names[2], values(1, 2, |index| 30.0 + 10.0 * index))
+            .with(
+                "orbit_radius_rms_49",
+                column(&(1..=18).map(|row| 1e-3 * f64::from(row)).collect::<Vec<_>>()),
+            )
+            .with("stable", Column::Text(verdict.collect()));
+        (table, names.map(str::to_owned).into())
+    }
+
+    fn drawn(field: &str, slice: &[(&str, f64)]) -> Result<String, Box<ProblemDetails>> {
+        let (table, parameters) = cube();
+        let slice = slice.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        let view = SweepView { slice, ..SweepView::default() };
+        sweep(&table, &parameters, Some(&[field.to_owned()]), &Findings::default(), "", &view)
+            .map(|drawing| drawing.svg())
+    }
+
+    #[test]
+    fn a_map_of_three_parameters_is_a_slice_and_says_which() {
+        let first = drawn("orbit_radius_rms_49", &[]).unwrap();
+        assert!(first.contains("slice at section length of string.sections[1] 30 m (one of 2)"), "{first}");
+        // Rows 1, 3, ... of the table are at 30 m, rows 2, 4, ... at 40 m.
+        assert!(first.contains(">17<") && !first.contains(">18<"), "{first}");
+        let second = drawn("orbit_radius_rms_49", &[("string.sections[1].length", 40.0)]).unwrap();
+        assert!(second.contains("40 m (one of 2)") && second.contains(">18<") && !second.contains(">17<"));
+        let across = drawn("orbit_radius_rms_49", &[("mud.flow_rate", 0.02)]).unwrap();
+        assert!(across.contains(">weight on bit [kN]<") && across.contains(">−150<"), "{across}");
+        assert!(across.contains("section length of string.sections[1] [m]"));
+        for (slice, words) in [
+            (("mud.flow_rate", 0.5), "0.03, 0.02, 0.01"),
+            (("mud.density", 1200.0), "operation.weight_on_bit"),
+        ] {
+            let problem = drawn("orbit_radius_rms_49", &[slice]).unwrap_err();
+            assert_eq!(problem.errors[0].parameter.as_deref(), Some("slice"));
+            assert!(problem.detail.contains(words), "{}", problem.detail);
+        }
+    }
+
+    #[test]
+    fn a_design_without_a_grid_is_shown_whole_and_says_so() {
+        let parameters: IndexSet<String> = ["flow_rate", "mud_density", "hidden"].map(str::to_owned).into();
+        let drawn_at = |stride: u32| (0..20).map(|k| f64::from(k * stride % 20)).collect::<Vec<_>>();
+        let table = Table::default()
+            .with("flow_rate", column(&drawn_at(1)))
+            .with("mud_density", column(&drawn_at(3)))
+            .with("hidden", column(&drawn_at(7)))
+            .with("contact_count", column(&drawn_at(9)));
+        let fields = ["contact_count".to_owned()];
+        let view = SweepView::default();
+        let map = sweep(&table, &parameters, Some(&fields), &Findings::default(), "", &view).unwrap().svg();
+        assert!(map.contains("points at any hidden, 0 to 19"), "{map}");
+        assert_eq!(map.matches(r#"class="marker""#).count(), 20);
+    }
+
+    #[test]
+    fn words_are_mapped_over_two_parameters_and_over_one() {
+        let two = drawn("stable", &[]).unwrap();
+        assert!(two.contains(">stable: false<") && two.contains(">stable: true<"), "{two}");
+        let one = drawn("stable", &[("mud.flow_rate", 0.01), ("string.sections[1].length", 40.0)]).unwrap();
+        assert!(
+            one.contains(">weight on bit [kN]<") && one.contains("slice at flow rate 0.01 m3/s"),
+            "{one}"
+        );
+        let texts: Vec<String> = (0..12).map(|k| format!("kind {k:02}")).collect();
+        let texts: Vec<Option<&str>> =
+            texts.iter().map(|text| Some(text.as_str())).chain([None, Some("kind 11")]).collect();
+        let (words, values) = kinds(&texts);
+        assert_eq!(
+            (words.len(), words[0].as_str(), words[6].as_str(), words[7].as_str()),
+            (8, "kind 00", "kind 11", "other")
+        );
+        assert!(values[12].is_nan() && values[13] == 6.0 && values[8] == 7.0, "{values:?}");
+    }
+}

@@ -1,13 +1,17 @@
 //! Scenarios as TOML and JSON.
+//!
+//! Every format is erased before a scenario is read or written, so that the code for each of its types is compiled once: written out for every
+//! format it was a third of this crate.
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Deserializer, IgnoredAny};
 
 use super::{Problem, Scenario};
 
 impl Scenario {
     /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
     pub(crate) fn tree(&self) -> toml::Value {
-        toml::Value::try_from(self).expect("a scenario has only string keys and no value that TOML lacks")
+        toml::Value::try_from(self.erased())
+            .expect("a scenario has only string keys and no value that TOML lacks")
     }
 
     /// Reads a scenario from TOML.
@@ -22,23 +26,30 @@ impl Scenario {
     /// Reads a scenario from JSON.
     ///
     /// # Errors
-    /// The first place where the text is not JSON or not a scenario; unknown fields are refused.
+    /// The first place where the text is not JSON or, where it is, not a scenario; unknown fields are refused.
     pub fn from_json(text: &str) -> Result<Self, Problem> {
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let scenario = serde_path_to_error::deserialize(&mut deserializer)
-            .map_err(|error| json_problem(error.path().to_string(), error.inner()))?;
-        deserializer.end().map_err(|error| json_problem(String::new(), &error))?;
-        Ok(scenario)
+        let _: IgnoredAny = serde_json::from_str(text).map_err(|error| not_json(&error))?;
+        read(&mut serde_json::Deserializer::from_str(text))
     }
 
     /// Writes the scenario as TOML.
     pub fn to_toml(&self) -> String {
-        toml::to_string_pretty(self).expect("a scenario has only string keys and no value that TOML lacks")
+        toml::to_string_pretty(self.erased())
+            .expect("a scenario has only string keys and no value that TOML lacks")
     }
 
     /// Writes the scenario as JSON.
     pub fn to_json(&self) -> String {
-        serde_json::to_string_pretty(self).expect("a scenario has only string keys")
+        serde_json::to_string_pretty(self.erased()).expect("a scenario has only string keys")
+    }
+
+    /// The scenario as a JSON document.
+    pub(super) fn to_value(&self) -> serde_json::Value {
+        serde_json::to_value(self.erased()).expect("a scenario has only string keys")
+    }
+
+    fn erased(&self) -> &dyn erased_serde::Serialize {
+        self
     }
 }
 
@@ -47,27 +58,44 @@ pub(super) fn table(text: &str) -> Result<toml::Table, Problem> {
     toml::from_str(text).map_err(|error: toml::de::Error| Problem::new("", "", error.to_string().trim_end()))
 }
 
-/// A type out of a parsed TOML document: code for reading each type from the text itself would be several times as much.
+/// A type out of a parsed TOML document.
 pub(super) fn from_table<T: DeserializeOwned>(table: toml::Table) -> Result<T, Problem> {
-    serde_path_to_error::deserialize(toml::Value::Table(table))
-        .map_err(|error| Problem::from_serde(error.path().to_string(), error.inner().message()))
+    read(toml::Value::Table(table))
 }
 
 /// A type out of a parsed JSON document.
 pub(super) fn from_value<T: DeserializeOwned>(value: serde_json::Value) -> Result<T, Problem> {
-    serde_path_to_error::deserialize(value)
-        .map_err(|error| json_problem(error.path().to_string(), error.inner()))
+    read(value)
 }
 
-/// What serde_json found wrong at a path.
-pub(super) fn json_problem(path: String, error: &serde_json::Error) -> Problem {
-    let text = error.to_string();
-    if !error.is_data() {
-        return Problem::new("", "", format!("not JSON: {text}"));
+/// What serde_json found wrong with a text that is not JSON.
+pub(super) fn not_json(error: &serde_json::Error) -> Problem {
+    Problem::new("", "", format!("not JSON: {error}"))
+}
+
+/// A type out of any format.
+fn read<'de, T: DeserializeOwned>(format: impl Deserializer<'de>) -> Result<T, Problem> {
+    let mut track = serde_path_to_error::Track::new();
+    let tracked = serde_path_to_error::Deserializer::new(format, &mut track);
+    let read = erased_serde::deserialize(&mut <dyn erased_serde::Deserializer<'_>>::erase(tracked));
+    read.map_err(|error| {
+        let message = error.to_string();
+        Problem::from_serde(track.path().to_string(), without_place(&message))
+    })
+}
+
+/// A message without the place that the format adds to it (` at line 3 column 7`, or a second line): the path says where.
+fn without_place(message: &str) -> &str {
+    let message = message.lines().next().unwrap_or_default();
+    let is_place = |place: &str| {
+        place.split_once(" column ").is_some_and(|(line, column)| {
+            [line, column].iter().all(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+        })
+    };
+    match message.rsplit_once(" at line ") {
+        Some((message, place)) if is_place(place) => message,
+        _ => message,
     }
-    // The path says where; the line would only blur the message.
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    Problem::from_serde(path, text.strip_suffix(&place).unwrap_or(&text))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::format::{from_table, from_value, json_problem, table};
+use super::format::{from_table, from_value, not_json, table};
 use super::{PRESETS, Problem, Problems, Scenario, preset};
 
 /// A preset or a full scenario, and what to change in it:
@@ -37,8 +37,7 @@ impl ScenarioRequest {
     /// # Errors
     /// The first place where the text is not JSON or neither of the two.
     pub fn from_json(text: &str) -> Result<Self, Problem> {
-        let document: Value =
-            serde_json::from_str(text).map_err(|error| json_problem(String::new(), &error))?;
+        let document: Value = serde_json::from_str(text).map_err(|error| not_json(&error))?;
         if is_request(|key| document.get(key).is_some()) {
             return from_value(document);
         }

@@ -16,7 +16,7 @@ impl Scenario {
     /// A path that names no field (with the fields there are), or a value of the wrong type.
     pub fn with(&self, path: &str, value: Value) -> Result<Self, Problem> {
         let steps = parse(path)?;
-        let mut tree = serde_json::to_value(self).expect("a scenario has only string keys");
+        let mut tree = self.to_value();
         match steps.as_slice() {
             [Step::Field("accuracy"), Step::Field(target)] if TARGETS.contains(target) => {
                 tree["accuracy"] = json!({ *target: null });

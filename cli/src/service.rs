@@ -141,7 +141,7 @@ impl ScratchArguments {
 
 /// Server and workers on one machine.
 pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
-    bound_arenas();
+    bound_memory();
     let workers = match arguments.workers {
         Some(number) => number,
         None => std::thread::available_parallelism()?.get(),
@@ -157,7 +157,7 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
 
 /// The server alone.
 pub(crate) fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
-    bound_arenas();
+    bound_memory();
     runtime()?.block_on(async { serve_until(&arguments.data, &arguments.listen, stop_on_signal()?).await })
 }
 
@@ -181,17 +181,20 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
     runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?).await?) })
 }
 
-/// Starts this program again in the same process, with few arenas of memory: glibc's allocator keeps what threads have freed, in up to eight
-/// arenas a core, which for large answers adds up to several times what they take; it reads the setting at the start only.
+/// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
+/// threshold that grows to 32 MiB are kept rather than given back, which for large answers adds up to several times what they take.
+const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")];
+
+/// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: it reads them at the start only.
 /// Where that fails, the server takes more memory.
-fn bound_arenas() {
-    const SETTING: &str = "MALLOC_ARENA_MAX";
-    if cfg!(not(target_env = "gnu")) || std::env::var_os(SETTING).is_some() {
+fn bound_memory() {
+    let is_given = |(setting, _): &(&str, &str)| std::env::var_os(setting).is_some();
+    if cfg!(not(target_env = "gnu")) || ALLOCATOR.iter().all(is_given) {
         return;
     }
     let Ok(program) = std::env::current_exe() else { return };
-    let error =
-        std::process::Command::new(program).args(std::env::args_os().skip(1)).env(SETTING, "2").exec();
+    let missing = ALLOCATOR.into_iter().filter(|setting| !is_given(setting));
+    let error = std::process::Command::new(program).args(std::env::args_os().skip(1)).envs(missing).exec();
     tracing::warn!(%error, "the server may take more memory than it needs");
 }
 

@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
+use std::os::unix::process::CommandExt as _;
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -39,7 +41,16 @@ const SAMPLES: u32 = 60_000;
 const POINTS: u32 = 20_000;
 const FIELDS: u32 = 50;
 
+/// What the program sets for itself when it serves: glibc reads it at the start only.
+const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")];
+
 fn main() {
+    if ALLOCATOR.iter().any(|(setting, _)| std::env::var_os(setting).is_none()) {
+        let program = std::env::current_exe().expect("this program");
+        let missing = ALLOCATOR.into_iter().filter(|(setting, _)| std::env::var_os(setting).is_none());
+        let error = Command::new(program).args(std::env::args_os().skip(1)).envs(missing).exec();
+        panic!("this program does not start again: {error}");
+    }
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     // Other clients than that of the lists compete for this machine's cores as little as if they were on others.
     let clients = tokio::runtime::Builder::new_multi_thread()

@@ -85,9 +85,44 @@ pub(super) fn next_level(level: u32, error: f64) -> u32 {
     }
 }
 
+/// Share of its bound that the ledger's residual may come to before steps are shortened, and below which they may lengthen again: further apart than
+/// what one halving does to it by the order of the method.
+const RESIDUAL_SHARES: [f64; 2] = [0.01, 0.25];
+
+/// The part of what is left to its bound that the residual may take from one row of the ledger to the next: as long as steps can be
+/// shortened, it approaches the bound and does not reach it.
+const RESIDUAL_GROWTH: f64 = 0.01;
+
+/// The highest level that steps may have until the ledger's next row, after one of `ceiling`: the residual, without its sign, was `before` at the
+/// row before and is `now` at this one, where it may come to `bound` \[J\].
+///
+/// The local error does not tell of contacts that chatter: each step is accurate for the motion as a whole, and takes energy from vibrations that
+/// it does not resolve, always of the same sign. The ledger adds that up.
+pub(super) fn ceiling(ceiling: u32, [before, now]: [f64; 2], bound: f64) -> u32 {
+    let [low, high] = RESIDUAL_SHARES;
+    if now > high * bound && now - before > RESIDUAL_GROWTH * (bound - now) {
+        ceiling.saturating_sub(1)
+    } else if now < low * bound {
+        ceiling + 1
+    } else {
+        ceiling
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_shorten_while_the_ledger_opens_and_lengthen_when_it_is_closed() {
+        assert_eq!(ceiling(5, [0.2, 0.3], 1.0), 4);
+        assert_eq!(ceiling(5, [0.3, 0.3], 1.0), 5);
+        assert_eq!(ceiling(5, [0.299, 0.3], 1.0), 5);
+        assert_eq!(ceiling(5, [0.989, 0.99], 1.0), 4);
+        assert_eq!(ceiling(5, [0.1, 0.2], 1.0), 5);
+        assert_eq!(ceiling(5, [0.1, 0.009], 1.0), 6);
+        assert_eq!(ceiling(0, [0.2, 0.3], 1.0), 0);
+    }
 
     #[test]
     fn a_step_is_halved_as_often_as_its_order_says() {

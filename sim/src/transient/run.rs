@@ -107,6 +107,8 @@ pub(super) struct Progress<const D: usize> {
     pub(super) ticks: u64,
     /// The level of step that is wanted next.
     pub(super) level: u32,
+    /// The highest level that the energy ledger allows.
+    pub(super) ceiling: u32,
     pub(super) state: State<D>,
     pub(super) work: Work,
     pub(super) monitor: SweepMonitor,
@@ -218,6 +220,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 ticks: 0,
                 // What happens at once is resolved; after it steps double as long as they may.
                 level: if tolerances.is_some() { grid.top() / 2 } else { grid.top() },
+                ceiling: grid.top(),
                 state: State::at_rest(&start, stepping.step),
                 work: Work::default(),
                 monitor: SweepMonitor::default(),
@@ -456,6 +459,11 @@ impl<'m, const D: usize> Run<'m, D> {
         let smallest_motion = adaptive::smallest_motion(0.5 * self.model.scenario.well.hole_diameter);
         let hardly_moves = self.progress.errors.motion(self.model.node_count()) < smallest_motion;
         let bound = self.ledger.bound(&row, hardly_moves);
+        if self.tolerances.is_some() && !hardly_moves {
+            let before = self.progress.energy.last().map_or(0.0, |row| row.residual.abs());
+            let ceiling = adaptive::ceiling(self.progress.ceiling, [before, row.residual.abs()], bound);
+            self.progress.ceiling = ceiling.min(self.grid.top());
+        }
         self.progress.energy.push(row);
         // Written so that a residual that is not a number fails.
         if row.residual.abs() <= bound {
@@ -469,7 +477,7 @@ impl<'m, const D: usize> Run<'m, D> {
     fn advance(&mut self, end: u64) -> Result<(), TransientError> {
         let time = self.time();
         let start = self.progress.ticks;
-        let mut level = self.grid.level_at(start, end, self.progress.level);
+        let mut level = self.grid.level_at(start, end, self.progress.level.min(self.progress.ceiling));
         let nodes = self.model.node_count();
         let Self { forces, stepper, ledger, contact, progress, grid, tolerances, .. } = self;
         let (state, errors) = (&mut progress.state, &mut progress.errors);

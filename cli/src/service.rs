@@ -183,7 +183,7 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
 
 /// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
 /// threshold that grows to 32 MiB are kept rather than given back, which for large answers adds up to several times what they take.
-const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")];
+const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 /// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: it reads them at the start only.
 /// Where that fails, the server takes more memory.

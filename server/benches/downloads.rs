@@ -42,7 +42,7 @@ const POINTS: u32 = 20_000;
 const FIELDS: u32 = 50;
 
 /// What the program sets for itself when it serves: glibc reads it at the start only.
-const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")];
+const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 fn main() {
     if ALLOCATOR.iter().any(|(setting, _)| std::env::var_os(setting).is_none()) {

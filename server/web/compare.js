@@ -2,7 +2,7 @@
 
 import { get, Problem } from "./api.js";
 import { choice, fill, h } from "./dom.js";
-import { lines } from "./lines.js";
+import { lines, tableLines } from "./lines.js";
 import { holeTrace, orbitLayout, orbitTrace, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { canvas, DASHES, draw, LINES } from "./plots.js";
 import { drawProfiles, quantityTicks, tableOf } from "./point-profiles.js";
@@ -119,7 +119,15 @@ export async function show(main, route, signal) {
     }
   }
 
+  /** @param {Compared} point @param {number} order */
+  function matlabOf(point, order) {
+    const asks = view === "profiles" ? {} : Object.fromEntries(Object.entries({ ...selector(), ...window_() }).map(([name, value]) => [name, value === true ? "true" : value]));
+    const [options, read] = (tableLines(`${point.path}/${view === "profiles" ? "profile" : view}`, asks).matlab ?? "").split("\n");
+    const own = read.replace("table =", `point${order + 1} =`);
+    return order === 0 ? `${options}\n${own}` : own;
+  }
   const taken = lines(() => ({
+    matlab: points.map(matlabOf).join("\n"),
     curl: points.map((point) => `curl -s '${location.origin}${point.path}/${view === "profiles" ? "profile" : view}?${view === "profiles" ? "" : `${new URLSearchParams(Object.entries({ ...selector(), ...window_() }).map(([name, value]) => [name, String(value)]))}&`}format=csv'`).join("\n"),
     python: `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n${view === "profiles" ? `plot.profile(points, "${ticks.names()[0]}")` : `for point in points:\n    plot.${view}(point, ${Object.entries(selector()).map(([name, value]) => `${name}=${value === true ? "True" : value}`).join(", ")}, time=(${window_().from}, ${window_().to}))`}`,
   }));

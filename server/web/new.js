@@ -6,10 +6,12 @@ import { lines, python, shell } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
 import { MAY_NOT, maySubmit } from "./session.js";
+import { NoSurvey, surveyField } from "./survey.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
 /** Characters of a request that a link may hold. */
 const LINKED = 4000;
+const SURVEY = "well.survey";
 const DRAWN = ["latin_hypercube", "sobol"];
 
 /** @type {import("./main.js").View} */
@@ -19,7 +21,7 @@ export async function show(main, route, signal) {
   /** @type {{name: string, values: string}[]} */
   const axes = Object.entries(start.axes ?? { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } }).map(([name, axis]) => ({ name, values: written(axis) }));
   /** @type {{name: string, values: string}[]} */
-  const changes = Object.entries(start.set ?? {}).filter(([name]) => name !== "accuracy").map(([name, value]) => ({ name, values: JSON.stringify(value) }));
+  const changes = Object.entries(start.set ?? {}).filter(([name]) => name !== "accuracy" && name !== SURVEY).map(([name, value]) => ({ name, values: JSON.stringify(value) }));
   const form = {
     preset: start.preset ?? (start.scenario ? "" : "paper-200m-damped"),
     scenario: start.scenario ? JSON.stringify(start.scenario, null, 2) : "",
@@ -38,6 +40,7 @@ export async function show(main, route, signal) {
   const scenario = h("textarea", { class: "code", "aria-label": "Scenario as JSON", spellcheck: "false", oninput: changed, value: form.scenario });
   const field = (/** @type {string} */ text, /** @type {HTMLElement} */ element, /** @type {string} */ pointer) => h("label", { class: "field", "data-pointer": pointer }, h("span", {}, text), element);
 
+  const survey = surveyField(start.set?.[SURVEY], changed);
   const axesPart = h("div", {});
   const changesPart = h("div", {});
   const sourcePart = h("div", { "data-pointer": "/scenario" });
@@ -117,6 +120,8 @@ export async function show(main, route, signal) {
     else body.scenario = parsed(scenario.value, "/scenario");
     const set = Object.fromEntries(changes.filter((row) => row.name).map((row) => [row.name, read(row.values)]));
     if (form.accuracy) set.accuracy = form.accuracy;
+    const stations = pasted(survey.read);
+    if (stations) set[SURVEY] = stations;
     if (Object.keys(set).length) body.set = set;
     const isDrawn = DRAWN.includes(form.design);
     const used = axes.filter((row) => row.name);
@@ -212,7 +217,7 @@ export async function show(main, route, signal) {
     }), choice("Kept of each point", [["", "the scenario's"], ["full", "everything, with histories"], ["spectra", "spectra, no histories"], ["summary", "its row of the table only"]], form.outputs, (value) => {
       form.outputs = value;
       changed();
-    })), h("h3", {}, "Changes to the scenario"), changesPart),
+    })), h("h3", {}, "Changes to the scenario"), changesPart, survey.element),
     h("section", { class: "panel", "aria-label": "Parameters", "data-pointer": "/axes" }, h("h2", {}, "What is varied"), h("p", { class: "small soft" }, "Values separated by commas, or from:to:count, with :log for logarithmic spacing. Drawn designs take from:to."), drawnPart, axesPart),
     h("section", { class: "panel", "aria-label": "Name" }, h("div", { class: "controls" }, field("Name", name, "/name"), field("Tags", tags, "/tags"), field("Verify a sample", verify, "/verify")), general, submit),
     paths,
@@ -264,6 +269,15 @@ function parsed(text, pointer) {
     return JSON.parse(text);
   } catch (error) {
     throw new Unreadable(pointer, `This is not JSON: ${error instanceof Error ? error.message : ""}`);
+  }
+}
+
+/** @template T @param {() => T} survey */
+function pasted(survey) {
+  try {
+    return survey();
+  } catch (error) {
+    throw error instanceof NoSurvey ? new Unreadable(`/set/${SURVEY}`, error.message) : error;
   }
 }
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import functools
+import json
 import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal
+from urllib.parse import parse_qs
 
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
@@ -125,6 +127,35 @@ def test_a_problem_stands_at_its_field(opened: Opens, troubles: list[str]) -> No
     troubles[:] = [text for text in troubles if "status of 422" not in text]
 
 
+def test_a_survey_is_pasted_from_a_spreadsheet(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    scenario = page.get_by_role("region", name="Scenario", exact=True)
+    scenario.get_by_text("Survey from a spreadsheet").click()
+    survey = scenario.get_by_role("textbox", name=re.compile("^Survey"))
+    # As a spreadsheet of a country of decimal commas gives it, with its head and a column more.
+    survey.fill("MD\tIncl\tAzi\tTVD\n0\t60,5\t0\t0\n328,084\t75\t7\t90\n656,168\t93\t36\t100\n")
+    scenario.get_by_role("combobox", name="Depths in").select_option("ft")
+    expect(scenario.get_by_text("3 stations down to 200 m, inclination up to 93°.")).to_be_visible()
+    stations = [
+        {"measured_depth": depth, "inclination_deg": inclination, "azimuth_deg": azimuth}
+        for depth, inclination, azimuth in [(0, 60.5, 0), (100, 75, 7), (200, 93, 36)]
+    ]
+    until(page, lambda: requested(page).get("set", {}).get("well.survey") == stations)
+    expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+    # The link brings it back, in metres.
+    page.reload()
+    expect(survey).to_have_value("0\t60.5\t0\n100\t75\t7\n200\t93\t36")
+    survey.fill("0 60 0\n100 nonsense 7")
+    expect(scenario.get_by_text("Line 2 does not begin with three numbers")).to_be_visible()
+    expect(page.get_by_role("button", name="Submit")).to_be_disabled()
+
+
+def requested(page: Page) -> dict[str, Any]:
+    """The request of a new sweep that the page's link holds."""
+    query = parse_qs(page.url.partition("?")[2])
+    return dict(json.loads(query.get("request", ["{}"])[0]))
+
+
 @pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "table", "failures"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_every_view_of_a_sweep_is_shown(
@@ -217,6 +248,10 @@ def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
         page = opened(f"#/compare?points={keys}&view={view}&node=1")
         drawn(page, picture)
         expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)
+        page.get_by_text("Lines that made this view").click()
+        expect(
+            page.get_by_text(re.compile("^csv = weboptions.*point1 = webread.*point3 = webread", re.DOTALL))
+        ).to_be_visible()
 
 
 def test_keys_move_search_and_open(opened: Opens, named: Sweep, sweep: Sweep) -> None:

@@ -185,7 +185,7 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
 /// threshold that grows to 32 MiB are kept rather than given back, which for large answers adds up to several times what they take.
 const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
-/// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: it reads them at the start only.
+/// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: glibc reads them at the start only.
 /// Where that fails, the server takes more memory.
 fn bound_memory() {
     let is_given = |(setting, _): &(&str, &str)| std::env::var_os(setting).is_some();

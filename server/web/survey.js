@@ -12,9 +12,19 @@ const METRES = { m: 1, ft: 0.3048 };
 export class NoSurvey extends Error {}
 
 /**
+ * The columns of a line, with points as decimal signs. Where tabs, semicolons or spaces part the columns, a comma within one is a decimal sign.
+ * @param {string} line
+ */
+function columns(line) {
+  const parting = ["\t", ";"].find((sign) => line.includes(sign));
+  const cells = line.trim().split(parting ?? /\s+/).map((cell) => cell.trim());
+  const isParted = parting || (cells.length >= 3 && !cells.some((cell) => cell.startsWith(",") || cell.endsWith(",")));
+  return isParted ? cells.map((cell) => cell.replace(",", ".")) : line.trim().split(/\s*,\s*/);
+}
+
+/**
  * Reads stations: measured depth, inclination and azimuth in degrees, one station a line, the columns apart by tabs, semicolons, commas
- * or spaces; further columns and lines above the first station are left out. Where tabs or semicolons part the columns, a comma
- * is a decimal sign.
+ * or spaces; further columns and lines above the first station are left out.
  * @param {string} text
  * @param {string} unit of the depths
  * @returns {Station[]} in metres and degrees
@@ -24,9 +34,7 @@ export function readSurvey(text, unit) {
   const stations = [];
   text.split(/\r?\n/).forEach((line, index) => {
     if (!line.trim()) return;
-    const parting = ["\t", ";"].find((sign) => line.includes(sign));
-    const cells = parting ? line.split(parting).map((cell) => cell.trim().replace(",", ".")) : line.trim().split(/\s*,\s*|\s+/);
-    const [depth, inclination, azimuth] = cells.map((cell) => (cell === "" ? NaN : Number(cell)));
+    const [depth, inclination, azimuth] = columns(line).map((cell) => (cell === "" ? NaN : Number(cell)));
     if (![depth, inclination, azimuth].every(Number.isFinite)) {
       if (!stations.length) return;
       throw new NoSurvey(`Line ${index + 1} does not begin with three numbers: ${line.trim().slice(0, 60)}`);

@@ -145,6 +145,15 @@ def test_a_survey_is_pasted_from_a_spreadsheet(opened: Opens) -> None:
     # The link brings it back, in metres.
     page.reload()
     expect(survey).to_have_value("0\t60.5\t0\n100\t75\t7\n200\t93\t36")
+    # Spaces and commas part columns as well; between spaces a comma is a decimal sign.
+    for text in [
+        "0 60,5 0\n100 75,0 7\n200,5 93 36",
+        "0, 60.5, 0\n100, 75, 7\n200.5, 93, 36",
+        "0,60.5,0\n100,75,7\n200.5,93,36",
+    ]:
+        survey.fill(text)
+        scenario.get_by_role("combobox", name="Depths in").select_option("m")
+        expect(scenario.get_by_text("3 stations down to 200.5 m, inclination up to 93°.")).to_be_visible()
     survey.fill("0 60 0\n100 nonsense 7")
     expect(scenario.get_by_text("Line 2 does not begin with three numbers")).to_be_visible()
     expect(page.get_by_role("button", name="Submit")).to_be_disabled()

@@ -1,7 +1,7 @@
 //! Scenarios as TOML and JSON.
 //!
-//! Every format is erased before a scenario is read or written, so that the code for each of its types is compiled once: written out for every
-//! format it was a third of this crate.
+//! Every format is erased (`erased_serde`) before a scenario is read or written, so that the code for each of its types is compiled once. Compiled
+//! for each format it would be a third of this crate's code.
 
 use serde::de::{DeserializeOwned, Deserializer, IgnoredAny};
 

@@ -89,8 +89,8 @@ pub(super) fn next_level(level: u32, error: f64) -> u32 {
 /// what one halving does to it by the order of the method.
 const RESIDUAL_SHARES: [f64; 2] = [0.01, 0.25];
 
-/// The part of what is left to its bound that the residual may take from one row of the ledger to the next: as long as steps can be
-/// shortened, it approaches the bound and does not reach it.
+/// The part of what is left to its bound that the residual may take from one row of the ledger to the next. A residual that grows no faster
+/// approaches the bound and does not reach it.
 const RESIDUAL_GROWTH: f64 = 0.01;
 
 /// The highest level that steps may have until the ledger's next row, after one of `ceiling`: the residual, without its sign, was `before` at the

@@ -1,10 +1,9 @@
 //! Tables as comma-separated values (RFC 4180).
 
 use std::fmt::Write as _;
-use std::io::Write;
 
 use crate::error::TableError;
-use crate::source::Source;
+use crate::source::{Sink, Source};
 use crate::table::{Column, Table};
 
 /// One line a row, after a line of column names; a missing value is empty. Numbers have the fewest digits that give the same number
@@ -22,7 +21,7 @@ pub fn write(table: &Table) -> Result<String, TableError> {
 ///
 /// # Errors
 /// When a piece cannot be read, the columns differ in length, or the sink fails.
-pub fn write_to(source: &impl Source, sink: impl Write) -> Result<(), TableError> {
+pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let mut writer = ::csv::Writer::from_writer(sink);
     writer.write_record(source.layout().columns.keys()).map_err(failed)?;
     for piece in source.by_rows() {
@@ -35,7 +34,7 @@ fn failed(error: ::csv::Error) -> TableError {
     TableError::Sink(error.into())
 }
 
-fn write_rows(writer: &mut ::csv::Writer<impl Write>, table: &Table) -> Result<(), ::csv::Error> {
+fn write_rows(writer: &mut ::csv::Writer<&mut Sink<'_>>, table: &Table) -> Result<(), ::csv::Error> {
     let mut number = String::new();
     for row in 0..table.rows() {
         for column in table.columns.values() {

@@ -16,5 +16,5 @@ mod table;
 
 pub use error::TableError;
 pub use quantity::{Quantity, Unit, Units};
-pub use source::Source;
+pub use source::{Sink, Source};
 pub use table::{Column, Table};

@@ -6,8 +6,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use crate::error::TableError;
-use crate::source::Source;
-use crate::table::Column;
+use crate::source::{Sink, Source};
+use crate::table::{Column, Table};
 
 /// Bytes to whose multiple the header is padded (NPY format 1.0).
 const ALIGNMENT: usize = 64;
@@ -22,36 +22,51 @@ const VALUES: usize = 8 << 10;
 ///
 /// # Errors
 /// When a piece cannot be read, the archive would be too large for its format, or the sink fails.
-pub fn write_to(source: &impl Source, sink: impl Write) -> Result<(), TableError> {
-    archive(source, Tail::new(sink))?.send()?;
+pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    let mut tail = Tail::new(sink);
+    archive(source, &mut tail)?;
+    Ok(tail.send()?)
+}
+
+/// What an archive can be written to.
+trait Place: Write + Seek {}
+
+impl<T: Write + Seek> Place for T {}
+
+fn archive(source: &impl Source, place: &mut dyn Place) -> Result<(), TableError> {
+    let mut archive = ZipWriter::new(place);
+    for piece in source.by_columns() {
+        put_columns(&mut archive, piece?.as_ref())?;
+    }
+    end(archive, source.layout())
+}
+
+fn put_columns(archive: &mut ZipWriter<&mut dyn Place>, piece: &Table) -> Result<(), TableError> {
+    for (name, column) in &piece.columns {
+        begin(archive, name, column.len().saturating_mul(8))?;
+        put_column(archive, column)?;
+    }
     Ok(())
 }
 
-fn archive<W: Write + Seek>(source: &impl Source, sink: W) -> Result<W, TableError> {
-    let mut archive = ZipWriter::new(sink);
-    for piece in source.by_columns() {
-        for (name, column) in &piece?.columns {
-            begin(&mut archive, name, column.len().saturating_mul(8))?;
-            put_column(&mut archive, column)?;
-        }
-    }
-    let layout = source.layout();
+fn end(mut archive: ZipWriter<&mut dyn Place>, layout: &Table) -> Result<(), TableError> {
     let attributes = serde_json::to_string(&layout.attributes).map_err(io::Error::from)?;
     let units = serde_json::to_string(&layout.units).map_err(io::Error::from)?;
     for (name, text) in [("attributes_json", &attributes), ("units_json", &units)] {
         begin(&mut archive, name, text.len().saturating_mul(4))?;
         put_texts(&mut archive, &[text], "()")?;
     }
-    Ok(archive.finish().map_err(io::Error::from)?)
+    archive.finish().map_err(io::Error::from)?;
+    Ok(())
 }
 
 /// Begins an array of about so many bytes.
-fn begin<W: Write + Seek>(archive: &mut ZipWriter<W>, name: &str, bytes: usize) -> io::Result<()> {
+fn begin(archive: &mut ZipWriter<&mut dyn Place>, name: &str, bytes: usize) -> io::Result<()> {
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     Ok(archive.start_file(format!("{name}.npy"), options.large_file(bytes > 1 << 31))?)
 }
 
-fn put_column(sink: &mut impl Write, column: &Column) -> io::Result<()> {
+fn put_column(sink: &mut dyn Write, column: &Column) -> io::Result<()> {
     let shape = format!("({},)", column.len());
     match column {
         Column::Number(values) => put_array(sink, "<f8", &shape, values, |value| value.to_le_bytes()),
@@ -73,7 +88,7 @@ fn put_column(sink: &mut impl Write, column: &Column) -> io::Result<()> {
 }
 
 /// Texts as NumPy keeps them: UTF-32, each as long as the longest, padded with zeros.
-fn put_texts(sink: &mut impl Write, values: &[&str], shape: &str) -> io::Result<()> {
+fn put_texts(sink: &mut dyn Write, values: &[&str], shape: &str) -> io::Result<()> {
     let length = values.iter().map(|value| value.chars().count()).max().unwrap_or(0).max(1);
     put_header(sink, &format!("<U{length}"), shape)?;
     for value in values {
@@ -84,7 +99,7 @@ fn put_texts(sink: &mut impl Write, values: &[&str], shape: &str) -> io::Result<
 }
 
 fn put_array<T>(
-    sink: &mut impl Write,
+    sink: &mut dyn Write,
     kind: &str,
     shape: &str,
     values: &[T],
@@ -97,7 +112,7 @@ fn put_array<T>(
     Ok(())
 }
 
-fn put_header(sink: &mut impl Write, kind: &str, shape: &str) -> io::Result<()> {
+fn put_header(sink: &mut dyn Write, kind: &str, shape: &str) -> io::Result<()> {
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     let before = 10 + header.len() + 1;
     header.extend(std::iter::repeat_n(' ', before.next_multiple_of(ALIGNMENT) - before));
@@ -110,8 +125,8 @@ fn put_header(sink: &mut impl Write, kind: &str, shape: &str) -> io::Result<()> 
 
 /// The end of an archive, as long as it may still change: the header of an array is completed once its checksum is known, and then
 /// all of it goes to the sink.
-struct Tail<W> {
-    sink: W,
+struct Tail<'t, 's> {
+    sink: &'t mut Sink<'s>,
     kept: Vec<u8>,
     /// Bytes that have gone to the sink.
     sent: u64,
@@ -119,8 +134,8 @@ struct Tail<W> {
     position: usize,
 }
 
-impl<W: Write> Tail<W> {
-    fn new(sink: W) -> Self {
+impl<'t, 's> Tail<'t, 's> {
+    fn new(sink: &'t mut Sink<'s>) -> Self {
         Self { sink, kept: Vec::new(), sent: 0, position: 0 }
     }
 
@@ -133,7 +148,7 @@ impl<W: Write> Tail<W> {
     }
 }
 
-impl<W: Write> Write for Tail<W> {
+impl Write for Tail<'_, '_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let replaced = (self.kept.len() - self.position).min(bytes.len());
         self.kept[self.position..self.position + replaced].copy_from_slice(&bytes[..replaced]);
@@ -147,7 +162,7 @@ impl<W: Write> Write for Tail<W> {
     }
 }
 
-impl<W: Write> Seek for Tail<W> {
+impl Seek for Tail<'_, '_> {
     /// Only to what is kept. Whoever comes back to the end has completed what is before it.
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let place = match to {
@@ -172,7 +187,6 @@ mod tests {
     use std::io::{Cursor, Read};
 
     use super::*;
-    use crate::table::Table;
 
     fn write(table: &Table) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -223,13 +237,15 @@ mod tests {
             .with("time", Column::Number(long.clone()))
             .with("nothing", Column::Number(Vec::new()))
             .with("u_49", Column::Single(long.iter().map(|value| *value as f32).collect()));
-        let whole = archive(&table, Cursor::new(Vec::new())).unwrap().into_inner();
+        let mut whole = Cursor::new(Vec::new());
+        archive(&table, &mut whole).unwrap();
+        let whole = whole.into_inner();
         assert!(write(&table) == whole);
 
-        // The first array has left when the last one is begun.
-        let mut tail = archive(&table, Tail::new(Vec::new())).unwrap();
-        assert!(tail.sink.len() > 1_000_000);
-        tail.send().unwrap();
-        assert!(tail.sink == whole);
+        // The first arrays have left when the last one is begun.
+        let mut sent = Vec::new();
+        archive(&table, &mut Tail::new(&mut sent)).unwrap();
+        assert!(sent.len() > 1_000_000 && sent.len() < whole.len());
+        assert!(whole.starts_with(&sent));
     }
 }

@@ -1,6 +1,5 @@
 //! Tables as Parquet: byte-stream-split and zstd, in row groups small enough to read a window of a long history without the rest.
 
-use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -12,7 +11,7 @@ use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use ::parquet::schema::types::{ColumnPath, Type};
 
 use crate::error::TableError;
-use crate::source::Source;
+use crate::source::{Sink, Source};
 use crate::table::{Column, Table};
 
 mod read;
@@ -46,18 +45,18 @@ pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
 ///
 /// # Errors
 /// When a piece cannot be read, the columns differ in length, or the sink fails.
-pub fn write_to(source: &impl Source, sink: impl Write + Send) -> Result<(), TableError> {
+pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let mut writer = Writer::new(sink, source.layout())?;
     for piece in source.by_rows() {
         writer.write(piece?.as_ref())?;
     }
-    writer.finish().map(drop)
+    writer.finish()
 }
 
 /// Writes a table piece by piece, as [`write()`] writes it in one; it holds one row group in memory, whatever the length of the table.
 /// How a table is cut into pieces does not change the bytes.
-pub struct Writer<W: Write + Send> {
-    file: SerializedFileWriter<W>,
+pub struct Writer<'t, 's> {
+    file: SerializedFileWriter<&'t mut Sink<'s>>,
     types: Vec<PhysicalType>,
     rows_of_group: usize,
     /// The rows that do not make a row group yet, in the columns of the layout.
@@ -65,13 +64,13 @@ pub struct Writer<W: Write + Send> {
     has_groups: bool,
 }
 
-impl<W: Write + Send> Writer<W> {
+impl<'t, 's> Writer<'t, 's> {
     /// A writer of tables with the columns of `layout`, which may have rows: what is missing among its whole numbers says
     /// whether something may be missing.
     ///
     /// # Errors
     /// When the sink fails.
-    pub fn new(sink: W, layout: &Table) -> Result<Self, TableError> {
+    pub fn new(sink: &'t mut Sink<'s>, layout: &Table) -> Result<Self, TableError> {
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
             .set_dictionary_enabled(false)
@@ -141,12 +140,13 @@ impl<W: Write + Send> Writer<W> {
     ///
     /// # Errors
     /// When the sink fails.
-    pub fn finish(mut self) -> Result<W, TableError> {
+    pub fn finish(mut self) -> Result<(), TableError> {
         // A table without rows has a row group without rows.
         if self.pending.rows() > 0 || !self.has_groups {
             self.write_pending()?;
         }
-        Ok(self.file.into_inner()?)
+        self.file.finish()?;
+        Ok(())
     }
 
     fn write_pending(&mut self) -> Result<(), TableError> {
@@ -181,8 +181,8 @@ fn physical_type(column: &Column) -> PhysicalType {
     }
 }
 
-fn write_group<W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
+fn write_group(
+    group: &mut SerializedRowGroupWriter<'_, &mut Sink<'_>>,
     table: &Table,
     types: &[PhysicalType],
     rows: Range<usize>,

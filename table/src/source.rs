@@ -1,10 +1,14 @@
 //! Where a table comes from that is written piece by piece, so that it need not be in memory as a whole.
 
 use std::borrow::Cow;
+use std::io::Write;
 use std::iter::once;
 
 use crate::error::TableError;
 use crate::table::Table;
+
+/// Where a table goes as it is written. Not a type parameter: the code of the formats would be compiled once more for each sink.
+pub type Sink<'s> = dyn Write + Send + 's;
 
 /// A table in pieces: what a format is written from.
 pub trait Source {

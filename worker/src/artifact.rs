@@ -54,14 +54,15 @@ impl EncodedArtifact {
         pieces: impl Iterator<Item = std::io::Result<T>>,
     ) -> Result<Self, ArtifactError> {
         let mut row_count = 0;
-        let file = BufWriter::new(tempfile::tempfile_in(scratch)?);
-        let mut writer = parquet::Writer::new(file, layout)?;
+        let mut file = BufWriter::new(tempfile::tempfile_in(scratch)?);
+        let mut writer = parquet::Writer::new(&mut file, layout)?;
         for piece in pieces {
             let piece = piece?;
             row_count += piece.borrow().rows();
             writer.write(piece.borrow())?;
         }
-        let file = writer.finish()?.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        writer.finish()?;
+        let file = file.into_inner().map_err(std::io::IntoInnerError::into_error)?;
         Ok(Self { name, media_type: PARQUET, row_count, file })
     }
 

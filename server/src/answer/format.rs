@@ -1,6 +1,6 @@
 //! Which format a table is served in, and how.
 
-use std::io::{self, Write};
+use std::io;
 
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, header};
@@ -8,7 +8,7 @@ use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
-use drillsweep_table::{Source, Table, TableError, csv, json, npz, parquet};
+use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
@@ -249,7 +249,7 @@ impl Answer {
     }
 
     /// Writes the body.
-    pub(crate) fn write(&self, mut sink: impl Write + Send) -> Result<(), TableError> {
+    pub(crate) fn write(&self, sink: &mut Sink<'_>) -> Result<(), TableError> {
         match &self.content {
             Content::Table(table) => write(table, self.head.format, sink),
             Content::Part(part) => write(&part.1, self.head.format, sink),
@@ -273,7 +273,7 @@ pub(crate) fn select(table: Table, fields: Option<&[String]>) -> Result<Table> {
     Ok(selected.map_err(|missing| Box::new(ProblemDetails::no_such_column(&table, &missing)))?)
 }
 
-fn write(source: &impl Source, format: Format, sink: impl Write + Send) -> Result<(), TableError> {
+fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<(), TableError> {
     match format {
         Format::Json => json::write_to(source, sink),
         Format::Csv => csv::write_to(source, sink),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::blob::{BlobStore, ObjectsLocation};
-use crate::database::{Database, DatabaseLocation, Transaction, postgres, sqlite};
+use crate::database::{Database, DatabaseLocation, Transaction};
 use crate::error::Result;
 use crate::notification::Listening;
 use crate::query::query;
@@ -75,13 +75,7 @@ impl Store {
     /// # Errors
     /// When a directory cannot be made, or the database cannot be opened or migrated.
     pub async fn open(config: &StoreConfig) -> Result<Self> {
-        let database = match &config.database {
-            DatabaseLocation::Sqlite(path) => sqlite::open(path, config.role, config.clock_offset_ms).await?,
-            DatabaseLocation::Postgres(options) => {
-                postgres::open(options, config.role, config.clock_offset_ms).await?
-            }
-        };
-        Self::with(config, database)
+        Self::with(config, Database::open(config).await?)
     }
 
     /// Opens the store to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
@@ -89,11 +83,7 @@ impl Store {
     /// # Errors
     /// When the database cannot be opened.
     pub async fn open_read_only(config: &StoreConfig) -> Result<Self> {
-        let database = match &config.database {
-            DatabaseLocation::Sqlite(path) => sqlite::open_read_only(path).await?,
-            DatabaseLocation::Postgres(options) => postgres::open_read_only(options).await?,
-        };
-        Self::with(config, database)
+        Self::with(config, Database::open_read_only(config).await?)
     }
 
     fn with(config: &StoreConfig, database: Database) -> Result<Self> {

@@ -5,17 +5,21 @@
 //! a turnstile that one passes at a time (migrations/postgres/0002_queues.sql). All that changes several (submitting, cancelling, pausing,
 //! collecting garbage) runs alone, as everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold
 //! shared. Triggers take the shared lock and the turnstile, so that no statement can forget them.
+//!
+//! Futures are boxed here for the reason that `query.rs` gives.
 
 mod location;
 pub(crate) mod postgres;
 pub(crate) mod sqlite;
 
+use futures::future::BoxFuture;
 use sqlx::{PgPool, SqlitePool, SqliteTransaction};
 use tokio::sync::OwnedMutexGuard;
 
 pub use self::location::DatabaseLocation;
 use self::postgres::PostgresTransaction;
 pub(crate) use self::sqlite::Writers;
+use crate::connection::StoreConfig;
 use crate::error::Result;
 use crate::query::Session;
 
@@ -39,66 +43,106 @@ pub(crate) enum Transaction {
 }
 
 impl Database {
-    /// A transaction that sees one state of the database and changes nothing.
-    pub(crate) async fn read(&self) -> Result<Transaction> {
-        Ok(match self {
-            Database::Sqlite(pool, _) => {
-                Transaction::Sqlite { transaction: pool.begin_with("BEGIN").await?, _turn: None }
+    /// Connects to it and brings its schema up to date. Any number of processes may do so at once.
+    pub(crate) fn open(config: &StoreConfig) -> BoxFuture<'_, Result<Self>> {
+        Box::pin(async move {
+            match &config.database {
+                DatabaseLocation::Sqlite(path) => {
+                    sqlite::open(path, config.role, config.clock_offset_ms).await
+                }
+                DatabaseLocation::Postgres(options) => {
+                    postgres::open(options, config.role, config.clock_offset_ms).await
+                }
             }
-            Database::Postgres(pool) => Transaction::Postgres(PostgresTransaction::read(pool).await?),
+        })
+    }
+
+    /// Connects to it to look at it: nothing of it is made or changed.
+    pub(crate) fn open_read_only(config: &StoreConfig) -> BoxFuture<'_, Result<Self>> {
+        Box::pin(async move {
+            match &config.database {
+                DatabaseLocation::Sqlite(path) => sqlite::open_read_only(path).await,
+                DatabaseLocation::Postgres(options) => postgres::open_read_only(options).await,
+            }
+        })
+    }
+
+    /// A transaction that sees one state of the database and changes nothing.
+    pub(crate) fn read(&self) -> BoxFuture<'_, Result<Transaction>> {
+        Box::pin(async move {
+            Ok(match self {
+                Database::Sqlite(pool, _) => {
+                    Transaction::Sqlite { transaction: pool.begin_with("BEGIN").await?, _turn: None }
+                }
+                Database::Postgres(pool) => Transaction::Postgres(PostgresTransaction::read(pool).await?),
+            })
         })
     }
 
     /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
-    pub(crate) async fn write(&self) -> Result<Transaction> {
-        match self {
-            Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-            Database::Postgres(pool) => Ok(Transaction::Postgres(PostgresTransaction::alone(pool).await?)),
-        }
+    pub(crate) fn write(&self) -> BoxFuture<'_, Result<Transaction>> {
+        Box::pin(async move {
+            match self {
+                Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
+                Database::Postgres(pool) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::alone(pool).await?))
+                }
+            }
+        })
     }
 
     /// A transaction that changes the state of one work item and what belongs to it, beside others that do so.
-    pub(crate) async fn write_one(&self) -> Result<Transaction> {
-        match self {
-            Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-            Database::Postgres(pool) => {
-                Ok(Transaction::Postgres(PostgresTransaction::beside_others(pool).await?))
+    pub(crate) fn write_one(&self) -> BoxFuture<'_, Result<Transaction>> {
+        Box::pin(async move {
+            match self {
+                Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
+                Database::Postgres(pool) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::beside_others(pool).await?))
+                }
             }
-        }
+        })
     }
 
     /// Closes all connections.
-    pub(crate) async fn close(&self) {
-        match self {
-            Database::Sqlite(pool, _) => pool.close().await,
-            Database::Postgres(pool) => pool.close().await,
-        }
+    pub(crate) fn close(&self) -> BoxFuture<'_, ()> {
+        Box::pin(async move {
+            match self {
+                Database::Sqlite(pool, _) => pool.close().await,
+                Database::Postgres(pool) => pool.close().await,
+            }
+        })
     }
 }
 
 impl Transaction {
-    pub(crate) async fn commit(self) -> Result<()> {
-        match self {
-            Transaction::Sqlite { transaction, .. } => transaction.commit().await?,
-            Transaction::Postgres(transaction) => transaction.commit().await?,
-        }
-        Ok(())
+    pub(crate) fn commit(self) -> BoxFuture<'static, Result<()>> {
+        Box::pin(async move {
+            match self {
+                Transaction::Sqlite { transaction, .. } => transaction.commit().await?,
+                Transaction::Postgres(transaction) => transaction.commit().await?,
+            }
+            Ok(())
+        })
     }
 
     /// Commits a change of the state of a work item. On PostgreSQL it goes through the turnstile.
-    pub(crate) async fn commit_in_turn(self) -> Result<()> {
-        match self {
-            Transaction::Sqlite { .. } => self.commit().await,
-            Transaction::Postgres(transaction) => transaction.commit_in_turn().await,
-        }
+    pub(crate) fn commit_in_turn(self) -> BoxFuture<'static, Result<()>> {
+        Box::pin(async move {
+            match self {
+                Transaction::Sqlite { .. } => self.commit().await,
+                Transaction::Postgres(transaction) => transaction.commit_in_turn().await,
+            }
+        })
     }
 
-    pub(crate) async fn rollback(self) -> Result<()> {
-        match self {
-            Transaction::Sqlite { transaction, .. } => transaction.rollback().await?,
-            Transaction::Postgres(transaction) => transaction.rollback().await?,
-        }
-        Ok(())
+    pub(crate) fn rollback(self) -> BoxFuture<'static, Result<()>> {
+        Box::pin(async move {
+            match self {
+                Transaction::Sqlite { transaction, .. } => transaction.rollback().await?,
+                Transaction::Postgres(transaction) => transaction.rollback().await?,
+            }
+            Ok(())
+        })
     }
 }
 

@@ -2,7 +2,11 @@
 //!
 //! A statement has a text for each engine, and the same parameters and columns on all of them. Both engines are compiled in: which
 //! one it is, is known only when the store is opened.
+//!
+//! What runs a statement gives boxed futures, which are not generic: sqlx's code for both engines is then compiled with this crate, and not
+//! once more with every crate that waits for one of its functions.
 
+use futures::future::BoxFuture;
 use sqlx::postgres::{PgArguments, PgQueryResult, PgRow};
 use sqlx::sqlite::{SqliteArguments, SqliteQueryResult, SqliteRow};
 use sqlx::{
@@ -77,29 +81,38 @@ impl<T> Column for T where
 {
 }
 
-/// Makes one of sqlx's queries for the session's engine, and runs it.
+/// Runs one of sqlx's queries on the session's engine.
 macro_rules! run {
-    ($query:expr, $session:expr, $make:path, $method:ident, $then:expr) => {{
+    ($query:expr, $session:expr, $method:ident, $then:expr) => {{
         let Query { statement, parameters } = $query;
-        match $session.into() {
+        match $session {
             Session::Sqlite(connection) => {
-                let query = $make(statement.sqlite, sqlite_arguments(parameters)?);
+                let query = sqlx::query_with(statement.sqlite, sqlite_arguments(parameters)?);
                 $then(query.$method(connection).await?)
             }
             Session::SqlitePool(pool) => {
-                let query = $make(statement.sqlite, sqlite_arguments(parameters)?);
+                let query = sqlx::query_with(statement.sqlite, sqlite_arguments(parameters)?);
                 $then(query.$method(pool).await?)
             }
             Session::Postgres(connection) => {
-                let query = $make(statement.postgres, postgres_arguments(parameters)?);
+                let query = sqlx::query_with(statement.postgres, postgres_arguments(parameters)?);
                 $then(query.$method(connection).await?)
             }
             Session::PostgresPool(pool) => {
-                let query = $make(statement.postgres, postgres_arguments(parameters)?);
+                let query = sqlx::query_with(statement.postgres, postgres_arguments(parameters)?);
                 $then(query.$method(pool).await?)
             }
         }
     }};
+}
+
+fn execute(query: Query, session: Session<'_>) -> BoxFuture<'_, Result<u64>> {
+    Box::pin(async move { Ok(run!(query, session, execute, Changed::rows)) })
+}
+
+/// All rows of a statement: it then runs to its commit, and an error of that is seen.
+fn fetch(query: Query, session: Session<'_>) -> BoxFuture<'_, Result<Vec<Row>>> {
+    Box::pin(async move { Ok(run!(query, session, fetch_all, Row::all)) })
 }
 
 impl Query {
@@ -111,12 +124,12 @@ impl Query {
 
     /// Runs it, and tells how many rows it changed.
     pub(crate) async fn execute<'c>(self, session: impl Into<Session<'c>>) -> Result<u64> {
-        Ok(run!(self, session, sqlx::query_with, execute, Changed::rows))
+        execute(self, session.into()).await
     }
 
-    /// Runs it and gives its rows. All of them are fetched, so that the statement runs to its commit and an error of that is seen.
+    /// Runs it and gives its rows.
     pub(crate) async fn rows<'c, T: Record>(self, session: impl Into<Session<'c>>) -> Result<Vec<T>> {
-        Ok(run!(self, session, sqlx::query_as_with, fetch_all, std::convert::identity))
+        fetch(self, session.into()).await?.iter().map(Row::record).collect()
     }
 
     /// The same in a transaction of its own, beside which nothing runs that has to run alone.
@@ -149,8 +162,7 @@ impl Query {
         session: impl Into<Session<'c>>,
         read: impl Fn(&Row) -> Result<T>,
     ) -> Result<Vec<T>> {
-        let rows = run!(self, session, sqlx::query_with, fetch_all, Row::all);
-        rows.iter().map(read).collect()
+        fetch(self, session.into()).await?.iter().map(read).collect()
     }
 
     /// Runs a statement that gives one row, or none: the first, read by the names of its columns.
@@ -203,6 +215,14 @@ impl Row {
         Ok(match self {
             Row::Sqlite(row) => row.try_get(name)?,
             Row::Postgres(row) => row.try_get(name)?,
+        })
+    }
+
+    /// All of its columns.
+    fn record<T: Record>(&self) -> Result<T> {
+        Ok(match self {
+            Row::Sqlite(row) => T::from_row(row)?,
+            Row::Postgres(row) => T::from_row(row)?,
         })
     }
 

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use futures::future::BoxFuture;
 use sqlx::pool::PoolConnection;
 use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, PgRow};
 use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Postgres};
@@ -177,8 +178,10 @@ pub(crate) async fn in_turn(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>
 }
 
 /// Statements in one message are one transaction. The first takes a lock.
-async fn script(pool: &PgPool, statements: String) -> Result<Vec<PgRow>> {
-    let rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
-    // The first row is what taking the lock gave.
-    Ok(rows.into_iter().skip(1).collect())
+fn script(pool: &PgPool, statements: String) -> BoxFuture<'_, Result<Vec<PgRow>>> {
+    Box::pin(async move {
+        let rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
+        // The first row is what taking the lock gave.
+        Ok(rows.into_iter().skip(1).collect())
+    })
 }

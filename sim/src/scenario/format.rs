@@ -1,17 +1,17 @@
 //! Scenarios as TOML and JSON.
 //!
-//! Every format is erased (`erased_serde`) before a scenario is read or written, so that the code for each of its types is compiled once. Compiled
-//! for each format it would be a third of this crate's code.
+//! Every format is erased (`erased_serde`) before a scenario is read or written, so that the code for each of its types is compiled once, in
+//! this crate. Compiled for each format it would be a third of this crate's code, and a part of all crates whose types hold scenarios.
 
-use serde::de::{DeserializeOwned, Deserializer, IgnoredAny};
+use serde::de::{DeserializeOwned, Deserializer, Error as _, IgnoredAny};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::{Problem, Scenario};
 
 impl Scenario {
     /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
     pub(crate) fn tree(&self) -> toml::Value {
-        toml::Value::try_from(self.erased())
-            .expect("a scenario has only string keys and no value that TOML lacks")
+        toml::Value::try_from(self).expect("a scenario has only string keys and no value that TOML lacks")
     }
 
     /// Reads a scenario from TOML.
@@ -34,22 +34,47 @@ impl Scenario {
 
     /// Writes the scenario as TOML.
     pub fn to_toml(&self) -> String {
-        toml::to_string_pretty(self.erased())
-            .expect("a scenario has only string keys and no value that TOML lacks")
+        toml::to_string_pretty(self).expect("a scenario has only string keys and no value that TOML lacks")
     }
 
     /// Writes the scenario as JSON.
     pub fn to_json(&self) -> String {
-        serde_json::to_string_pretty(self.erased()).expect("a scenario has only string keys")
+        serde_json::to_string_pretty(self).expect("a scenario has only string keys")
     }
 
     /// The scenario as a JSON document.
     pub(super) fn to_value(&self) -> serde_json::Value {
-        serde_json::to_value(self.erased()).expect("a scenario has only string keys")
+        serde_json::to_value(self).expect("a scenario has only string keys")
     }
 
-    fn erased(&self) -> &dyn erased_serde::Serialize {
-        self
+    fn fields(&self) -> Box<dyn erased_serde::Serialize + '_> {
+        Box::new(Fields(self))
+    }
+
+    fn from_fields(format: &mut dyn erased_serde::Deserializer<'_>) -> Result<Self, erased_serde::Error> {
+        // The function that serde derives, not the trait's.
+        Scenario::deserialize(format)
+    }
+}
+
+impl Serialize for Scenario {
+    fn serialize<S: Serializer>(&self, format: S) -> Result<S::Ok, S::Error> {
+        erased_serde::serialize(&*self.fields(), format)
+    }
+}
+
+impl<'de> Deserialize<'de> for Scenario {
+    fn deserialize<D: Deserializer<'de>>(format: D) -> Result<Self, D::Error> {
+        Self::from_fields(&mut <dyn erased_serde::Deserializer<'_>>::erase(format)).map_err(D::Error::custom)
+    }
+}
+
+/// A scenario as serde's derived function writes it.
+struct Fields<'s>(&'s Scenario);
+
+impl Serialize for Fields<'_> {
+    fn serialize<S: Serializer>(&self, format: S) -> Result<S::Ok, S::Error> {
+        Scenario::serialize(self.0, format)
     }
 }
 

@@ -19,8 +19,8 @@ use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
-    cost, docs, events, export, files, health, points, results, scenarios, session, status, sweeps,
-    verification, web,
+    cost, events, export, files, health, points, results, scenarios, session, status, sweeps, verification,
+    web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -75,8 +75,7 @@ fn documented() -> OpenApiRouter<App> {
         // For people: no part of what programs talk to.
         .route("/", get(web::page))
         .route("/web/{version}/{*path}", get(web::file))
-        .route("/docs", get(docs::start))
-        .route("/docs/{name}", get(docs::file))
+        .route("/docs", get(web::documentation))
         .routes(routes!(health::alive))
         .routes(routes!(health::ready))
 }

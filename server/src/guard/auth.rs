@@ -19,12 +19,11 @@ use crate::guard::audit;
 use crate::route::session::session_cookie;
 
 /// What everybody may ask for: health checks have no tokens, the document is what a client begins with, and the page what people do.
-const OPEN: [&str; 8] = [
+const OPEN: [&str; 7] = [
     "/livez",
     "/readyz",
     "/openapi.json",
     "/docs",
-    "/docs/{name}",
     "/",
     "/web/{version}/{*path}",
     // Whoever has no token yet logs in here; what it tells of the session, it tells its bearer alone.

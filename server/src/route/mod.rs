@@ -1,7 +1,6 @@
 //! The routes, a file for each thing that is asked about.
 
 pub(crate) mod cost;
-pub(crate) mod docs;
 pub(crate) mod events;
 pub(crate) mod export;
 pub(crate) mod files;

@@ -1,4 +1,4 @@
-//! The web page: the files of `server/web/`, which come with the program, so that the page needs no other network.
+//! The web page, and the API's document as pages: the files of `server/web/`, which come with the program, so that they need no other network.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _};
@@ -17,7 +17,8 @@ use crate::guard::middleware;
 /// Path, hash and compressed bytes of each file.
 const FILES: &[(&str, &str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
 
-/// What the page may load: files and answers of this service alone. plotly.js sets styles of its elements, and makes pictures from blobs.
+/// What the page may load: files and answers of this service alone. plotly.js sets styles of its elements, and makes pictures from blobs;
+/// Swagger UI sets styles, too, and has icons in its own text.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 
@@ -41,22 +42,33 @@ static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
     FILES.iter().map(|(path, _, bytes)| (*path, file(*bytes))).collect()
 });
 
-/// The page, whose files are those of this version.
+/// The page on which sweeps are watched.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
-    static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| {
-        let text = BY_PATH.get("index.html").map(File::plain).transpose()?.unwrap_or_default();
-        Ok(str::from_utf8(&text)
-            .map_err(io::Error::other)?
-            .replace("\"web/", &format!("\"/web/{}/", *VERSION)))
-    });
-    let text = PAGE.as_ref().map_err(Error::internal)?;
+    static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| html("index.html"));
+    html_response(&PAGE, &uri)
+}
+
+/// The API's document as pages to read and try.
+pub(crate) async fn documentation(uri: Uri) -> Result<Response> {
+    static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| html("docs.html"));
+    html_response(&PAGE, &uri)
+}
+
+/// A page, whose files are those of this version; empty if there is no such page.
+fn html(path: &str) -> io::Result<String> {
+    let text = BY_PATH.get(path).map(File::plain).transpose()?.unwrap_or_default();
+    Ok(str::from_utf8(&text).map_err(io::Error::other)?.replace("\"web/", &format!("\"/web/{}/", *VERSION)))
+}
+
+fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Response> {
+    let text = page.as_ref().map_err(Error::internal)?;
     if text.is_empty() {
-        return Err(missing(&uri));
+        return Err(missing(uri));
     }
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("text/html; charset=utf-8")),
         (header::CACHE_CONTROL, HeaderValue::from_static("no-cache")),
-        (header::ETAG, tag("page")?),
+        (header::ETAG, tag(uri.path())?),
     ];
     Ok((headers, usual(), text.as_str()).into_response())
 }
@@ -67,7 +79,7 @@ pub(crate) async fn file(
     headers: HeaderMap,
     Path((version, path)): Path<(String, String)>,
 ) -> Result<Response> {
-    let file = BY_PATH.get(path.as_str()).filter(|_| version == *VERSION && path != "index.html");
+    let file = BY_PATH.get(path.as_str()).filter(|_| version == *VERSION && !path.ends_with(".html"));
     let file = file.ok_or_else(|| missing(&uri))?;
     let takes_gzip = middleware::takes_gzip(&headers);
     let form = if takes_gzip { "gzip" } else { "plain" };

@@ -41,9 +41,7 @@ fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {
             if name != "node_modules" {
                 collect(&path, paths)?;
             }
-        } else if path.extension().is_some_and(|end| SERVED.iter().any(|served| end == *served))
-            || name == "quantities.json"
-        {
+        } else if path.extension().is_some_and(|end| SERVED.iter().any(|served| end == *served)) {
             paths.push(path);
         }
     }

@@ -16,6 +16,7 @@ pub mod point;
 pub mod preset;
 pub mod problem;
 pub mod request;
+pub mod scene;
 pub mod service;
 pub mod sweep;
 pub mod time_span;
@@ -37,7 +38,10 @@ pub use service::{
     Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
     ScenarioList, Session, Worker, WorkerList,
 };
-pub use sweep::{PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList, SweepState, SweepVerification};
+pub use sweep::{
+    ColumnEntry, ColumnKind, ColumnList, PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList,
+    SweepState, SweepVerification,
+};
 pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -1,5 +1,6 @@
 //! A sweep as the service shows it.
 
+use drillsweep_table::{Column, Table};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -130,6 +131,53 @@ pub struct SweepVerification {
     /// Where biases exceed what the accuracy promises, in words; likewise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+}
+
+/// The columns of a sweep's table, as far as its points have any.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ColumnList {
+    /// The columns, in their order.
+    pub columns: Vec<ColumnEntry>,
+}
+
+/// A column without its values.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ColumnEntry {
+    /// Its name; `GET /v1/quantities` says what it stands for.
+    pub name: String,
+    /// What its values are.
+    pub kind: ColumnKind,
+    /// The unit of its values, where they have one; `1` of ratios.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// What the values of a column are; of every kind some may be missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ColumnKind {
+    /// Whole numbers.
+    Integer,
+    /// Numbers.
+    Number,
+    /// Texts.
+    Text,
+}
+
+impl ColumnList {
+    /// The columns of a table.
+    pub fn of(table: &Table) -> Self {
+        let entry = |(name, column): (&String, &Column)| ColumnEntry {
+            name: name.clone(),
+            kind: match column {
+                Column::Integer(_) => ColumnKind::Integer,
+                Column::Number(_) | Column::Single(_) => ColumnKind::Number,
+                Column::Text(_) => ColumnKind::Text,
+            },
+            unit: table.units.get(name).cloned(),
+        };
+        Self { columns: table.columns.iter().map(entry).collect() }
+    }
 }
 
 /// Where to read more about a sweep.

@@ -19,8 +19,8 @@ use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
-    cost, events, export, files, health, points, results, scenarios, session, status, sweeps, verification,
-    web,
+    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, statistics,
+    status, sweeps, verification, web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -47,6 +47,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::pause))
         .routes(routes!(sweeps::resume))
         .routes(routes!(sweeps::table))
+        .routes(routes!(sweeps::columns))
         .routes(routes!(verification::show))
         .routes(routes!(events::follow))
         .routes(routes!(export::export))
@@ -63,9 +64,13 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(results::spectrum))
         .routes(routes!(results::contacts))
         .routes(routes!(results::energy))
+        .routes(routes!(statistics::show))
+        .routes(routes!(scene::plan))
+        .routes(routes!(scene::modes))
         .routes(routes!(cost::show))
         .routes(routes!(scenarios::list))
         .routes(routes!(scenarios::show))
+        .routes(routes!(quantities::list))
         .routes(routes!(status::workers))
         .routes(routes!(status::queue))
         .routes(routes!(status::limits))

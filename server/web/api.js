@@ -37,14 +37,35 @@ export function address(path, query = {}) {
   return text ? `${path}?${text}` : path;
 }
 
+/** What every answer waits for. @type {Promise<unknown>} */
+let needed = Promise.resolve();
+
+/**
+ * Lets requests go out at once, and holds their answers back until what every view needs is there.
+ * @param {Promise<unknown>} work
+ */
+export function answerAfter(work) {
+  needed = work;
+}
+
 /**
  * @param {string} path
  * @param {Record<string, any>} [query]
  * @param {AbortSignal} [signal]
  * @returns {Promise<any>}
  */
-export function get(path, query, signal) {
-  return ask("GET", address(path, query), undefined, signal);
+export async function get(path, query, signal) {
+  const [answer] = await Promise.all([ask("GET", address(path, query), undefined, signal), needed]);
+  return answer;
+}
+
+/**
+ * As `get`, for what every view needs.
+ * @param {string} path
+ * @returns {Promise<any>}
+ */
+export function getNeeded(path) {
+  return ask("GET", path, undefined);
 }
 
 /**

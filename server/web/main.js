@@ -1,6 +1,6 @@
 // The frame: which view the link asks for, the session, settings, and what is said when the service is gone.
 
-import { connection, Problem, Unreachable } from "./api.js";
+import { answerAfter, connection, Problem, Unreachable } from "./api.js";
 import { fill, h } from "./dom.js";
 import { reported } from "./notices.js";
 import { route } from "./router.js";
@@ -138,6 +138,5 @@ settings.addEventListener("change", () => {
 addEventListener("hashchange", () => void show());
 
 apply();
-await Promise.all([loadQuantities(), loadSession()]);
-drawSwitches();
+answerAfter(Promise.all([loadQuantities(), loadSession().then(drawSwitches)]));
 await show();

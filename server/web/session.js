@@ -1,6 +1,6 @@
 // Who is logged in, and what that allows.
 
-import { connection, get, send } from "./api.js";
+import { connection, getNeeded, send } from "./api.js";
 import { h } from "./dom.js";
 
 /** @typedef {{tokens_required: boolean, owner?: string, name?: string, scope?: string, expires?: string}} Session */
@@ -22,7 +22,7 @@ export function maySubmit() {
 export const MAY_NOT = "Your token only allows reading";
 
 export async function loadSession() {
-  current = await get("/v1/session").catch(() => current);
+  current = await getNeeded("/v1/session").catch(() => current);
 }
 
 export async function logOut() {

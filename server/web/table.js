@@ -17,7 +17,6 @@ export class SweepTable {
   /** @param {any} sweep @param {AbortSignal} signal */
   constructor(sweep, signal) {
     this.path = `/v1/sweeps/${encodeURIComponent(sweep.id)}/table`;
-    this.self = `/v1/sweeps/${encodeURIComponent(sweep.id)}`;
     this.isWhole = sweep.counts.total <= WHOLE;
     this.signal = signal;
   }
@@ -30,20 +29,11 @@ export class SweepTable {
       this.names = [...this.#columns.keys()];
     } else {
       const wanted = [...new Set(["ordinal", "state", ...this.#columns.keys()])];
-      this.#columns = await this.#fetch(wanted);
-      if (this.names.length < 3) this.names = await this.#learn();
+      const [columns, listed] = await Promise.all([this.#fetch(wanted), get(`${this.path}/columns`, {}, this.signal)]);
+      this.#columns = columns;
+      this.names = listed.columns.map((/** @type {any} */ column) => column.name);
     }
     this.rows = this.#columns.get("ordinal")?.length ?? 0;
-  }
-
-  /** The names of the columns, from a point that has them: no answer lists them without their values. */
-  async #learn() {
-    const { points } = await get(`${this.self}/points`, { state: "succeeded", limit: 1 }, this.signal);
-    const { points: first } = points.length ? { points } : await get(`${this.self}/points`, { limit: 1 }, this.signal);
-    const names = ["ordinal", "state", ...Object.keys(first[0]?.parameters ?? {})];
-    if (!points.length) return names;
-    const point = await get(`${this.self}/points/${points[0].ordinal}`, {}, this.signal);
-    return [...new Set([...names, ...Object.keys(point.summary ?? {}), "error", "error_time", "error_node"])];
   }
 
   /**
@@ -72,6 +62,26 @@ export class SweepTable {
   results() {
     return this.names.filter((name) => name !== "ordinal" && name !== "error");
   }
+}
+
+/** Paths of a scenario that the table calls by a shorter name. @type {Record<string, string>} */
+const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
+
+/**
+ * The swept parameters, as the table calls them: in the request's order, how it gives the values of each, and what it calls them.
+ * @param {any} sweep with its request
+ * @param {string[]} names of the table's columns
+ * @returns {{axes: string[], spans: Record<string, any>, paths: Record<string, string>}}
+ */
+export function sweptBy(sweep, names) {
+  const given = sweep.request?.axes ?? {};
+  const paths = Object.keys(given).length ? Object.keys(given) : Object.keys(sweep.request?.points?.[0] ?? {});
+  const known = paths.map((path) => ({ path, name: names.includes(path) ? path : (SHORT[path] ?? path) })).filter(({ name }) => names.includes(name));
+  return {
+    axes: known.map(({ name }) => name),
+    spans: Object.fromEntries(known.map(({ path, name }) => [name, given[path]])),
+    paths: Object.fromEntries(known.map(({ path, name }) => [name, path])),
+  };
 }
 
 /** @param {Values} values */

@@ -1,5 +1,6 @@
 // What the names of columns and of a scenario's fields stand for, and the units in which they are shown.
 
+import { getNeeded } from "./api.js";
 import { unitSystem } from "./settings.js";
 
 /**
@@ -17,8 +18,7 @@ let registry = {};
 
 /** Reads the registry; names are shown as they are until then. */
 export async function loadQuantities() {
-  const answer = await fetch(new URL("quantities.json", import.meta.url));
-  if (answer.ok) registry = await answer.json();
+  registry = await getNeeded("/v1/quantities").catch(() => registry);
 }
 
 const VARIANT = /^(spread|ensemble_mean|reference|bias)_(.+)$/;

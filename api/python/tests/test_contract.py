@@ -24,6 +24,11 @@ parameters = {{ "path.name" = "profile" }}
 include-operation-id = "delete_sweep"
 parameters = {{ "query.dry_run" = true }}
 
+# Modes take seconds.
+[[operations]]
+include-operation-id = "get_modes"
+parameters = {{ "query.to_hz" = 2 }}
+
 [[operations]]
 include-operation-id = "get_scenario"
 parameters = {{ "path.name" = "paper-200m" }}
@@ -47,7 +52,7 @@ def test_service_keeps_to_its_document(tmp_path: Path) -> None:
     )
     service.stop()
     assert run.returncode == 0, run.stdout
-    assert "Tested: 38" in run.stdout, run.stdout
+    assert "Tested: 43" in run.stdout, run.stdout
     # The sweep was there for all but this: it has no cost study.
     _, _, missing = run.stdout.partition("Missing test data")
     without_data = re.findall(r"^  - (.+)$", missing.partition("💡")[0], re.MULTILINE)

@@ -26,6 +26,35 @@ def test_orbit_and_summary_follow_from_the_recorded_motion(sweep: Sweep) -> None
     assert orbit.units == {"time": "s", "u": "m", "v": "m", "radius": "m"}
 
 
+def test_statistics_of_the_orbit_window_are_those_of_the_summary(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    statistics = point.statistics(time=(0.1, 0.5))
+    assert statistics.attributes["samples"] == 400
+    assert point.summary is not None
+    for row, node in enumerate(statistics["node"]):
+        for name in ("orbit_radius_rms", "orbit_mean_radius", "orbit_radius_deviation", "orbit_offset"):
+            # Samples are kept in single precision.
+            assert statistics[name][row] == pytest.approx(point.summary[f"{name}_{node}"], rel=1e-3), name
+    assert point.statistics(node=49, time=(0.1, 0.5))["orbit_radius_rms"] == statistics["orbit_radius_rms"][1]
+
+
+def test_a_thinned_history_keeps_its_extremes(sweep: Sweep) -> None:
+    whole = sweep.point(1).history(node=49)["u_49"]
+    thinned = sweep.point(1).history(node=49, max_points=100, decimation="minmax")
+    assert thinned.rows <= 100
+    assert (thinned["u_49"].min(), thinned["u_49"].max()) == (whole.min(), whole.max())
+
+
+def test_a_point_tells_its_plan_and_its_modes(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    effects = {effect["effect"]: effect for effect in point.plan()["effects"]}
+    assert effects["friction"]["active"]
+    assert effects["friction"]["reason"]
+    modes = point.modes(to_hz=5.0)
+    assert modes["completeness"] == "counted"
+    assert [mode["frequency_hz"] for mode in modes["modes"]] == sorted(mode["frequency_hz"] for mode in modes["modes"])
+
+
 def test_full_spectrum_is_the_transform_of_the_orbit(sweep: Sweep) -> None:
     point = sweep.point(1)
     orbit = point.orbit(node=49, time=(0.1, 0.5))

@@ -5,5 +5,6 @@ pub mod node;
 pub mod orbit;
 pub mod points;
 pub mod spectrum;
+pub mod statistics;
 pub mod verification;
 pub mod window;

@@ -91,7 +91,7 @@ pub(crate) struct NodeSpectrum {
 /// The lateral motion of one recorded node.
 pub(crate) struct NodeMotion {
     pub(crate) node: u32,
-    measured_depth: f64,
+    pub(crate) measured_depth: f64,
     time: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
@@ -279,7 +279,7 @@ impl Recording {
     }
 
     /// The recorded nodes, by the columns of the history.
-    fn nodes(&self, layout: &Table) -> Result<Vec<Recorded>> {
+    pub(crate) fn nodes(&self, layout: &Table) -> Result<Vec<Recorded>> {
         nodes_among(&self.statics, node::recorded(layout.columns.keys().map(String::as_str)))
     }
 

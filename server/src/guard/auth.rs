@@ -18,11 +18,12 @@ use crate::app::App;
 use crate::guard::audit;
 use crate::route::session::session_cookie;
 
-/// What everybody may ask for: health checks have no tokens, the document is what a client begins with, and the page what people do.
-const OPEN: [&str; 7] = [
+/// What everybody may ask for: health checks have no tokens, document and vocabulary are what a client begins with, and the page what people do.
+const OPEN: [&str; 8] = [
     "/livez",
     "/readyz",
     "/openapi.json",
+    "/v1/quantities",
     "/docs",
     "/",
     "/web/{version}/{*path}",

@@ -3,11 +3,13 @@
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
-use drillsweep_api::view::{history, node, orbit, spectrum};
+use drillsweep_api::view::history::{self, Decimation, Extremes};
+use drillsweep_api::view::{node, orbit, spectrum};
 use drillsweep_chart as chart;
 use drillsweep_store::Store;
-use drillsweep_table::Table;
+use drillsweep_table::parquet::Cut;
 use drillsweep_table::quantity::tables::{self, Layout};
+use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
@@ -18,7 +20,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
 use crate::answer::records;
-use crate::answer::stored::Stored;
+use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
 
 /// Which point's result.
@@ -217,10 +219,14 @@ pub(crate) struct HistoryQuery {
     /// End of the window \[s\], not included.
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
-    /// At most so many rows: every k-th one stays. Absent means all.
+    /// At most so many rows; which of them stay, `decimation` says. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
     max_points: Option<u32>,
+    /// Which rows stay of more than `max_points`. With `minmax` these are at least two for each column besides `time`.
+    #[serde(default)]
+    #[param(inline)]
+    decimation: Decimation,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
@@ -275,8 +281,12 @@ pub(crate) async fn history(
         return whole_file(&app, recording.history, &file_name).await;
     }
     let title = caption(&app.store, &id, n, "History").await?;
-    let picture = if format.is_picture() { MOST_SHOWN as u64 * MEMORY_OF_SHOWN } else { 0 };
-    let place = app.view(format.memory(recording.history.memory().await? + picture)).await?;
+    let drawing = if format.is_picture() { MOST_SHOWN as u64 * MEMORY_OF_SHOWN } else { 0 };
+    let kept = match query.decimation {
+        Decimation::Stride => 0,
+        Decimation::Minmax => memory_of_rows(&recording.history, query.max_points),
+    };
+    let place = app.view(format.memory(recording.history.memory().await? + drawing + kept)).await?;
     place
         .answer(move || {
             let history = recording.history.open()?;
@@ -285,24 +295,60 @@ pub(crate) async fn history(
                 Some(choice) => recording.layout_of(choice, history.layout().clone())?,
             };
             let samples = recording.samples(&history, query.from, query.to)?;
-            let stride = history::stride(samples.len(), query.max_points.map(|points| points as usize));
+            let most = query.max_points.map(|points| points as usize);
+            let extremes =
+                most.filter(|most| query.decimation == Decimation::Minmax && *most < samples.len());
+            let stride = if extremes.is_some() { 1 } else { history::stride(samples.len(), most) };
             let layout = layout.attribute("samples", samples.len());
             if !format.is_picture() {
                 let layout = format::select(layout, query.fields.as_deref())?;
                 let part = history.cut(layout, samples, stride)?;
+                if let Some(most) = extremes {
+                    let table = rows_of_extremes(&recording.history, &part, most)?;
+                    return Answer::of_table(table, None, format, &file_name);
+                }
                 let selection = (recording.statics.blob(), &query);
                 return Ok(Answer::of_part(recording.history, part, format, &file_name, &selection));
             }
             let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
             let columns = layout.columns.len();
             let part = history.cut(layout, samples, stride)?;
-            check_shown(part.rows(), columns)?;
-            let table = part.read().map_err(|error| recording.history.problem(error))?.widened();
+            let table = match extremes {
+                Some(most) => {
+                    check_shown(most, columns)?;
+                    rows_of_extremes(&recording.history, &part, most)?
+                }
+                None => {
+                    check_shown(part.rows(), columns)?;
+                    part.read().map_err(|error| recording.history.problem(error))?
+                }
+            };
+            let table = table.widened();
             let places = recording.places(&table)?;
             let draw = |table: &Table| chart::history(table, query.fields.as_deref(), &places, &title);
             Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
+}
+
+/// The rows of a part of a history that have the extremes of its columns.
+fn rows_of_extremes(history: &Stored, part: &Cut<StoredFile>, most: usize) -> Result<Table> {
+    let fewest = Extremes::fewest(part.layout());
+    if most < fewest {
+        let detail = format!("with minmax must be {fewest} or more: two for each column besides time");
+        return Err(Error::parameter("max_points", Some(&most.to_string()), detail));
+    }
+    let mut extremes = Extremes::new(part.layout(), part.rows(), most);
+    for piece in part.by_rows() {
+        extremes.add(piece.map_err(|error| history.problem(error))?.as_ref());
+    }
+    part.rows_at(&extremes.finish()).map_err(|error| history.problem(error))
+}
+
+/// Bytes of memory that some rows of a history take, at most so many; stored they usually take half of that.
+fn memory_of_rows(history: &Stored, most: Option<u32>) -> u64 {
+    let rows = most.map_or(0, u64::from).min(history.rows());
+    2 * history.length() / history.rows().max(1) * rows
 }
 
 /// Values that a picture of a history shows at most.
@@ -508,7 +554,7 @@ pub(crate) async fn spectrum(
         .await
 }
 
-fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
+pub(crate) fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
     match (from, to) {
         (Some(from), Some(to)) if from >= to => {
             Err(Error::parameter("to", Some(&to.to_string()), format!("must be greater than from, {from}")))
@@ -526,6 +572,6 @@ async fn caption(store: &Store, id: &str, n: u32, what: &str) -> Result<String> 
     Ok(chart::caption(what, &parameters))
 }
 
-fn file_name(id: &str, n: u32, what: &str) -> String {
+pub(crate) fn file_name(id: &str, n: u32, what: &str) -> String {
     format!("sweep-{id}-point-{n}-{what}")
 }

@@ -8,9 +8,9 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use drillsweep_api::{
-    AppendRequest, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails, ProblemKind,
-    RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState, check_patch, expand,
-    expand_added, sample,
+    AppendRequest, ColumnList, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails,
+    ProblemKind, RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState,
+    check_patch, expand, expand_added, sample,
 };
 use drillsweep_chart as chart;
 use drillsweep_store::{
@@ -763,4 +763,23 @@ pub(crate) async fn table(
             })
         })
         .await
+}
+
+/// The columns of the table of a sweep, without their values
+///
+/// In their order, with kinds and units: those of the points as they are now. What a name stands for says `GET /v1/quantities`.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table/columns",
+    tag = "sweeps",
+    operation_id = "list_sweep_table_columns",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The columns", body = ColumnList), Problems)
+)]
+pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> Result<Json<ColumnList>> {
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let verified = Verified::load(&app.store, &id).await?;
+    let runtime = Handle::current();
+    place.run(move || Ok(Json(ColumnList::of(&verified.points(&app.store, &id, &runtime)?.finish())))).await
 }

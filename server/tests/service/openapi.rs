@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
 use drillsweep_api::ProblemKind;
 use drillsweep_server::openapi_json;
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
@@ -53,12 +55,14 @@ fn every_route_is_documented() {
         "get /v1/sweeps/{id}/points",
         "get /v1/failures",
         "get /v1/sweeps/{id}/table",
+        "get /v1/sweeps/{id}/table/columns",
         "get /v1/sweeps/{id}/verification",
         "get /v1/sweeps/{id}/events",
         "get /v1/sweeps/{id}/export",
         "post /v1/runs",
         "get /v1/scenarios",
         "get /v1/scenarios/{name}",
+        "get /v1/quantities",
         "get /v1/workers",
         "get /v1/queue",
         "get /v1/limits",
@@ -75,7 +79,19 @@ fn every_route_is_documented() {
     expected.push(format!("get {point}"));
     expected.push(format!("get {point}/artifacts"));
     expected.push(format!("get {point}/artifacts/{{name}}"));
-    for table in ["profile", "statics", "history", "orbit", "spectrum", "contacts", "energy", "cost"] {
+    for table in [
+        "profile",
+        "statics",
+        "history",
+        "orbit",
+        "spectrum",
+        "contacts",
+        "energy",
+        "cost",
+        "statistics",
+        "plan",
+        "modes",
+    ] {
         expected.push(format!("get {point}/{table}"));
     }
     expected.sort();
@@ -166,6 +182,26 @@ fn the_columns_of_every_table_are_described() {
             assert!(description.contains(&format!("| `{}` | ", quantity.name)), "{}", quantity.name);
         }
     }
+}
+
+#[tokio::test]
+async fn the_vocabulary_is_served_to_everybody() {
+    let bench = Bench::new().await;
+    let secret = TokenSecret::generate().unwrap();
+    let token =
+        NewToken { secret: &secret, owner: "anne", name: None, scope: TokenScope::Read, lifetime_ms: None };
+    bench.store.create_token(&token).await.unwrap();
+    bench.get("/v1/queue").await.problem(401, "unauthorized");
+    let answer = bench.get("/v1/quantities").await;
+    let served = answer.json();
+    assert_eq!(served, quantity::json());
+    let density = &served["mud_density"];
+    assert_eq!((&density["unit"], &density["field"]["unit"]), (&"kg/m3".into(), &"ppg".into()));
+    // A pound in a gallon of 231 cubic inches.
+    let size = 0.453_592_37 / (231.0 * 0.0254_f64.powi(3));
+    assert!((density["field"]["size"].as_f64().unwrap() / size - 1.0).abs() < 1e-12);
+    let again = Request::get("/v1/quantities").header(header::IF_NONE_MATCH, &answer.headers[header::ETAG]);
+    assert_eq!(bench.send(again.body(Body::empty()).unwrap()).await.status, StatusCode::NOT_MODIFIED);
 }
 
 fn collect_references(value: &Value, references: &mut Vec<String>) {

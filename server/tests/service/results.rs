@@ -269,3 +269,118 @@ async fn large_answers_beyond_their_places_are_refused_and_light_ones_are_not() 
         assert_eq!(bench.get(light).await.status, StatusCode::OK, "{light}");
     }
 }
+
+#[tokio::test]
+async fn a_history_thinned_to_its_extremes_has_the_peaks_of_the_whole() {
+    let (bench, path) = finished().await;
+    let history = format!("{path}/points/1/history?node=49&fields=time,u_49,v_49");
+    let whole = bench.get(&history).await.json();
+    let thinned = bench.get(&format!("{history}&max_points=90&decimation=minmax")).await.json();
+    assert_eq!(thinned["attributes"], whole["attributes"]);
+    assert_eq!(thinned["units"], whole["units"]);
+    let times = numbers(&thinned, "time");
+    assert!(times.len() <= 90 && times.len() > 60, "{}", times.len());
+    let extremes = |values: &[f64]| {
+        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap();
+        (fold(f64::min), fold(f64::max))
+    };
+    for column in ["u_49", "v_49"] {
+        let (kept, all) = (numbers(&thinned, column), numbers(&whole, column));
+        assert_eq!(extremes(&kept), extremes(&all), "{column}");
+        // What stays are samples, each at its own time.
+        for (value, time) in kept.iter().zip(&times) {
+            assert_eq!(*value, all[(time * RATE).round() as usize]);
+        }
+    }
+    // Where all fits, all stays; a picture is drawn from what stays.
+    let all = bench.get(&format!("{history}&max_points=10000&decimation=minmax")).await.json();
+    assert_eq!(all["columns"], whole["columns"]);
+    let drawn = format!("{path}/points/1/history?node=49&max_points=90&decimation=minmax&format=svg");
+    let picture = bench.get(&drawn).await;
+    assert_eq!(picture.headers[header::CONTENT_TYPE], "image/svg+xml");
+    let problem = bench.get(&format!("{history}&max_points=3&decimation=minmax")).await;
+    assert!(problem.problem(400, "invalid-parameter")["detail"].as_str().unwrap().contains("4 or more"));
+}
+
+#[tokio::test]
+async fn statistics_of_a_window_are_those_of_a_known_orbit() {
+    let (bench, path) = finished().await;
+    // Whole periods of both circles, of 30 and 10 mm, about (4, 3) mm.
+    let table = bench.get(&format!("{path}/points/1/statistics?from=2&to=8")).await.json();
+    assert_eq!(table["attributes"], json!({"samples": 6000}));
+    assert_eq!(table["columns"]["node"], json!([10, 49]));
+    assert_eq!(table["columns"]["measured_depth"], json!([11.72, 57.73]));
+    let close = |column: &str, expected: [f64; 2]| {
+        for (value, expected) in numbers(&table, column).iter().zip(expected) {
+            assert!((value - expected).abs() < 1e-9, "{column}: {value}, not {expected}");
+        }
+    };
+    close("orbit_radius_rms", [0.0, (0.03_f64.powi(2) + 0.01_f64.powi(2)).sqrt()]);
+    close("orbit_offset", [0.01, 0.005]);
+    let [_, mean] = numbers(&table, "orbit_mean_radius")[..] else { panic!("two nodes") };
+    let mean_square = 0.03_f64.powi(2) + 0.01_f64.powi(2) + 0.005_f64.powi(2);
+    close("orbit_radius_deviation", [0.0, (mean_square - mean * mean).sqrt()]);
+
+    let one =
+        bench.get(&format!("{path}/points/1/statistics?depth=60&nearest=true&from=2&to=8")).await.json();
+    assert_eq!(one["columns"]["orbit_mean_radius"], json!([mean]));
+    let csv = bench.get(&format!("{path}/points/1/statistics?node=49&fields=node&format=csv")).await;
+    assert_eq!(csv.text(), "node\n49\n");
+    for (query, parameter) in [("from=20", "from"), ("from=3&to=2", "to"), ("node=3", "node")] {
+        let answer = bench.get(&format!("{path}/points/1/statistics?{query}")).await;
+        assert_eq!(answer.json()["errors"][0]["parameter"], parameter, "{query}");
+    }
+}
+
+#[tokio::test]
+async fn the_columns_of_a_table_are_listed_without_their_values() {
+    let (bench, path) = finished().await;
+    let table = bench.get(&format!("{path}/table")).await.json();
+    let listed = bench.get(&format!("{path}/table/columns")).await.json();
+    let listed = listed["columns"].as_array().unwrap();
+    let names: Vec<&str> = listed.iter().map(|column| column["name"].as_str().unwrap()).collect();
+    let expected: Vec<&String> = table["columns"].as_object().unwrap().keys().collect();
+    assert_eq!(names, expected);
+    for column in listed {
+        let name = column["name"].as_str().unwrap();
+        assert_eq!(column["unit"], table["units"][name], "{name}");
+        let is_text = table["columns"][name].as_array().unwrap().iter().any(Value::is_string);
+        assert_eq!(column["kind"] == "text", is_text, "{name}");
+    }
+    assert_eq!(listed[0], json!({"name": "ordinal", "kind": "integer"}));
+    bench.get("/v1/sweeps/none/table/columns").await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn the_plan_of_a_point_is_that_of_its_scenario() {
+    let (bench, path) = finished().await;
+    let plan = bench.get(&format!("{path}/points/2/plan")).await.json();
+    let run = json!({"preset": "paper-200m", "set": {"mud.density": 1500}});
+    let planned = bench.post("/v1/runs?dry_run=true", run).await.json();
+    assert_eq!(plan, planned["plan"]);
+    assert!(plan["effects"].as_array().unwrap().iter().all(|effect| effect["reason"].is_string()));
+    bench.get(&format!("{path}/points/3/plan")).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn the_modes_of_a_point_fill_the_band_that_is_asked_for() {
+    let (bench, path) = finished().await;
+    let of_band = async |to: f64| {
+        let found = bench.get(&format!("{path}/points/1/modes?to_hz={to}")).await.json();
+        assert_eq!(found["completeness"], "counted", "{found}");
+        let modes = found["modes"].as_array().unwrap();
+        modes.iter().map(|mode| mode["frequency_hz"].as_f64().unwrap()).collect::<Vec<f64>>()
+    };
+    let (narrow, wide) = (of_band(3.0).await, of_band(5.0).await);
+    assert!(wide.is_sorted() && wide.iter().all(|frequency| *frequency <= 5.0), "{wide:?}");
+    // What is found of a band does not depend on how far beyond it was searched.
+    let within: Vec<f64> = wide.iter().copied().filter(|frequency| *frequency <= 3.0).collect();
+    assert_eq!(narrow.len(), within.len());
+    assert!(!narrow.is_empty() && within.len() < wide.len());
+    for (narrow, wide) in narrow.iter().zip(within) {
+        assert!((narrow - wide).abs() < 1e-6);
+    }
+    for wrong in ["0", "-1", "51", "x"] {
+        bench.get(&format!("{path}/points/1/modes?to_hz={wrong}")).await.problem(400, "invalid-parameter");
+    }
+}

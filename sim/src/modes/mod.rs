@@ -53,6 +53,7 @@ impl Default for ModeSearch {
 
 /// The modes of a band.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Modes {
     /// The modes, by frequency.
     pub modes: Vec<Mode>,

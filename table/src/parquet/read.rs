@@ -187,6 +187,25 @@ impl<R: ReadAt> Cut<R> {
         Ok(table)
     }
 
+    /// Some rows of the part, by their numbers in it, which ascend; as a table in memory. Rows that there are not are left out.
+    ///
+    /// # Errors
+    /// When the bytes cannot be read or are not such a table.
+    pub fn rows_at(&self, rows: &[usize]) -> Result<Table, TableError> {
+        let mut table = self.layout.clone();
+        let mut waiting = rows.iter().copied().peekable();
+        let mut first = 0;
+        for piece in self.by_rows() {
+            let piece = piece?;
+            let end = first + piece.rows();
+            while let Some(row) = waiting.next_if(|row| *row < end) {
+                table.append(&piece, row - first..row - first + 1, rows.len());
+            }
+            first = end;
+        }
+        Ok(table)
+    }
+
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.rows.len().div_ceil(self.stride)

@@ -222,10 +222,16 @@ quantities! {
     ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "orbit mean radius";
     /// Largest distance from the hole's axis.
     ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "orbit largest radius";
+    /// Smallest distance from the hole's axis.
+    ORBIT_SMALLEST_RADIUS: "orbit_smallest_radius", "", WIDTH, "orbit smallest radius";
     /// Orbit size: root mean square distance from the mean position.
     ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "orbit radius rms";
     /// Standard deviation of the distance from the hole's axis.
     ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "orbit radius deviation";
+    /// Largest less smallest displacement along the first axis of the node's frame.
+    PEAK_TO_PEAK_U: "peak_to_peak_u", "", WIDTH, "peak to peak u";
+    /// Largest less smallest displacement along the second axis of the node's frame.
+    PEAK_TO_PEAK_V: "peak_to_peak_v", "", WIDTH, "peak to peak v";
     /// Root mean square motion at frequencies above 100 Hz.
     HIGH_FREQUENCY_RMS: "high_frequency_rms", "", WIDTH, "high frequency rms";
     /// Runs of the point, the undisturbed one among them.

@@ -11,7 +11,7 @@ mod parameters;
 pub mod tables;
 pub mod units;
 
-pub use export::json;
+pub use export::{QuantityEntry, UnitEntry, entries, json};
 pub use name::{Name, Variant};
 pub use units::{Unit, Units};
 

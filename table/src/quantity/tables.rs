@@ -125,6 +125,24 @@ pub static ORBIT: Layout = Layout { name: "orbit", columns: &[&TIME, &U, &V, &RA
 pub static SPECTRUM: Layout =
     Layout { name: "spectrum", columns: &[&FREQUENCY, &AMPLITUDE, &PEAK_TO_PEAK], by_node: &[] };
 
+/// Orbits of the recorded nodes over a window, node by node.
+pub static STATISTICS: Layout = Layout {
+    name: "statistics",
+    columns: &[
+        &NODE,
+        &MEASURED_DEPTH,
+        &ORBIT_RADIUS_RMS,
+        &ORBIT_MEAN_RADIUS,
+        &ORBIT_RADIUS_DEVIATION,
+        &ORBIT_LARGEST_RADIUS,
+        &ORBIT_SMALLEST_RADIUS,
+        &ORBIT_OFFSET,
+        &PEAK_TO_PEAK_U,
+        &PEAK_TO_PEAK_V,
+    ],
+    by_node: &[],
+};
+
 /// All of them.
-pub static ALL: [&Layout; 8] =
-    [&PROFILE, &STATICS, &HISTORY, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM];
+pub static ALL: [&Layout; 9] =
+    [&PROFILE, &STATICS, &HISTORY, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM, &STATISTICS];

@@ -17,6 +17,7 @@ from httpx_sse import EventSource
 from drillsweep.design import axes_to_json, design_to_json
 from drillsweep.point import Point
 from drillsweep.problem import NoAnswer, problem
+from drillsweep.quantity import Quantity, read_quantities
 from drillsweep.sweep import Plan, Sweep
 
 DEFAULT_SERVER = "http://127.0.0.1:7340"
@@ -171,6 +172,10 @@ class Client:
     def scenario(self, name: str) -> dict[str, Any]:
         """A preset scenario in full."""
         return dict(self.get_json(f"/v1/scenarios/{_segment(name)}")["scenario"])
+
+    def quantities(self) -> dict[str, Quantity]:
+        """The service's vocabulary, by name; `drillsweep.quantity` knows this client's own without asking."""
+        return read_quantities(self.get_json("/v1/quantities"))
 
     def workers(self) -> list[dict[str, Any]]:
         """The worker processes."""

@@ -129,9 +129,36 @@ class Point:
         nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
+        decimation: str | None = None,
     ) -> Table:
-        """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `torque_N` for node N."""
-        return self.view("history", **_node_window(node, depth, nearest, time), max_points=max_points)
+        """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `torque_N` for node N.
+
+        Args:
+            node: A recorded node, 1 at the top; with neither this nor `depth` all of them.
+            depth: Measured depth [m] of a recorded node, to within half an element.
+            nearest: Take the recorded node nearest to `depth`, however far.
+            time: Window [s].
+            max_points: At most so many rows.
+            decimation: Which of more rows stay: `stride` (the default), every k-th; `minmax`, those with the extremes
+                of each column.
+        """
+        query = {"max_points": max_points, "decimation": decimation}
+        return self.view("history", **_node_window(node, depth, nearest, time), **query)
+
+    def statistics(
+        self,
+        *,
+        node: int | None = None,
+        depth: float | None = None,
+        nearest: bool = False,
+        time: TimeWindow = (None, None),
+    ) -> Table:
+        """Sizes of orbits over a window: a row for one node, or for each recorded one.
+
+        Columns: `orbit_radius_rms`, `orbit_mean_radius`, `orbit_radius_deviation`, `orbit_largest_radius`,
+        `orbit_smallest_radius`, `orbit_offset`, `peak_to_peak_u`, `peak_to_peak_v`.
+        """
+        return self.view("statistics", **_node_window(node, depth, nearest, time))
 
     def orbit(
         self,
@@ -192,6 +219,14 @@ class Point:
     def cost(self) -> dict[str, Any]:
         """What accuracy costs, where the scenario has a `cost_study`."""
         return self._client.get_json(f"{self.path}/cost")
+
+    def plan(self) -> dict[str, Any]:
+        """What its scenario calls for and takes: every effect with why, mesh, steps and processor times."""
+        return self._client.get_json(f"{self.path}/plan")
+
+    def modes(self, *, to_hz: float | None = None) -> dict[str, Any]:
+        """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50)."""
+        return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
 
     def view(self, name: str, **query: Any) -> Table:
         """Any table that the service has of the point; `query` is the service's own."""

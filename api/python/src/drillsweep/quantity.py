@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -64,7 +65,11 @@ def quantity(name: str) -> Quantity | None:
 
 @cache
 def _quantities() -> dict[str, Quantity]:
-    entries = json.loads(files("drillsweep").joinpath("quantities.json").read_text(encoding="utf-8"))
+    return read_quantities(json.loads(files("drillsweep").joinpath("quantities.json").read_text(encoding="utf-8")))
+
+
+def read_quantities(entries: Mapping[str, dict[str, Any]]) -> dict[str, Quantity]:
+    """The vocabulary from its JSON."""
     return {name: _read(name, entry) for name, entry in entries.items()}
 
 

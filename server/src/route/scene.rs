@@ -1,0 +1,88 @@
+//! What follows from a point's scenario alone: its plan and its modes. Both search an equilibrium, as dry runs do, and take their turn
+//! with these.
+
+use axum::Json;
+use axum::extract::State;
+use drillsweep_api::scene::{self, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::{PHYSICS_VERSION, PointDetail};
+use serde::{Deserialize, Deserializer};
+use utoipa::IntoParams;
+
+use crate::answer::document::Problems;
+use crate::answer::error::Result;
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::records;
+use crate::app::App;
+use crate::route::results::PointPath;
+
+/// What a point's scenario calls for and takes
+///
+/// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
+/// the equilibrium shows.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/plan",
+    tag = "points",
+    operation_id = "get_plan",
+    params(PointPath),
+    responses((status = 200, description = "The plan", body = Plan), Problems)
+)]
+pub(crate) async fn plan(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+) -> Result<Json<Plan>> {
+    let point = point(&app, &id, n).await?;
+    let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
+    let place = app.plans.enter(1).await?;
+    place.run(move || Ok(Json(scene::plan(&point.scenario, speed.as_deref())?))).await
+}
+
+/// Which modes are wanted.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ModesQuery {
+    /// Modes up to this frequency \[Hz\].
+    #[serde(default = "default_range", deserialize_with = "range")]
+    #[param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0)]
+    to_hz: f64,
+}
+
+fn default_range() -> f64 {
+    20.0
+}
+
+fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let range = value::number(deserializer)?.filter(|range| *range > 0.0 && *range <= HIGHEST_MODE_HZ);
+    let detail = || format!("must be a number greater than 0, and at most {HIGHEST_MODE_HZ}");
+    range.ok_or_else(|| serde::de::Error::custom(detail()))
+}
+
+/// The modes of vibration of a point about its equilibrium
+///
+/// Frequencies, growth, what moves most and where: of the equations of motion linearised about the equilibrium, its contacts closed and
+/// sliding. They say where lines of a spectrum may come from; the motion of a run, which lifts off and sticks, need not keep to them.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/modes",
+    tag = "points",
+    operation_id = "get_modes",
+    params(PointPath, ModesQuery),
+    responses((status = 200, description = "The modes, by frequency", body = Modes), Problems)
+)]
+pub(crate) async fn modes(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(ModesQuery { to_hz }): Query<ModesQuery>,
+) -> Result<Json<Modes>> {
+    let point = point(&app, &id, n).await?;
+    let place = app.plans.enter(1).await?;
+    place.run(move || Ok(Json(scene::modes_up_to(&point.scenario, to_hz)?))).await
+}
+
+async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {
+    let Some(record) = app.store.point(id, n.into()).await? else {
+        return Err(records::no_such_point(&app.store, id, n).await?);
+    };
+    records::point_detail(id, &record, Vec::new())
+}

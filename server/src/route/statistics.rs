@@ -1,0 +1,93 @@
+//! Statistics of the orbits of a window.
+
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::view::node::Choice;
+use drillsweep_api::view::statistics::StatisticsTable;
+use drillsweep_table::quantity::tables::STATISTICS;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use crate::answer::artifact::Recording;
+use crate::answer::document::{Conditional, Problems, TableResponse};
+use crate::answer::error::Result;
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{Answer, Format, TableFormat};
+use crate::app::App;
+use crate::route::results::{PointPath, check_window, file_name};
+
+/// Which nodes and which window.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StatisticsQuery {
+    /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    node: Option<u32>,
+    /// Measured depth \[m\] of a recorded node, to within half an element.
+    #[serde(default, deserialize_with = "value::number")]
+    depth: Option<f64>,
+    /// Take the recorded node nearest to `depth`, however far.
+    #[serde(default, deserialize_with = "value::truth")]
+    nearest: bool,
+    /// Start of the window \[s\], included.
+    #[serde(default, deserialize_with = "value::number")]
+    from: Option<f64>,
+    /// End of the window \[s\], not included.
+    #[serde(default, deserialize_with = "value::number")]
+    to: Option<f64>,
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<TableFormat>,
+    /// Only these columns, separated by commas.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    fields: Option<Vec<String>>,
+}
+
+/// Statistics of orbits over a window
+///
+/// One row a recorded node, from all samples of the half-open window, whatever is shown of them; the attribute `samples` is their number.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/statistics",
+    tag = "points",
+    operation_id = "get_statistics",
+    params(PointPath, StatisticsQuery, Conditional),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<StatisticsQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    check_window(query.from, query.to)?;
+    let choice = match (query.node, query.depth) {
+        (None, None) if !query.nearest => None,
+        (node, depth) => Some(Choice::from_parameters(node, depth, query.nearest)?),
+    };
+    let recording = Recording::load(&app.store, &id, n).await?;
+    let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
+    place
+        .answer(move || {
+            let choices = match choice {
+                Some(choice) => vec![choice],
+                None => {
+                    let nodes = recording.nodes(recording.history.open()?.layout())?;
+                    nodes.into_iter().map(|recorded| Choice::Node(recorded.node)).collect()
+                }
+            };
+            let mut table = StatisticsTable::default();
+            for choice in choices {
+                let motion = recording.motion_of(choice, query.from, query.to)?;
+                table.push(motion.node, motion.measured_depth, &motion.columns())?;
+            }
+            let file_name = file_name(&id, n, STATISTICS.name);
+            Answer::of_table(table.finish(), query.fields.as_deref(), format, &file_name)
+        })
+        .await
+}

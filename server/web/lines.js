@@ -15,17 +15,16 @@ const LANGUAGES = [["curl", "curl"], ["python", "Python"], ["matlab", "MATLAB"],
 
 /**
  * @param {() => Lines} make called when the lines are opened, so that they follow the view
- * @param {boolean} [open]
+ * @param {string} [about] what they are for
  */
-export function lines(make, open = false) {
+export function lines(make, about = "Lines that made this view") {
   const body = h("div", {});
   const draw = () => {
     const made = make();
-    fill(body, LANGUAGES.flatMap(([key, name]) => (made[key] ? [h("h3", {}, name), snippet(made[key] ?? "", name)] : [])));
+    fill(body, LANGUAGES.flatMap(([key, name]) => (made[key] ? [h("h2", {}, name), snippet(made[key] ?? "", name)] : [])));
   };
-  const details = h("details", { class: "lines", open, ontoggle: () => details.open && draw() }, h("summary", {}, "Lines that made this view: curl, Python, MATLAB"), body);
+  const details = h("details", { class: "lines", ontoggle: () => details.open && draw() }, h("summary", {}, `${about}: curl, Python, MATLAB`), body);
   details.addEventListener("redraw", () => details.open && draw());
-  if (open) draw();
   return details;
 }
 

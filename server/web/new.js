@@ -5,6 +5,7 @@ import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, shell } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
+import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "./session.js";
 import { NoSurvey, surveyField } from "./survey.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
@@ -40,6 +41,21 @@ export async function show(main, route, signal) {
   const scenario = h("textarea", { class: "code", "aria-label": "Scenario as JSON", spellcheck: "false", oninput: changed, value: form.scenario });
   const field = (/** @type {string} */ text, /** @type {HTMLElement} */ element, /** @type {string} */ pointer) => h("label", { class: "field", "data-pointer": pointer }, h("span", {}, text), element);
 
+  const fields = scenarioForm({
+    get: (path) => {
+      const row = changes.find((entry) => entry.name === path);
+      return row && read(row.values);
+    },
+    set: (path, value) => {
+      const at = changes.findIndex((entry) => entry.name === path);
+      if (value === undefined) {
+        if (at >= 0) changes.splice(at, 1);
+      } else if (at >= 0) changes[at].values = JSON.stringify(value);
+      else changes.push({ name: path, values: JSON.stringify(value) });
+      drawRows(changesPart, changes, "set");
+      changed();
+    },
+  });
   const survey = surveyField(start.set?.[SURVEY], changed);
   const axesPart = h("div", {});
   const changesPart = h("div", {});
@@ -96,6 +112,12 @@ export async function show(main, route, signal) {
       h("p", { class: "small soft" }, scenarios.find((/** @type {any} */ entry) => entry.name === form.preset)?.description ?? "A scenario file's JSON; its fields are in SI units."),
       !form.preset && scenario,
     );
+    void drawFields();
+  }
+
+  async function drawFields() {
+    if (form.preset) fields.show((await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal)).scenario);
+    else fields.show(null);
   }
 
   function drawDrawn() {
@@ -217,7 +239,7 @@ export async function show(main, route, signal) {
     }), choice("Kept of each point", [["", "the scenario's"], ["full", "everything, with histories"], ["spectra", "spectra, no histories"], ["summary", "its row of the table only"]], form.outputs, (value) => {
       form.outputs = value;
       changed();
-    })), h("h3", {}, "Changes to the scenario"), changesPart, survey.element),
+    })), h("h2", {}, "Changes to the scenario"), changesPart, fields.element, survey.element),
     h("section", { class: "panel", "aria-label": "Parameters", "data-pointer": "/axes" }, h("h2", {}, "What is varied"), h("p", { class: "small soft" }, "Values separated by commas, or from:to:count, with :log for logarithmic spacing. Drawn designs take from:to."), drawnPart, axesPart),
     h("section", { class: "panel", "aria-label": "Name" }, h("div", { class: "controls" }, field("Name", name, "/name"), field("Tags", tags, "/tags"), field("Verify a sample", verify, "/verify")), general, submit),
     paths,

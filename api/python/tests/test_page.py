@@ -251,9 +251,40 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
 
 
+def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    scenario = page.get_by_role("region", name="Scenario", exact=True)
+    scenario.get_by_text("All fields, with units").click()
+    scenario.locator("summary", has_text=re.compile("^mud$")).click()
+    stress = scenario.get_by_label("yield stress [Pa]")
+    described = scenario.get_by_text(re.compile("^Yield stress tau_y .Pa., 0 or more; usual 0 to 15"))
+    expect(described).to_be_visible()
+    stress.fill("3.5")
+    until(page, lambda: requested(page).get("set") == {"mud.yield_stress": 3.5})
+    expect(scenario.get_by_text("The scenario has")).to_be_visible()
+    # Sections within sections, and items of lists.
+    scenario.locator("summary", has_text=re.compile("^string$")).click()
+    scenario.locator("summary", has_text=re.compile("^sections$")).click()
+    scenario.locator("summary", has_text=re.compile("^sections 3$")).click()
+    scenario.get_by_label("outer diameter [m]").fill("0.16")
+    scenario.locator("summary", has_text=re.compile("^effects$")).click()
+    scenario.get_by_role("combobox", name="buoyancy").select_option("off")
+    changed = {"mud.yield_stress": 3.5, "string.sections[2].outer_diameter": 0.16, "effects.buoyancy": "off"}
+    until(page, lambda: requested(page).get("set") == changed)
+    expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+    # What the scenario has anyway is no change.
+    scenario.get_by_role("combobox", name="buoyancy").select_option("auto")
+    scenario.get_by_role("button", name="Take back").first.click()
+    until(page, lambda: requested(page).get("set") == {"string.sections[2].outer_diameter": 0.16})
+
+
 def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
     keys = ",".join(f"{named.id}:{number}" for number in (1, 2, 8))
-    for view, picture in [("profiles", "Profiles"), ("orbit", "Orbits"), ("spectrum", "Full spectra")]:
+    for view, picture in [
+        ("profiles", "Profiles"),
+        ("orbit", "Orbits"),
+        ("spectrum", "Full spectra"),
+    ]:
         page = opened(f"#/compare?points={keys}&view={view}&node=1")
         drawn(page, picture)
         expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)

@@ -1,6 +1,6 @@
 // Which effects took part and why, how far the numbers can be trusted, what they cost, and files to take away.
 
-import { address, get, Problem, send } from "./api.js";
+import { address, get } from "./api.js";
 import { fill, h } from "./dom.js";
 import { bytes, duration, label, meaning, number, say } from "./units.js";
 
@@ -15,13 +15,12 @@ export function about(context) {
 
   async function drawEffects() {
     try {
-      // What was decided follows from the scenario alone, so that planning it anew tells it.
-      const { plan } = await send("POST", "/v1/runs?dry_run=true", { scenario: point.scenario }, signal);
+      const plan = await get(`${path}/plan`, {}, signal);
       const rows = plan.effects.map((/** @type {any} */ effect) => h("tr", {}, h("td", {}, effect.effect.replaceAll("_", " ")), h("td", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off")), h("td", {}, effect.reason), h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`)));
-      fill(effects, h("h2", {}, "Effects"), h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Effect"), h("th", {}, ""), h("th", {}, "Why"), h("th", {}, ""))), h("tbody", {}, rows))));
+      fill(effects, h("h2", {}, "Effects"), h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Effect"), h("th", {}, "Is"), h("th", {}, "Why"), h("th", {}, "Switch"))), h("tbody", {}, rows))));
     } catch (error) {
       if (signal.aborted) return;
-      fill(effects, h("h2", {}, "Effects"), h("p", { class: "soft" }, error instanceof Problem && error.status === 403 ? "Your token may not plan scenarios, which tells the effects." : String(error instanceof Error ? error.message : error)));
+      fill(effects, h("h2", {}, "Effects"), h("p", { class: "soft" }, String(error instanceof Error ? error.message : error)));
     }
   }
 
@@ -35,7 +34,7 @@ export function about(context) {
   }
 
   return {
-    element: h("div", { class: "half" }, accuracyPart(point), costPart(point), effects, files, summaryPart(point), provenancePart(point)),
+    element: h("div", { class: "half" }, accuracyPart(context), costPart(point), effects, files, summaryPart(context), provenancePart(point)),
     draw: async () => {
       await Promise.all([drawEffects(), drawFiles()]);
     },
@@ -48,8 +47,8 @@ function factsPart(heading, facts, more = []) {
   return h("section", { class: "panel", "aria-label": heading }, h("h2", {}, heading), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])), more);
 }
 
-/** @param {any} point */
-function accuracyPart(point) {
+/** @param {import("./point.js").PointContext} context */
+function accuracyPart({ point, bias }) {
   const { summary, provenance = {} } = point;
   const { time, mesh, spread } = provenance.errors ?? {};
   const percent = (/** @type {any} */ value) => (typeof value === "number" ? `${number(100 * value, 2)} %` : "not known");
@@ -64,8 +63,8 @@ function accuracyPart(point) {
     ["Energy that the ledger misses", say("energy_residual_ratio", summary.energy_residual_ratio, 2)],
   ];
   const reasons = [time?.condition, mesh?.reason && `Mesh: ${mesh.reason}`, spread?.reason && `Spread: ${spread.reason}`].filter(Boolean);
-  const biases = Object.keys(summary).filter((name) => name.startsWith("bias_") && summary[name] !== null);
-  return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biases.length ? h("p", { class: "small" }, "Bias against the reference run: ", biases.map((name) => `${label(name.slice(5))} ${percent(summary[name])}`).join(", ")) : null]);
+  const biased = Object.keys(summary).filter((name) => bias(name));
+  return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
 }
 
 /** @param {any} point */
@@ -86,9 +85,9 @@ function costPart(point) {
   return factsPart("What it cost", facts);
 }
 
-/** @param {any} point */
-function summaryPart(point) {
-  const rows = Object.entries(point.summary).filter(([, value]) => value !== null).map(([name, value]) => h("tr", { title: meaning(name) }, h("td", {}, label(name)), h("td", { class: "number" }, say(name, value))));
+/** @param {import("./point.js").PointContext} context */
+function summaryPart({ point, bias }) {
+  const rows = Object.entries(point.summary).filter(([, value]) => value !== null).map(([name, value]) => h("tr", { title: meaning(name) }, h("td", {}, label(name)), h("td", { class: "number" }, say(name, value), h("span", { class: "soft small" }, bias(name)))));
   return h("section", { class: "panel", "aria-label": "Summary" }, h("h2", {}, "Summary"), h("div", { class: "scroll", style: "max-height:26rem", tabindex: "0", role: "region", "aria-label": "Summary, scrollable" }, h("table", {}, h("tbody", {}, rows))));
 }
 

@@ -1,6 +1,7 @@
 // A point: what it is, and its profiles, motion, energy, well, and what it cost.
 
 import { get, Problem } from "./api.js";
+import { Biases } from "./bias.js";
 import { fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
 import { about } from "./point-about.js";
@@ -19,6 +20,7 @@ import { say } from "./units.js";
  * @property {string} path of the point, from `/v1`
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
+ * @property {(name: string) => string} bias what stands beside a number of the summary that verifying the sweep has touched
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
  * @property {AbortSignal} signal
  */
@@ -45,6 +47,8 @@ export async function show(main, route, signal) {
   const [, id, , ordinal] = route.path;
   const path = `/v1/sweeps/${encodeURIComponent(id)}/points/${encodeURIComponent(ordinal)}`;
   const [point, sweep] = await Promise.all([get(path, {}, signal), get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal)]);
+  const biases = new Biases();
+  await biases.load(sweep, signal);
   const asked = route.query.get("view");
   const [view, name, make] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
   const here = ["sweeps", id, "points", ordinal];
@@ -103,6 +107,7 @@ export async function show(main, route, signal) {
       keep(changes);
       taken.dispatchEvent(new Event("redraw"));
     },
+    bias: (name) => biases.beside(name, Number(ordinal)),
     table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
     signal,
   };

@@ -1,7 +1,8 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { choice, fill, h } from "./dom.js";
-import { canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
+import { adjust, canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
+import { finer } from "./sweep-finer.js";
 import { distinct, isText } from "./table.js";
 import { label, say, title, unit } from "./units.js";
 
@@ -17,7 +18,11 @@ export function map(context) {
   const place = canvas("Map of the sweep", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
-  const element = h("div", {}, controls, h("figure", {}, place, caption));
+  const region = finer(context);
+  const element = h("div", {}, controls, h("figure", {}, place, caption), region.element);
+  region.element.addEventListener("closed", () => {
+    void adjust(place, { dragmode: "zoom", selections: [] });
+  });
   const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
 
   function chosen() {
@@ -57,13 +62,27 @@ export function map(context) {
       choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
       !words && choice("Scale", [["linear", "linear"], ["log", "logarithmic"]], isLog ? "log" : "linear", set("scale")),
       y && isGrid && !words && choice("Drawn as", [["cells", "cells"], ["contour", "contours"]], style, set("style")),
+      axes.length > 0 && isGrid && h("button", { "aria-expanded": String(!region.element.hidden), onclick: () => begin() }, "Finer grid"),
       slices.map(({ axis, all, value }) => choice(label(axis), all.map((entry) => [String(entry), say(axis, entry)]), String(value), set(`at.${axis}`))),
     );
+    const sides = y ? [x, y] : [x];
+    /** @param {any} [range] of a region, as shown; without one the whole map */
+    const chooseRegion = (range) => region.choose(sides.map((name, order) => {
+      const values = distinct(order ? ys : xs).map(Number);
+      const shownRange = range?.[order ? "y" : "x"]?.map((/** @type {number} */ end) => end * unit(name).size).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+      // Cells reach beyond the values that they stand for.
+      const [from, to] = shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
+      return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
+    }), heldValues.map(({ axis, value }) => ({ name: axis, value: Number(value) })));
+    const begin = () => {
+      chooseRegion();
+      void adjust(place, { dragmode: "select" });
+    };
     const rows = ordinals.map((_, index) => index).filter((index) => slices.every(({ column, value }) => column[index] === value));
     const done = rows.filter((index) => values[index] !== null).length;
     const logged = (/** @type {any} */ value) => (typeof value === "number" && value > 0 ? Math.log10(value) : null);
     const hidden = isLog && !words ? rows.filter((index) => typeof values[index] === "number" && Number(values[index]) <= 0).length : 0;
-    fill(caption, `${label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it.`, hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
+    fill(caption, `${label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it. `, context.biases.say(colour), hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
     place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
 
     const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / unit(name).size : value);
@@ -73,8 +92,8 @@ export function map(context) {
     if (!y) {
       const order = rows.map((_, position) => position).sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
       const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0] }, line: { color: LINES[0] } };
-      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), type: isLog ? "log" : "linear" } }, context.signal);
-      clickable(shape);
+      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
+      listen(shape, chooseRegion);
       return;
     }
 
@@ -117,13 +136,17 @@ export function map(context) {
     }
     const failed = rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });
-    const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y) }, context.signal);
-    clickable(shape);
+    const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y), dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
+    listen(shape, chooseRegion);
   }
 
-  /** @param {any} shape */
-  function clickable(shape) {
+  /** @param {any} shape @param {(range: any) => void} chooseRegion */
+  function listen(shape, chooseRegion) {
     shape.removeAllListeners?.("plotly_click");
+    shape.removeAllListeners?.("plotly_selected");
+    shape.on?.("plotly_selected", (/** @type {any} */ event) => {
+      if (event?.range) chooseRegion(event.range);
+    });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
       if (typeof ordinal === "number") context.open(ordinal);

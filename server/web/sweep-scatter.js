@@ -49,7 +49,7 @@ export function scatter(context) {
         })
       : [{ ...base, x: atX, y: atY, text, customdata: ordinals, marker: { size, color: shown(colour, /** @type {(number | null)[]} */ (colours)), colorscale: SCALE, colorbar: colourBar(title(colour)) } }];
     const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
-    fill(caption, `${both} of ${ordinals.length} points have both values. Select a point to open it.`);
+    fill(caption, `${both} of ${ordinals.length} points have both values. Select a point to open it. `, [...new Set([x, y, colour])].map((name) => context.biases.say(name) && `${label(name)}: ${context.biases.say(name)} `));
     place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);
     const shape = await draw(place, traces, { xaxis: { title: title(x), type: isText(xs) ? "category" : isLogX ? "log" : "linear" }, yaxis: { title: title(y), type: isText(ys) ? "category" : isLogY ? "log" : "linear" } }, context.signal);
     shape.removeAllListeners?.("plotly_click");

@@ -67,7 +67,7 @@ export function table(context) {
       return h("th", { class: typeof firstOf(name) === "number" ? "number" : "", scope: "col", style: `width:${name === "ordinal" ? 5 : name === "state" ? 8 : 10}rem;white-space:normal`, "aria-sort": isSorted && (isDown ? "descending" : "ascending"), title: meaning(name) }, h("button", { onclick: () => {
         context.keep({ sort: name, order: isSorted && !isDown ? "down" : null });
         void redraw();
-      } }, name === "ordinal" ? "Point" : title(name), isSorted ? (isDown ? " ▼" : " ▲") : ""));
+      } }, name === "ordinal" ? "Point" : title(name), isSorted ? (isDown ? " ▼" : " ▲") : ""), context.biases.brief(name) && h("div", { title: context.biases.say(name) }, context.biases.brief(name)));
     }));
     drawColumns();
     drawRows();
@@ -92,7 +92,7 @@ export function table(context) {
       const value = columns[order][index];
       if (name === "ordinal") return h("td", { class: "number" }, h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, ordinal));
       if (name === "state") return h("td", {}, h("span", { class: `state ${value}` }, value));
-      if (typeof value === "number") return h("td", { class: "number" }, number(value / unit(name).size, 5));
+      if (typeof value === "number") return h("td", { class: "number" }, number(value / unit(name).size, 5), context.biases.at(name, Number(ordinal)) && h("span", { class: "soft small" }, ` ${context.biases.at(name, Number(ordinal))}`));
       return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
     }));
   }

@@ -1,18 +1,20 @@
 // A sweep: its state with what can be done to it, and its points as maps, clouds, sensitivities, a table and failures.
 
 import { follow, get, isFinal, send } from "./api.js";
+import { Biases } from "./bias.js";
 import { choice, fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
 import { reported, notice } from "./notices.js";
 import { go, keep, link } from "./router.js";
 import { MAY_NOT, maySubmit } from "./session.js";
+import { difference } from "./sweep-difference.js";
 import { effects } from "./sweep-effects.js";
 import { failures } from "./sweep-failures.js";
 import { map } from "./sweep-map.js";
 import { parallel, scatter } from "./sweep-scatter.js";
 import { table } from "./sweep-table.js";
 import { Pace, progressPart, when } from "./sweeps.js";
-import { SweepTable } from "./table.js";
+import { SweepTable, sweptBy } from "./table.js";
 import { say } from "./units.js";
 
 /**
@@ -21,10 +23,13 @@ import { say } from "./units.js";
  * @property {any} sweep
  * @property {string[]} axes the swept parameters, as the table calls them
  * @property {Record<string, any>} spans how the request gives the values of each
+ * @property {Record<string, string>} paths what the request calls each
  * @property {SweepTable} table
+ * @property {Biases} biases what verifying a sample of the points has found
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(ordinal: number) => void} open
+ * @property {(changed: any) => void} changed takes the sweep as an answer shows it
  * @property {AbortSignal} signal
  */
 
@@ -39,6 +44,7 @@ const PARTS = [
   ["scatter", "Scatter", scatter],
   ["parallel", "Parallel coordinates", parallel],
   ["effects", "Sensitivities", effects],
+  ["difference", "Difference", difference],
   ["table", "Table", table],
   ["failures", "Failures", failures],
 ];
@@ -51,10 +57,9 @@ export async function show(main, route, signal) {
   const id = route.path[1];
   let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
   const data = new SweepTable(sweep, signal);
-  await data.load();
-  const spans = sweep.request?.axes ?? {};
-  const named = Object.keys(spans).length ? Object.keys(spans) : Object.keys(sweep.request?.points?.[0] ?? {});
-  const axes = named.map((name) => (data.names.includes(name) ? name : (SHORT[name] ?? name))).filter((name) => data.names.includes(name));
+  const biases = new Biases();
+  await Promise.all([data.load(), biases.load(sweep, signal)]);
+  const { axes, spans, paths } = sweptBy(sweep, data.names);
   const asked = route.query.get("view");
   const [view, , make] = PARTS.find(([name]) => name === asked) ?? PARTS[axes.length ? 0 : 4];
 
@@ -71,7 +76,9 @@ export async function show(main, route, signal) {
   const context = {
     sweep,
     axes,
-    spans: Object.fromEntries(Object.entries(spans).map(([name, span]) => [data.names.includes(name) ? name : (SHORT[name] ?? name), span])),
+    spans,
+    paths,
+    biases,
     table: data,
     query,
     keep: (changes) => {
@@ -82,6 +89,7 @@ export async function show(main, route, signal) {
       keep(changes);
       taken.dispatchEvent(new Event("redraw"));
     },
+    changed: (changed) => update(changed),
     open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
     signal,
   };
@@ -125,7 +133,7 @@ export async function show(main, route, signal) {
     waiting = undefined;
     drawnAt = Date.now();
     try {
-      await data.load();
+      await Promise.all([data.load(), biases.load(sweep, signal)]);
       await part.draw();
     } catch {
       // A later result, or the server's return, draws again.
@@ -146,9 +154,6 @@ export async function show(main, route, signal) {
   if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
   return sweep.name ?? `Sweep ${id.slice(-8)}`;
 }
-
-/** @type {Record<string, string>} paths that the table calls by a shorter name */
-const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
 
 /**
  * @param {any} sweep

@@ -24,6 +24,7 @@ NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="tak
 """A name that would be markup where it was taken for it."""
 GONE = re.compile(r"net::ERR_|502|Failed to load resource")
 """What a browser itself writes on its console of a server that is gone."""
+MINUS = "\N{MINUS SIGN}"
 
 
 @pytest.fixture(scope="module")
@@ -165,7 +166,7 @@ def requested(page: Page) -> dict[str, Any]:
     return dict(json.loads(query.get("request", ["{}"])[0]))
 
 
-@pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "table", "failures"])
+@pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "difference", "table", "failures"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_every_view_of_a_sweep_is_shown(
     opened: Opens, named: Sweep, view: str, theme: Literal["light", "dark"]
@@ -175,6 +176,8 @@ def test_every_view_of_a_sweep_is_shown(
         expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(8)
     elif view == "failures":
         expect(page.get_by_text("No point of this sweep has failed.")).to_be_visible()
+    elif view == "difference":
+        expect(page.get_by_text("Choose the sweep whose results")).to_be_visible()
     else:
         drawn(page, "." if view != "effects" else "Shares of the variance")
 
@@ -249,6 +252,87 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
     # As the page writes it: four digits, in millimetres.
     expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
+
+
+def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1300, 1700]}
+    verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=2).wait(timeout=180.0)
+    table = verified.verification()
+    name = "orbit_radius_rms_49"
+    mean = 100 * table.attributes["statistics"][name]["mean"]
+    said = "below 0.01 %" if abs(mean) < 0.01 else f"{'+' if mean > 0 else MINUS}{float(f'{abs(mean):.2g}'):g} %"
+    page = opened(f"#/sweeps/{verified.id}?view=map&colour={name}")
+    drawn(page, "node 49 over flow rate")
+    expect(page.get_by_text(f"Bias against reference runs at 2 points: mean {said}")).to_be_visible()
+    page = opened(f"#/sweeps/{verified.id}?view=table&columns=ordinal,{name}")
+    expect(page.get_by_role("columnheader", name=re.compile(re.escape(f"mean bias {said}")))).to_be_visible()
+    biased = page.locator(".rows tbody td", has_text="bias")
+    expect(biased).to_have_count(2)
+    ordinal = int(table["ordinal"][0])
+    page = opened(f"#/sweeps/{verified.id}/points/{ordinal}?view=about")
+    trust = page.get_by_role("region", name="How far to trust it")
+    expect(trust.get_by_text(re.compile(r"Verified against reference runs: .*node 49 \(bias "))).to_be_visible()
+
+
+def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:
+    axes = {"flow_rate": [0.04, 0.02], "mud_density": [1200, 1800]}
+    changes = {**SHORT, "operation.rotation_speed_rpm": 90}
+    other = client.submit("paper-200m", set=changes, axes=axes, name="slower").wait(timeout=120.0)
+    page = opened(f"#/sweeps/{sweep.id}?view=difference&colour=orbit_radius_rms_49")
+    page.get_by_label("Compared with").select_option(label="slower")
+    drawn(page, "difference of orbit radius rms, node 49")
+    expect(page.get_by_text("slower less short, at 2 points that both have")).to_be_visible()
+    assert f"with={other.id}" in page.url
+    mine, theirs = (of.table().to_pandas().set_index(["flow_rate", "mud_density"]) for of in (sweep, other))
+    for kind, relative in [("absolute", False), ("relative", True)]:
+        page.get_by_role("combobox", name="Difference").select_option(kind)
+        expected = [
+            (theirs.loc[at, "orbit_radius_rms_49"] - mine.loc[at, "orbit_radius_rms_49"])
+            * (100 / mine.loc[at, "orbit_radius_rms_49"] if relative else 1000)
+            for at in [(0.04, 1200), (0.04, 1800)]
+        ]
+
+        def shows(expected: list[float] = expected) -> bool:
+            cells = page.evaluate("() => document.querySelector('.js-plotly-plot').data[0].z.flat()")
+            return list(cells) == pytest.approx(expected, rel=1e-9)
+
+        until(page, shows)
+    page.locator(".nsewdrag").first.click(position={"x": 100, "y": 400})
+    page.wait_for_url(re.compile("#/compare"))
+    expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(2)
+
+
+def test_a_finer_grid_is_dragged_over_a_region(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1250, 1750]}
+    coarse = client.submit("paper-200m", set=SHORT, axes=axes, name="coarse").wait(timeout=120.0)
+    page = opened(f"#/sweeps/{coarse.id}?view=map&colour=state")
+    picture = drawn(page, "over flow rate")
+    page.get_by_role("button", name="Finer grid").click()
+    panel = page.get_by_role("region", name="Finer grid")
+    # Without a region, that of all points.
+    expect(panel.get_by_label("From [m³/s]")).to_have_value("0.01")
+    expect(panel.get_by_text("25 points; 4 are known")).to_be_visible()
+    box = picture.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.05 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.45 * box["height"], steps=8)
+    page.mouse.up()
+    start, end = (float(panel.get_by_label(f"{name} [m³/s]").input_value()) for name in ("From", "To"))
+    assert 0.01 < start < 0.025 < end + 0.002 < 0.035
+    panel.get_by_label("From [m³/s]").fill("0.02")
+    panel.get_by_label("To [m³/s]").fill("0.04")
+    panel.get_by_label("From [kg/m³]").fill("1250")
+    panel.get_by_label("To [kg/m³]").fill("1750")
+    for values in panel.get_by_label("Values").all():
+        values.fill("2")
+    panel.get_by_text("The same request").click()
+    appended = 'sweep.append({"flow_rate": Range(0.02, 0.04, 2), "mud_density": Range(1250, 1750, 2)})'
+    expect(panel.get_by_text(appended)).to_be_visible()
+    panel.get_by_role("button", name="Add 4 points").click()
+    expect(page.get_by_text("2 points are added.")).to_be_visible()
+    expect(page.get_by_text("6 of 6 succeeded")).to_be_visible(timeout=60_000)
+    assert sorted(set(coarse.table()["flow_rate"])) == [0.01, 0.02, 0.04]
 
 
 def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:

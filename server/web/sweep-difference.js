@@ -1,0 +1,162 @@
+// Two sweeps compared: the difference of a result on the parameters that both have.
+
+import { get } from "./api.js";
+import { choice, fill, h } from "./dom.js";
+import { canvas, colourBar, DASHES, draw, LINES } from "./plots.js";
+import { go, link } from "./router.js";
+import { preferred, undelayed } from "./sweep-map.js";
+import { distinct, SweepTable, sweptBy } from "./table.js";
+import { label, number, say, title, unit } from "./units.js";
+
+/** Blue below, red above, apart by lightness as well for those who cannot tell them. */
+const DIVERGING = "RdBu";
+/** Coordinates this near to each other, relative to their size, are one. */
+const SAME = 1e-9;
+
+/** @typedef {{sweep: any, table: SweepTable, axes: string[]}} Other */
+
+/**
+ * @param {import("./sweep.js").Context} context
+ * @returns {import("./sweep.js").Part}
+ */
+export function difference(context) {
+  const { query, signal } = context;
+  const place = canvas("Difference of two sweeps", "tall");
+  const caption = h("figcaption", {});
+  const controls = h("div", { class: "controls" });
+  const empty = h("p", { class: "empty", hidden: true });
+  const figure = h("figure", {}, place, caption);
+  const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
+  /** @type {any[] | undefined} */
+  let sweeps;
+  /** @type {Other | undefined} */
+  let other;
+
+  const nameOf = (/** @type {any} */ sweep) => sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
+  const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
+    context.keep({ [name]: value || null });
+    redraw().catch((error) => signal.aborted || console.error(error));
+  };
+  const say_ = (/** @type {string} */ text) => {
+    empty.hidden = text === "";
+    figure.hidden = text !== "";
+    empty.textContent = text;
+  };
+
+  /** @param {string} id @returns {Promise<Other>} */
+  async function load(id) {
+    const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
+    const table = new SweepTable(sweep, signal);
+    await table.load();
+    return { sweep, table, axes: sweptBy(sweep, table.names).axes };
+  }
+
+  async function redraw() {
+    sweeps ??= (await get("/v1/sweeps", { limit: 100 }, signal)).sweeps.filter((/** @type {any} */ sweep) => sweep.id !== context.sweep.id);
+    const id = query.get("with") ?? "";
+    const known = sweeps?.some((sweep) => sweep.id === id);
+    const chooser = choice("Compared with", [["", "— choose a sweep"], ...(sweeps ?? []).map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])), ...(id && !known ? [/** @type {[string, string]} */ ([id, `Sweep ${id.slice(-8)}`])] : [])], id, set("with"));
+    if (!id) {
+      fill(controls, chooser);
+      say_("Choose the sweep whose results are compared with those of this one, at the points that both have.");
+      return;
+    }
+    if (other?.sweep.id !== id) other = await load(id);
+    const axes = context.axes.filter((axis) => other?.axes.includes(axis));
+    const results = context.table.results().filter((name) => other?.table.names.includes(name) && !context.axes.includes(name) && !other.axes.includes(name) && !["state", "error_time", "error_node"].includes(name));
+    if (!axes.length || !results.length) {
+      fill(controls, chooser);
+      say_(axes.length ? "The two sweeps have no result in common." : "The two sweeps have no parameter in common.");
+      return;
+    }
+    const x = pick("x", axes, axes[0]);
+    const others = axes.filter((axis) => axis !== x);
+    const y = others.length ? pick("y", others, others[0]) : undefined;
+    const colour = pick("colour", results, preferred(results));
+    const isRelative = query.get("difference") === "relative";
+    const options = (/** @type {string[]} */ names) => names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+
+    const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
+    const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
+    fill(controls, chooser, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
+    const pairs = mine.rows.flatMap((row) => {
+      const partner = theirs.rows.find((entry) => isSame(entry.x, row.x) && isSame(entry.y, row.y));
+      return partner ? [{ ...row, partner, change: isRelative ? (100 * (partner.value - row.value)) / Math.abs(row.value) : (partner.value - row.value) / unit(colour).size }] : [];
+    }).filter(({ change }) => Number.isFinite(change));
+    if (!pairs.length) {
+      say_(mine.rows.length && theirs.rows.length ? "No point of the one has the parameters of one of the other. Choose other values of what is held." : "One of the two has no results yet.");
+      return;
+    }
+    say_("");
+    const unitOf = isRelative ? "%" : unit(colour).symbol;
+    const name = `difference of ${label(colour)}${unitOf ? ` [${unitOf}]` : ""}`;
+    const [first, second] = [nameOf(context.sweep), nameOf(other.sweep)];
+    const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
+    const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
+    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`);
+    place.setAttribute("aria-label", `${name} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+    const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
+    const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}`, `other: ${say(colour, pair.partner.value)}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
+    const keys = pairs.map((pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`);
+    const axisLayout = (/** @type {string} */ axis) => ({ title: title(axis), type: context.spans[axis]?.scale === "log" ? "log" : "linear" });
+    /** @type {any[]} */
+    let traces;
+    /** @type {any} */
+    let layout;
+    if (y) {
+      const across = distinct(pairs.map((pair) => pair.x));
+      const up = distinct(pairs.map((pair) => pair.y));
+      const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
+      const [cells, hover, points] = [grid(null), grid(""), grid(null)];
+      pairs.forEach((pair, index) => {
+        const [row, column] = [up.indexOf(pair.y), across.indexOf(pair.x)];
+        [cells[row][column], hover[row][column], points[row][column]] = [pair.change, text[index], keys[index]];
+      });
+      const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
+      traces = [{ type: "heatmap", x: across.map((value) => at(x, Number(value))), y: up.map((value) => at(y, Number(value))), z: cells, text: hover, customdata: points, hoverinfo: "text", colorscale: DIVERGING, reversescale: false, zmin: -largest, zmax: largest, colorbar: colourBar(name), xgap: 1, ygap: 1 }];
+      layout = { xaxis: axisLayout(x), yaxis: axisLayout(y) };
+    } else {
+      const order = pairs.map((_, index) => index).sort((a, b) => pairs[a].x - pairs[b].x);
+      const line = (/** @type {string} */ called, /** @type {(index: number) => number} */ value, /** @type {number} */ number, /** @type {any} */ more = {}) => ({ type: "scatter", mode: "lines+markers", name: called, showlegend: true, x: order.map((index) => at(x, pairs[index].x)), y: order.map(value), text: order.map((index) => text[index]), customdata: order.map((index) => keys[index]), hoverinfo: "text", line: { color: LINES[number], dash: DASHES[number] }, ...more });
+      const { size } = unit(colour);
+      traces = [line(first, (index) => pairs[index].value / size, 0), line(second, (index) => pairs[index].partner.value / size, 1), line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" })];
+      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), domain: [0.45, 1] }, yaxis2: { title: name, domain: [0, 0.36] } };
+    }
+    const shape = await draw(place, traces, layout, signal);
+    shape.removeAllListeners?.("plotly_click");
+    shape.on?.("plotly_click", (/** @type {any} */ event) => {
+      const points = event.points[0]?.customdata;
+      if (typeof points === "string") go(link(["compare"], { points, view: "profiles" }));
+    });
+  }
+
+  /**
+   * The rows of a slice that have a value, and a choice for each further parameter, which the link keeps under `prefix`.
+   * @param {SweepTable} table
+   * @param {string[]} axes
+   * @param {string} prefix
+   * @param {string} x
+   * @param {string | undefined} y
+   * @param {string} colour
+   * @param {Map<string, number>} [elsewhere] what the other sweep holds, which is taken where there is that value
+   */
+  async function sliced(table, axes, prefix, x, y, colour, elsewhere = new Map()) {
+    const further = axes.filter((axis) => axis !== x && axis !== y);
+    const [ordinals, xs, ys, values, ...columns] = await table.columns("ordinal", x, y ?? x, colour, ...further);
+    const held = new Map(further.map((axis, index) => {
+      const all = distinct(columns[index]).map(Number);
+      const asked = query.has(prefix + axis) ? Number(query.get(prefix + axis)) : elsewhere.get(axis);
+      return [axis, all.find((value) => asked !== undefined && isSame(value, asked)) ?? all[0]];
+    }));
+    const choices = further.map((axis, index) => choice(prefix === "at." ? label(axis) : `${label(axis)}, other sweep`, distinct(columns[index]).map((value) => [String(value), say(axis, value)]), String(held.get(axis)), set(prefix + axis)));
+    const rows = ordinals.flatMap((ordinal, row) => (typeof values[row] === "number" && further.every((axis, index) => columns[index][row] === held.get(axis)) ? [{ ordinal: Number(ordinal), x: Number(xs[row]), y: Number(ys[row]), value: Number(values[row]) }] : []));
+    return { held, choices, rows };
+  }
+
+  return { element: h("div", {}, controls, empty, figure), draw: undelayed(redraw, context), fields: () => ["ordinal", ...context.axes, query.get("colour") ?? ""].filter((name) => context.table.names.includes(name)) };
+}
+
+/** @param {number} a @param {number} b */
+function isSame(a, b) {
+  return Math.abs(a - b) <= SAME * Math.max(Math.abs(a), Math.abs(b));
+}

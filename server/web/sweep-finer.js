@@ -1,0 +1,136 @@
+// A finer grid over a region of a map: its bounds and counts, what it would take, and the request that adds it to the sweep.
+
+import { Problem, send } from "./api.js";
+import { debounced, fill, h } from "./dom.js";
+import { lines, python, shell } from "./lines.js";
+import { notice } from "./notices.js";
+import { MAY_NOT, maySubmit } from "./session.js";
+import { duration, label, say, unit } from "./units.js";
+
+const COUNT = 5;
+
+/**
+ * @typedef {object} Side
+ * @property {string} name of the parameter
+ * @property {number} from as served
+ * @property {number} to as served
+ * @property {number} count
+ */
+
+/** What of a sweep's request says how its points are made, or how it is called: not of those that are added. */
+const OF_THE_SWEEP = new Set(["axes", "design", "points", "samples", "seed", "skip", "name", "tags", "verify", "owner", "priority"]);
+
+/**
+ * @param {import("./sweep.js").Context} context
+ * @returns {{element: HTMLElement, choose: (sides: Side[], held: {name: string, value: number}[]) => void, close: () => void}}
+ */
+export function finer(context) {
+  const element = h("section", { class: "panel finer", "aria-label": "Finer grid", hidden: true });
+  const planned = h("p", { role: "status" });
+  const wrong = h("p", { class: "wrong", role: "alert" });
+  const add = h("button", { class: "main", type: "submit", disabled: true }, "Add");
+  /** @type {Side[]} */
+  let sides = [];
+  /** @type {{name: string, value: number}[]} */
+  let held = [];
+  let generation = 0;
+
+  const path = () => `/v1/sweeps/${encodeURIComponent(context.sweep.id)}/points`;
+
+  function request() {
+    const axes = context.axes.map((name) => {
+      const side = sides.find((one) => one.name === name);
+      const value = held.find((one) => one.name === name)?.value;
+      const span = side ? (side.count > 1 ? { from: side.from, to: side.to, count: side.count, ...(context.spans[name]?.scale === "log" ? { scale: "log" } : {}) } : { values: [side.from] }) : { values: [value] };
+      return [context.paths[name] ?? name, span];
+    });
+    return { axes: Object.fromEntries(axes) };
+  }
+
+  const plan = debounced(async () => {
+    const mine = ++generation;
+    add.disabled = true;
+    taken.dispatchEvent(new Event("redraw"));
+    try {
+      const scene = Object.fromEntries(Object.entries(context.sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)));
+      const answer = await send("POST", "/v1/sweeps?dry_run=true", { ...scene, ...request() }, context.signal);
+      if (mine !== generation) return;
+      wrong.textContent = "";
+      const time = answer.known === answer.total ? "nothing is left to compute" : answer.wall_time ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time` : "how long is not known";
+      fill(planned, `${answer.total} points; ${answer.known} are known and not computed again; ${time}. Points that the sweep has already are skipped.`);
+      add.disabled = !maySubmit();
+      add.title = maySubmit() ? "" : MAY_NOT;
+      add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
+    } catch (error) {
+      if (context.signal.aborted || mine !== generation) return;
+      if (!(error instanceof Problem)) throw error;
+      fill(planned);
+      wrong.textContent = error.errors.map((problem) => problem.detail).join(" ") || error.message;
+    }
+  }, 300);
+
+  const taken = lines(() => {
+    const body = request();
+    const axis = (/** @type {any} */ span) => (span.values ? python(span.values) : `Range(${span.from}, ${span.to}, ${span.count}${span.scale ? ', scale="log"' : ""})`);
+    return {
+      curl: `curl -s ${location.origin}${path()} -H 'Content-Type: application/json' -d ${shell(JSON.stringify(body))}`,
+      python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${context.sweep.id}")\nsweep.append({${Object.entries(body.axes).map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`).join(", ")}})`,
+      matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90);\nsweep = webwrite("${location.origin}${path()}", '${JSON.stringify(body)}', json);`,
+    };
+  }, "The same request");
+
+  /** @param {Side} side */
+  function fields(side) {
+    const { size, symbol } = unit(side.name);
+    const box = (/** @type {string} */ text, /** @type {number} */ value, /** @type {(value: number) => void} */ set) => {
+      const input = h("input", { type: "number", step: "any", style: "width:8rem", value, oninput: () => {
+        if (input.value === "" || !Number.isFinite(Number(input.value))) return;
+        set(Number(input.value));
+        plan();
+      } });
+      return h("label", { class: "field" }, h("span", {}, text), input);
+    };
+    const shownAs = (/** @type {number} */ value) => Number((value / size).toPrecision(6));
+    return h("fieldset", { class: "controls" }, h("legend", {}, label(side.name)), box(symbol ? `From [${symbol}]` : "From", shownAs(side.from), (value) => (side.from = value * size)), box(symbol ? `To [${symbol}]` : "To", shownAs(side.to), (value) => (side.to = value * size)), box("Values", side.count, (value) => (side.count = Math.max(1, Math.round(value)))));
+  }
+
+  async function submit(/** @type {Event} */ event) {
+    event.preventDefault();
+    add.disabled = true;
+    try {
+      const before = context.sweep.counts.total;
+      const changed = await send("POST", path(), request());
+      const added = changed.counts.total - before;
+      notice(added ? `${added} ${added === 1 ? "point is" : "points are"} added.` : "The sweep has all of these points already.");
+      context.changed(changed);
+      close();
+    } catch (error) {
+      wrong.textContent = error instanceof Error ? error.message : String(error);
+      add.disabled = false;
+    }
+  }
+
+  function close() {
+    element.hidden = true;
+    element.dispatchEvent(new Event("closed"));
+  }
+
+  return {
+    element,
+    close,
+    choose: (chosen, others) => {
+      // To six digits: a pixel's width is less than that.
+      sides = chosen.map((side) => ({ ...side, count: side.count || COUNT, from: Number(side.from.toPrecision(6)), to: Number(side.to.toPrecision(6)) }));
+      held = others;
+      element.hidden = false;
+      fill(
+        element,
+        h("h2", {}, "A finer grid"),
+        h("p", { class: "small soft" }, "Drag over a region of the map, or give its bounds."),
+        h("form", { novalidate: true, onsubmit: submit }, sides.map(fields), held.length > 0 && h("p", { class: "small" }, `Held: ${held.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`), planned, wrong, h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close"))),
+        taken,
+      );
+      plan();
+    },
+  };
+}

@@ -1,19 +1,27 @@
-// Up to six points in one picture: profiles, orbits, full spectra.
+// Up to six points in one picture, of whatever a point has pictures of.
 
 import { get, Problem } from "./api.js";
 import { choice, fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
-import { holeTrace, orbitLayout, orbitTrace, spectrumLayout, spectrumTrace } from "./orbit.js";
-import { canvas, DASHES, draw, LINES } from "./plots.js";
+import { ledger } from "./point-energy.js";
+import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { canvas, DASHES, draw, inks, LINES } from "./plots.js";
 import { drawProfiles, quantityTicks, tableOf } from "./point-profiles.js";
+import { displaced } from "./point-well.js";
 import { go, keep, link } from "./router.js";
 import { parameters } from "./sweep-failures.js";
-import { say } from "./units.js";
+import { label, say, shown, title, unit } from "./units.js";
 
 const MOST = 6;
 const SHOWN = 6000;
 /** @type {[string, string][]} */
-const VIEWS = [["profiles", "Profiles"], ["orbit", "Orbits"], ["spectrum", "Full spectra"]];
+const VIEWS = [["profiles", "Profiles"], ["orbit", "Orbits"], ["history", "Histories"], ["rotation", "Rotation and torque"], ["spectrum", "Full spectra"], ["well", "Well"], ["energy", "Energy"]];
+/** The table behind each. @type {Record<string, string>} */
+const TABLES = { profiles: "profile", rotation: "history", well: "statics" };
+/** Views of a recorded node over a window. */
+const WINDOWED = ["orbit", "history", "rotation", "spectrum"];
+/** How many times a string's distance from the axis of its hole is drawn. */
+const EXAGGERATION = 100;
 
 /** @typedef {{id: string, ordinal: number, path: string, detail: any, name: string, colour: string, dash: string}} Compared */
 
@@ -86,7 +94,8 @@ export async function show(main, route, signal) {
     };
     const nodes = choice("Node", recorded.map((/** @type {any} */ node, /** @type {number} */ index) => [String(index), node.node !== undefined ? String(node.node) : say("measured_depth", node.depth)]), query.get("node") ?? "0", set("node"));
     if (view === "profiles") fill(controls, ticks.element);
-    else fill(controls, nodes, time("from", from), time("to", to), view === "orbit" && choice("Shows", [["motion", "the motion"], ["hole", "the whole hole"]], query.get("zoom") ?? "motion", set("zoom")), view === "spectrum" && choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], query.get("amplitude") ?? "linear", set("amplitude")));
+    else if (!WINDOWED.includes(view)) fill(controls);
+    else fill(controls, nodes, time("from", from), time("to", to), view === "orbit" && choice("Shows", [["motion", "the motion"], ["hole", "the whole hole"]], query.get("zoom") ?? "motion", set("zoom")), view === "spectrum" && choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], query.get("amplitude") ?? "linear", set("amplitude")), view === "history" && choice("Shows", [["up", "from the low side up"], ["across", "across the hole"], ["radius", "distance from the axis"]], query.get("direction") ?? "up", set("direction")), view === "rotation" && choice("Shows", [["rotation_speed", "rotation speed"], ["torque", "torque"]], query.get("quantity") ?? "rotation_speed", set("quantity")));
   }
 
   /** @param {Compared} point @param {string} name @param {any} asks */
@@ -107,6 +116,37 @@ export async function show(main, route, signal) {
         const clearance = Math.max(...found.map(([, statics], order) => statics.columns.clearance[at[order]]));
         const traces = found.map(([orbit, statics], order) => orbitTrace(orbit, statics.columns.low_side_angle[at[order]], { color: points[order].colour }, points[order].name));
         await draw(place, [holeTrace(clearance), ...traces], { ...orbitLayout((query.get("zoom") ?? "motion") === "motion", traces, clearance), legend: { orientation: "v" } }, signal);
+      } else if (view === "history") {
+        const direction = query.get("direction") ?? "up";
+        const found = await Promise.all(points.map((point) => Promise.all([table(point, "orbit", { ...asks, max_points: SHOWN }), table(point, "statics", { fields: "node,low_side_angle" })])));
+        const traces = found.map(([{ columns, attributes }, statics], order) => {
+          const seen = seenDownhole(columns.u, columns.v, statics.columns.low_side_angle[Math.max(0, statics.columns.node.indexOf(attributes.node))]);
+          return overTime(points[order], columns.time, shown("radius", direction === "radius" ? columns.radius : direction === "across" ? seen.across : seen.up));
+        });
+        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: `displacement [${unit("radius").symbol}]` } }, signal);
+      } else if (view === "rotation") {
+        const quantity = query.get("quantity") === "torque" ? "torque" : "rotation_speed";
+        const traces = await Promise.all(points.map(async (point) => {
+          const name = `${quantity}_${(await table(point, "statistics", { ...selector(), fields: "node" })).columns.node[0]}`;
+          const { columns } = await table(point, "history", { ...asks, fields: `time,${name}`, max_points: SHOWN, decimation: "minmax" });
+          return overTime(point, columns.time, shown(name, columns[name]));
+        }));
+        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: title(quantity) } }, signal);
+      } else if (view === "well") {
+        const found = await Promise.all(points.map(async (point) => (await table(point, "statics")).columns));
+        const traces = found.map((statics, order) => {
+          const path = displaced(statics, { north: statics.north, east: statics.east, down: statics.true_vertical_depth }, EXAGGERATION);
+          return { type: "scatter3d", mode: "lines", name: points[order].name, showlegend: true, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line: { color: points[order].colour, width: 5 }, hoverinfo: "name" };
+        });
+        const { soft, line } = inks();
+        const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
+        await draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } }, signal);
+      } else if (view === "energy") {
+        const found = await Promise.all(points.map(async (point) => ledger((await table(point, "energy")).columns)));
+        const accounts = [...new Set(found.flatMap((one) => one.accounts))];
+        const { symbol } = unit("kinetic");
+        const traces = found.map((one, order) => ({ type: "bar", name: points[order].name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: points[order].colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
+        await draw(place, traces, { barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]` } }, signal);
       } else {
         const found = await Promise.all(points.map((point) => table(point, "spectrum", { ...asks, window: "hann" })));
         const layout = spectrumLayout(null, query.get("amplitude") === "log");
@@ -119,17 +159,26 @@ export async function show(main, route, signal) {
     }
   }
 
+  const shownTable = TABLES[view] ?? view;
+  const asked = () => (WINDOWED.includes(view) ? Object.fromEntries(Object.entries({ ...selector(), ...window_() }).map(([name, value]) => [name, value === true ? "true" : value])) : {});
+
   /** @param {Compared} point @param {number} order */
   function matlabOf(point, order) {
-    const asks = view === "profiles" ? {} : Object.fromEntries(Object.entries({ ...selector(), ...window_() }).map(([name, value]) => [name, value === true ? "true" : value]));
-    const [options, read] = (tableLines(`${point.path}/${view === "profiles" ? "profile" : view}`, asks).matlab ?? "").split("\n");
+    const [options, read] = (tableLines(`${point.path}/${shownTable}`, asked()).matlab ?? "").split("\n");
     const own = read.replace("table =", `point${order + 1} =`);
     return order === 0 ? `${options}\n${own}` : own;
   }
+
+  function pythonLines() {
+    const window = `${Object.entries(selector()).map(([name, value]) => `${name}=${value === true ? "True" : value}`).join(", ")}, time=(${window_().from}, ${window_().to})`;
+    if (view === "profiles") return `plot.profile(points, "${ticks.names()[0]}")`;
+    if (view === "orbit" || view === "spectrum") return `for point in points:\n    plot.${view}(point, ${window})`;
+    return `tables = [point.${shownTable}(${WINDOWED.includes(view) ? window : ""}) for point in points]`;
+  }
   const taken = lines(() => ({
     matlab: points.map(matlabOf).join("\n"),
-    curl: points.map((point) => `curl -s '${location.origin}${point.path}/${view === "profiles" ? "profile" : view}?${view === "profiles" ? "" : `${new URLSearchParams(Object.entries({ ...selector(), ...window_() }).map(([name, value]) => [name, String(value)]))}&`}format=csv'`).join("\n"),
-    python: `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n${view === "profiles" ? `plot.profile(points, "${ticks.names()[0]}")` : `for point in points:\n    plot.${view}(point, ${Object.entries(selector()).map(([name, value]) => `${name}=${value === true ? "True" : value}`).join(", ")}, time=(${window_().from}, ${window_().to}))`}`,
+    curl: points.map((point) => tableLines(`${point.path}/${shownTable}`, asked()).curl).join("\n"),
+    python: `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n${pythonLines()}`,
   }));
   fill(
     main,
@@ -147,4 +196,9 @@ export async function show(main, route, signal) {
     redraw().catch((error) => signal.aborted || console.error(error));
   }
   return "Compare";
+}
+
+/** @param {Compared} point @param {number[]} time @param {(number | null)[]} values */
+function overTime(point, time, values) {
+  return { type: "scattergl", mode: "lines", name: point.name, showlegend: true, x: time, y: values, line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" };
 }

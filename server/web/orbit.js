@@ -141,3 +141,20 @@ export function multiple(frequency, rotation, resolution) {
   const order = Math.round(Math.abs(frequency) / rotation);
   return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * rotation) <= resolution / 2 ? `${order} × rotation` : "";
 }
+
+/** Part of a frequency within which a mode counts as that of a line: contacts that lift off shift lines. */
+const NEAR = 0.03;
+
+/**
+ * The mode that is nearest to a line and not of the other sense of whirl; null where none is near.
+ * @param {number} frequency [Hz], negative of backward whirl
+ * @param {{frequency_hz: number, whirl: number, kind: string, growth_rate: number, measured_depth: number}[]} modes
+ * @param {number} resolution [Hz]
+ */
+export function modeOf(frequency, modes, resolution) {
+  const distance = (/** @type {any} */ mode) => Math.abs(mode.frequency_hz - Math.abs(frequency));
+  const within = Math.max(resolution, NEAR * Math.abs(frequency));
+  // Motion to and fro has both senses.
+  const near = modes.filter((mode) => distance(mode) <= within && mode.whirl * frequency > -0.5 * Math.abs(frequency));
+  return near.reduce((/** @type {any} */ best, mode) => (best && distance(best) <= distance(mode) ? best : mode), null);
+}

@@ -43,12 +43,14 @@ export function inks() {
 }
 
 /**
- * A place for a picture.
+ * A place for a picture. It is a figure and no image to screen readers: it has buttons.
  * @param {string} name what screen readers say and files are called
  * @param {string} [size] `low` or `tall`
  */
 export function canvas(name, size = "") {
-  return h("div", { class: `plot ${size}`, role: "img", "aria-label": name });
+  // While the data come.
+  plotly().catch(() => {});
+  return h("div", { class: `plot ${size}`, role: "figure", "aria-label": name });
 }
 
 /**

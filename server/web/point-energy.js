@@ -9,6 +9,19 @@ const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_fric
 const HELD = ["kinetic", "stored"];
 
 /**
+ * The accounts that a ledger has, what is supplied first, and by what each has changed over the run.
+ * @param {any} columns
+ * @returns {{accounts: string[], change: (name: string) => number}}
+ */
+export function ledger(columns) {
+  const last = columns.time.length - 1;
+  return {
+    accounts: [...SUPPLIED, ...DISSIPATED, ...HELD].filter((name) => columns[name]),
+    change: (name) => Number(columns[name][last]) - Number(columns[name][0]),
+  };
+}
+
+/**
  * @param {import("./point.js").PointContext} context
  * @returns {import("./point.js").PointPart}
  */
@@ -20,8 +33,7 @@ export function energy(context) {
   async function redraw() {
     const { columns } = await context.table("energy");
     const last = columns.time.length - 1;
-    const accounts = [...SUPPLIED, ...DISSIPATED, ...HELD].filter((name) => columns[name]);
-    const change = (/** @type {string} */ name) => Number(columns[name][last]) - Number(columns[name][0]);
+    const { accounts, change } = ledger(columns);
     const kind = (/** @type {string} */ name) => (SUPPLIED.includes(name) ? 0 : DISSIPATED.includes(name) ? 1 : 2);
     const backwards = accounts.toReversed();
     const power = unit("kinetic").symbol;

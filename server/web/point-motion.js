@@ -1,15 +1,14 @@
 // The motion of a recorded node: a window brushed in its history, and orbit, full spectrum and statistics of that window.
 
-import { Problem } from "./api.js";
+import { get, Problem } from "./api.js";
+import { Brush } from "./brush.js";
 import { choice, fill, h } from "./dom.js";
-import { holeTrace, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, inks, LINES } from "./plots.js";
 import { say, shown, unit } from "./units.js";
 
 /** Samples in a picture: two for each pixel of a wide screen. */
 const SHOWN = 4000;
-/** Samples from which statistics are taken; of more every k-th. */
-const COUNTED = 20_000;
 /** Samples that a spectrum needs. */
 const LEAST = 8;
 
@@ -112,45 +111,47 @@ export function motion(context) {
   }
 
   async function redraw() {
-    statics ??= await context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" });
-    drawControls();
     const mine = ++generation;
     try {
-      whole = await context.table("orbit", { ...selector(), max_points: SHOWN });
+      [statics, whole] = await Promise.all([statics ?? context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }), context.table("orbit", { ...selector(), max_points: SHOWN })]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       fill(pictures, h("p", { class: "panel empty", role: "alert" }, error.message));
       return;
     }
     if (mine !== generation) return;
-    const { node } = place();
-    const turning = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN }).catch(() => null);
-    await Promise.all([drawHistory(), turning && drawRotation(turning, node), drawWindow()]);
+    drawControls();
+    await Promise.all([drawHistory(), drawWindow(), drawRotation(place().node)]);
   }
 
   async function drawHistory() {
     const { lowSide, node, depth } = place();
     const { across, up } = seenDownhole(whole.columns.u, whole.columns.v, lowSide);
     const traces = [
-      { type: "scattergl", mode: "lines", x: whole.columns.time, y: shown("radius", up), name: "from the low side up", line: { color: LINES[0], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
-      { type: "scattergl", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
+      { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", up), name: "from the low side up", line: { color: LINES[0], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
+      { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
     ];
     history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
     const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]` }, shapes: [shade()], newselection: { line: { color: inks().soft, width: 1 } } }, signal);
     shape.removeAllListeners?.("plotly_selecting");
     shape.removeAllListeners?.("plotly_selected");
-    let isDue = false;
+    /** @type {[number, number] | null} */
+    let brushed = null;
     shape.on?.("plotly_selecting", (/** @type {any} */ event) => {
       const range = event?.range?.x;
-      if (!range || isDue) return;
-      isDue = true;
-      requestAnimationFrame(() => {
-        isDue = false;
-        void drawOrbit(range);
+      if (!range) return;
+      if (!brushed) requestAnimationFrame(() => {
+        const last = brushed;
+        brushed = null;
+        if (last) paint(last);
       });
+      brushed = range;
     });
     shape.on?.("plotly_selected", (/** @type {any} */ event) => {
       const range = event?.range?.x;
+      brushed = null;
+      brush?.end();
+      brush = null;
       if (!range) return;
       choose(range[0], range[1]);
       void adjust(history, { selections: [] });
@@ -162,15 +163,18 @@ export function motion(context) {
     return { type: "rect", xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1, fillcolor: LINES[5], opacity: 0.18, line: { width: 0 }, layer: "below" };
   }
 
-  /** @param {any} table @param {number} node */
-  async function drawRotation(table, node) {
+  /** @param {number} node */
+  async function drawRotation(node) {
+    const table = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }).catch(() => null);
+    // Where torsion is not solved for there is none.
+    if (!table) return;
     const { columns } = table;
     const [speed, torque] = [`rotation_speed_${node}`, `torque_${node}`];
     await draw(
       rotation,
       [
-        { type: "scattergl", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
-        { type: "scattergl", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
+        { type: "scatter", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
+        { type: "scatter", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
       ],
       { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]` }, yaxis2: { title: `torque [${unit(torque).symbol}]`, overlaying: "y", side: "right", showgrid: false } },
       signal,
@@ -180,19 +184,19 @@ export function motion(context) {
   async function drawWindow() {
     const mine = ++generation;
     const { from, to } = span();
-    const node = place().node;
     wrong.textContent = "";
     void adjust(history, { shapes: [shade()] });
     try {
-      const [cut, lines, samples] = await Promise.all([
+      const [cut, lines, statistics] = await Promise.all([
         context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
         context.table("spectrum", { ...selector(), from, to, window: weighting(), peaks: 10 }),
-        context.table("history", { ...selector(), from, to, fields: `u_${node},v_${node}`, max_points: COUNTED }),
+        context.table("statistics", { ...selector(), from, to }),
       ]);
       if (mine !== generation) return;
       windowed = { cut, lines };
-      drawStatistics(samples, node);
+      drawStatistics(statistics);
       drawLines();
+      drawModes().catch((error) => signal.aborted || console.error(error));
       await Promise.all([drawOrbit(), drawSpectrum()]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
@@ -200,14 +204,22 @@ export function motion(context) {
     }
   }
 
-  /** @param {[number, number]} [range] while a window is being brushed: cut from what the history shows */
-  async function drawOrbit(range) {
-    const { lowSide, clearance, node, depth } = place();
-    let table = windowed?.cut;
-    if (range) {
-      const rows = whole.columns.time.map((/** @type {number} */ _, /** @type {number} */ index) => index).filter((/** @type {number} */ index) => whole.columns.time[index] >= range[0] && whole.columns.time[index] < range[1]);
-      table = { columns: { u: rows.map((/** @type {number} */ row) => whole.columns.u[row]), v: rows.map((/** @type {number} */ row) => whole.columns.v[row]) } };
+  /** What paints the orbit while a window is being brushed. @type {import("./brush.js").Brush | null} */
+  let brush = null;
+
+  /** @param {[number, number]} range of time, cut from what the history shows */
+  function paint(range) {
+    if (!brush) {
+      const trace = orbitTrace(whole, place().lowSide, { color: LINES[0] });
+      brush = new Brush(orbit, trace, whole.columns.time);
+      void adjust(orbit, brush.layout());
     }
+    brush.paint(range);
+  }
+
+  async function drawOrbit() {
+    const { lowSide, clearance, node, depth } = place();
+    const table = windowed?.cut;
     if (!table?.columns.u.length) return;
     orbit.setAttribute("aria-label", `Orbit of node ${node} at ${say("measured_depth", depth)}`);
     const trace = orbitTrace(table, lowSide, { color: LINES[0] });
@@ -221,40 +233,52 @@ export function motion(context) {
     await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout(windowed.lines, isLog()), signal);
   }
 
-  /** @param {any} table @param {number} node */
-  function drawStatistics(table, node) {
-    const [u, v] = [table.columns[`u_${node}`], table.columns[`v_${node}`]];
-    const mean = (/** @type {number[]} */ values) => values.reduce((sum, value) => sum + value, 0) / values.length;
-    const [u0, v0] = [mean(u), mean(v)];
-    const radii = u.map((/** @type {number} */ value, /** @type {number} */ index) => Math.hypot(value, v[index]));
-    const radius = mean(radii);
-    const size = Math.sqrt(mean(u.map((/** @type {number} */ value, /** @type {number} */ index) => (value - u0) ** 2 + (v[index] - v0) ** 2)));
-    const deviation = Math.sqrt(mean(radii.map((/** @type {number} */ value) => (value - radius) ** 2)));
-    const largest = [...radii, ...windowed.cut.columns.radius].reduce((a, b) => Math.max(a, b), 0);
-    const { clearance } = place();
+  /** @param {any} table */
+  function drawStatistics(table) {
     const { from, to } = span();
+    // Verified are the statistics of the scenario's own window.
+    const isVerified = from === recording.orbit_window?.from && to === recording.orbit_window?.to;
+    const value = (/** @type {string} */ name) => say(name, table.columns[name][0]) + (isVerified ? context.bias(`${name}_${table.columns.node[0]}`) : "");
     const facts = [
       ["Window", `${say("time", from)} to ${say("time", to)}`],
-      ["Orbit size (rms about the mean)", say("radius", size)],
-      ["Mean radius", say("radius", radius)],
-      ["Deviation of the radius", say("radius", deviation)],
-      ["Largest radius", say("radius", largest)],
-      ["Offset of the mean position", say("radius", Math.hypot(u0, v0))],
-      ["Clearance", say("radius", clearance)],
-      ["Samples", u.length < windowed.cut.attributes.samples ? `${u.length} of ${windowed.cut.attributes.samples}` : String(u.length)],
+      ["Orbit size (rms about the mean)", value("orbit_radius_rms")],
+      ["Mean radius", value("orbit_mean_radius")],
+      ["Deviation of the radius", value("orbit_radius_deviation")],
+      ["Largest radius", value("orbit_largest_radius")],
+      ["Smallest radius", value("orbit_smallest_radius")],
+      ["Offset of the mean position", value("orbit_offset")],
+      ["Clearance", say("clearance", place().clearance)],
+      ["Samples", String(table.attributes.samples)],
     ];
     fill(statistics, h("h2", {}, "Statistics of the window"), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)])));
   }
 
+  /** The modes about the equilibrium, which the service looks for once. @type {Promise<any> | undefined} */
+  let modes;
+
+  /** Puts the modes beside the lines, once they are found. */
+  async function drawModes() {
+    const { lines } = windowed;
+    const found = await (modes ??= get(`${context.path}/modes`, { to_hz: 20 }, signal).catch((error) => ({ modes: [], problem: error.message })));
+    if (windowed?.lines !== lines) return;
+    for (const cell of /** @type {NodeListOf<HTMLElement>} */ (listed.querySelectorAll("[data-frequency]"))) {
+      const mode = modeOf(Number(cell.dataset.frequency), found.modes, lines.attributes.resolution);
+      fill(cell, mode && `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`);
+    }
+    fill(about, found.problem ?? `Beside each line stands the mode about the equilibrium that is nearest to it, within the resolution or 3 % of the frequency; ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}.`);
+  }
+  const about = h("p", { class: "small soft", role: "status" });
+
   function drawLines() {
     const { lines } = windowed;
     const turns = operation.rotation_speed_rpm / 60;
-    const rows = namedLines(lines).map((line) => h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency)), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude)), h("td", {}, multiple(line.frequency, turns, lines.attributes.resolution))));
+    const rows = namedLines(lines).map((line) => h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency)), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude)), h("td", {}, multiple(line.frequency, turns, lines.attributes.resolution)), h("td", { "data-frequency": line.frequency }, "…")));
     const resolved = lines.attributes.resolved_hz ?? point.summary.resolved_hz;
     fill(
       listed,
       h("h2", {}, "Lines of the spectrum"),
-      h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"))), h("tbody", {}, rows)),
+      h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"), h("th", {}, "Mode"))), h("tbody", {}, rows)),
+      about,
       h("p", { class: "small soft" }, `Resolution ${say("frequency", lines.attributes.resolution)}.`, resolved ? ` The steps resolve up to ${say("frequency", resolved)}.` : "", " The line at zero, the mean position, is left out."),
     );
   }

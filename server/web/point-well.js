@@ -74,7 +74,7 @@ function onNodes(columns, name, nodes) {
  * @param {{north: number[], east: number[], down: number[]}} axis
  * @param {number} factor
  */
-function displaced(statics, axis, factor) {
+export function displaced(statics, axis, factor) {
   const count = axis.north.length;
   const result = { north: [...axis.north], east: [...axis.east], down: [...axis.down] };
   for (let node = 0; node < count; node += 1) {

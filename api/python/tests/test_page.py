@@ -12,9 +12,10 @@ from typing import Any, Literal
 from urllib.parse import parse_qs
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
-from drillsweep import Client, Sweep
+from drillsweep import Client, Range, Sweep
 from service import SHORT, Service
 from test_tokens import make_token
 
@@ -25,6 +26,7 @@ NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="tak
 GONE = re.compile(r"net::ERR_|502|Failed to load resource")
 """What a browser itself writes on its console of a server that is gone."""
 MINUS = "\N{MINUS SIGN}"
+POINT_VIEWS = ["profiles", "motion", "well", "energy", "about"]
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +76,7 @@ def named(client: Client) -> Sweep:
 
 def drawn(page: Page, name: str) -> Locator:
     """A picture, once plotly has drawn it."""
-    picture = page.get_by_role("img", name=re.compile(name)).filter(has=page.locator(".main-svg"))
+    picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator(".main-svg"))
     # WebGL without a graphics card takes its time.
     expect(picture.first).to_be_visible(timeout=30_000)
     return picture.first
@@ -254,6 +256,22 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
 
 
+def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1&from=0&to=0.5")
+    modes = named.point(1).modes(to_hz=20.0)["modes"]
+    expect(page.get_by_text(f"{len(modes)} modes were found up to 20 Hz")).to_be_visible(timeout=30_000)
+    cells = page.locator("[data-frequency]")
+    assert cells.count() > 0
+    for cell in cells.all():
+        frequency = abs(float(cell.get_attribute("data-frequency") or "nan"))
+        if text := cell.text_content():
+            shown = float(re.findall(r", ([\d.]+) Hz", text)[0])
+            near = [mode for mode in modes if mode["frequency_hz"] == pytest.approx(shown, rel=1e-3)]
+            # Half a second resolves 2 Hz.
+            assert near, text
+            assert abs(shown - frequency) <= 2.0 + 1e-9
+
+
 def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: Client) -> None:
     axes = {"flow_rate": [0.01, 0.04], "mud_density": [1300, 1700]}
     verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=2).wait(timeout=180.0)
@@ -362,12 +380,56 @@ def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
     until(page, lambda: requested(page).get("set") == {"string.sections[2].outer_diameter": 0.16})
 
 
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_no_view_keeps_anybody_out(
+    opened: Opens, server: str, named: Sweep, sweep: Sweep, theme: Literal["light", "dark"]
+) -> None:
+    views = ["", "#/new?preset=paper-200m", "#/compare", f"#/compare?points={named.id}:1,{named.id}:2&view=orbit"]
+    parts = ["map", "scatter", "parallel", "effects", "table", "failures", f"difference&with={sweep.id}"]
+    views += [f"#/sweeps/{named.id}?view={view}" for view in parts]
+    views += [f"#/sweeps/{named.id}/points/1?view={view}" for view in POINT_VIEWS]
+    page = opened("", color_scheme=theme)
+    for view in views:
+        page.goto("about:blank")
+        page.goto(f"{server}/{view}")
+        page.locator("main h1").wait_for()
+        page.wait_for_load_state("networkidle")
+        if "view=map" in view:
+            page.get_by_role("button", name="Finer grid").click()
+        for summary in page.locator("main details:not([open]) > summary").all():
+            if summary.is_visible():
+                summary.click()
+        page.wait_for_load_state("networkidle")
+        found = Axe().run(page)
+        assert found.violations_count == 0, f"{view}\n{found.generate_report()}"
+
+
+def test_a_hundred_thousand_points_are_shown(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": Range(0.01, 0.06, 400), "mud_density": Range(1200, 2100, 250)}
+    large = client.submit("paper-200m", set=SHORT, axes=axes, name="large", priority=-10, outputs="summary")
+    try:
+        large.pause()
+        page = opened(f"#/sweeps/{large.id}?view=table")
+        expect(page.get_by_text("100000 points", exact=True)).to_be_visible(timeout=60_000)
+        page.locator(".rows").evaluate("rows => { rows.scrollTop = rows.scrollHeight }")
+        expect(page.get_by_role("link", name="100000", exact=True)).to_be_visible()
+        assert page.locator(".rows tbody tr").count() < 200
+        page.get_by_role("link", name="Map", exact=True).click()
+        drawn(page, "over flow rate and mud density")
+    finally:
+        large.cancel()
+
+
 def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
     keys = ",".join(f"{named.id}:{number}" for number in (1, 2, 8))
     for view, picture in [
         ("profiles", "Profiles"),
         ("orbit", "Orbits"),
+        ("history", "Histories"),
+        ("rotation", "Rotation and torque"),
         ("spectrum", "Full spectra"),
+        ("well", "Well"),
+        ("energy", "Energy"),
     ]:
         page = opened(f"#/compare?points={keys}&view={view}&node=1")
         drawn(page, picture)

@@ -44,7 +44,8 @@ static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
 
 /// The page on which sweeps are watched.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
-    static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| html("index.html"));
+    static PAGE: LazyLock<io::Result<String>> =
+        LazyLock::new(|| Ok(html("index.html")?.replace("</head>", &preloads())));
     html_response(&PAGE, &uri)
 }
 
@@ -71,6 +72,16 @@ fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Respons
         (header::ETAG, tag(uri.path())?),
     ];
     Ok((headers, usual(), text.as_str()).into_response())
+}
+
+/// What the page's head ends with: all modules, which a browser would otherwise find one after the other by their imports, and what every
+/// view needs.
+fn preloads() -> String {
+    let is_module = |path: &str| path.ends_with(".js") && !path.contains('/') && path != "docs.js";
+    let modules = FILES.iter().filter(|(path, ..)| is_module(path));
+    let links = modules
+        .map(|(path, ..)| format!("  <link rel=\"modulepreload\" href=\"/web/{}/{path}\">\n", *VERSION));
+    links.collect::<String>() + "</head>"
 }
 
 /// A file of the page, compressed as it is stored where the browser takes that.
@@ -133,7 +144,6 @@ fn content_type(path: &str) -> &'static str {
         Some("css") => "text/css; charset=utf-8",
         Some("js") => "text/javascript; charset=utf-8",
         Some("svg") => "image/svg+xml",
-        Some("json") => "application/json",
         _ => "application/octet-stream",
     }
 }

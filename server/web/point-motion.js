@@ -277,7 +277,7 @@ export function motion(context) {
     fill(
       listed,
       h("h2", {}, "Lines of the spectrum"),
-      h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"), h("th", {}, "Mode"))), h("tbody", {}, rows)),
+      h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Lines, scrollable" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"), h("th", {}, "Mode"))), h("tbody", {}, rows))),
       about,
       h("p", { class: "small soft" }, `Resolution ${say("frequency", lines.attributes.resolution)}.`, resolved ? ` The steps resolve up to ${say("frequency", resolved)}.` : "", " The line at zero, the mean position, is left out."),
     );

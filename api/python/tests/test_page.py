@@ -244,8 +244,14 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 40)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 50, steps=8)
+    # The orbit follows while the window is brushed.
+    painted = "brush => brush.getContext('2d').getImageData(0, 0, brush.width, brush.height).data.some(value => value)"
+    brush = page.locator("canvas.brush")
+    expect(brush).to_have_count(1)
+    until(page, lambda: bool(brush.evaluate(painted)))
     page.mouse.up()
     until(page, lambda: "from=" in page.url and "to=" in page.url)
+    expect(brush).to_have_count(0)
     start, end = (float(page.get_by_label(f"{name} [s]").input_value()) for name in ("From", "To"))
     assert (start, end) == pytest.approx((0.2, 0.35), abs=0.01)
     table = named.point(1).orbit(node=named.point(1).scenario["recording"]["nodes"][1]["node"], time=(start, end))
@@ -469,9 +475,18 @@ def test_the_page_recovers_when_the_server_comes_back(opened: Opens, troubles: l
     troubles[:] = [text for text in troubles if not GONE.search(text)]
 
 
-def test_a_phone_shows_every_view_without_sideways_scrolling(opened: Opens, named: Sweep) -> None:
-    for view in ["", f"#/sweeps/{named.id}", f"#/sweeps/{named.id}/points/1", "#/new"]:
+def test_a_phone_shows_every_view_without_sideways_scrolling(opened: Opens, named: Sweep, sweep: Sweep) -> None:
+    views = ["", "#/new", f"#/sweeps/{named.id}?view=difference&with={sweep.id}", f"#/compare?points={named.id}:1"]
+    views += [f"#/sweeps/{named.id}?view={view}" for view in ("map", "table")]
+    views += [f"#/sweeps/{named.id}/points/1?view={view}" for view in POINT_VIEWS]
+    for view in views:
         page = opened(view, viewport={"width": 390, "height": 844})
+        page.wait_for_load_state("networkidle")
+        if "view=map" in view:
+            page.get_by_role("button", name="Finer grid").click()
+        for summary in page.locator("main details:not([open]) > summary").all():
+            if summary.is_visible():
+                summary.click()
         page.wait_for_load_state("networkidle")
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, view
 

@@ -195,6 +195,10 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
         seen.push(path);
     }
     assert!(seen.len() > 5, "{seen:?}");
+    // The head names all modules, so that none waits for another one's imports.
+    for module in seen.iter().filter(|path| path.ends_with(".js") && !path.contains('/')) {
+        assert!(text.contains(&format!("<link rel=\"modulepreload\" href=\"{folder}{module}\">")), "{module}");
+    }
 
     // What has a copy is told that it is still right; another version has no files here.
     let tag = page.headers[header::ETAG].clone();

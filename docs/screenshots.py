@@ -1,29 +1,54 @@
-"""Pictures of every view of the web page in both themes: `python docs/screenshots.py SERVER SWEEP FOLDER`.
+"""Pictures of every view of the web page in both themes, for the book: `python docs/screenshots.py SERVER SWEEP OTHER`.
 
-The sweep has two points or more, complete, with their histories.
+Both sweeps are complete, of the same parameters, with points that have histories; the first one verifies some.
+Pictures go to `docs/page/`, or to the folder that is given, as WebP.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
+from PIL import Image
+from playwright.sync_api import Page, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
+WIDTH, LARGEST_HEIGHT = 1200, 1000
+TALLER = {"sweep-map": 1400}
+"""Pictures whose lower part is what they are taken for."""
+QUALITY = 40
 
 
-def views(sweep: str) -> dict[str, str]:
+def views(sweep: str, other: str) -> dict[str, str]:
     """The link of each view."""
     links = {"sweeps": "#/sweeps", "new": f"#/new?from={sweep}"}
     for view in ("map", "scatter", "parallel", "effects", "table", "failures"):
-        links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}"
+        links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_49"
+    links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
     for view in ("profiles", "motion", "well", "energy", "about"):
-        links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}"
-    for view in ("profiles", "orbit", "spectrum"):
-        links[f"compare-{view}"] = f"#/compare?points={sweep}:1,{sweep}:2&view={view}"
+        links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
+    points = f"{sweep}:1,{sweep}:4,{other}:4"
+    for view in ("profiles", "orbit", "history", "rotation", "spectrum", "well", "energy"):
+        links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
     return links
+
+
+def unfold(page: Page, name: str) -> None:
+    """Opens what is folded at first and worth a picture."""
+    if name == "new":
+        page.get_by_text("All fields, with units").click()
+        page.locator("summary", has_text="operation").first.click()
+    if name == "sweep-map":
+        page.get_by_role("button", name="Finer grid").click()
+        page.get_by_text("are known and not computed again").wait_for()
+
+
+def save(picture: bytes, path: Path, height: int) -> None:
+    """A picture as a small file."""
+    image = Image.open(io.BytesIO(picture)).convert("RGB")
+    image.crop((0, 0, image.width, min(image.height, height))).save(path, quality=QUALITY, method=6)
 
 
 def main() -> None:
@@ -31,23 +56,29 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("server")
     parser.add_argument("sweep")
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("other")
+    parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).parent / "page")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         for theme in ("light", "dark"):
-            for name, link in views(arguments.sweep).items():
-                page = browser.new_page(viewport={"width": 1400, "height": 900}, color_scheme=theme)
+            context = browser.new_context(viewport={"width": WIDTH, "height": 800}, color_scheme=theme)
+            for name, link in views(arguments.sweep, arguments.other).items():
+                page = context.new_page()
                 page.goto(f"{arguments.server}/{link}")
                 page.locator("main h1").wait_for()
+                page.wait_for_load_state("networkidle")
+                unfold(page, name)
                 page.wait_for_load_state("networkidle")
                 for picture in page.locator(".plot:visible").all():
                     picture.locator(".main-svg").first.wait_for()
                 # WebGL draws a frame after the axes.
                 page.wait_for_timeout(500)
-                page.screenshot(path=arguments.folder / f"{name}-{theme}.png", full_page=True)
+                height = TALLER.get(name, LARGEST_HEIGHT)
+                save(page.screenshot(full_page=True), arguments.folder / f"{name}-{theme}.webp", height)
                 page.close()
+            context.close()
         browser.close()
 
 

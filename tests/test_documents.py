@@ -22,11 +22,13 @@ from service import REPOSITORY, Service, binary
 
 DOCUMENTS = [*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/**/*.md"), REPOSITORY / "api" / "python" / "README.md"]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+PICTURE = re.compile(r'src(?:set)?="([^"]+)"')
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(REPOSITORY)))
 def test_links_lead_to_files(document: Path) -> None:
-    for link in LINK.findall(document.read_text()):
+    text = document.read_text()
+    for link in LINK.findall(text) + PICTURE.findall(text):
         if "://" in link or link.startswith("#"):
             continue
         target = document.parent / link.split("#")[0]

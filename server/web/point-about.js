@@ -63,7 +63,7 @@ function accuracyPart({ point, bias }) {
     ["Energy that the ledger misses", say("energy_residual_ratio", summary.energy_residual_ratio, 2)],
   ];
   const reasons = [time?.condition, mesh?.reason && `Mesh: ${mesh.reason}`, spread?.reason && `Spread: ${spread.reason}`].filter(Boolean);
-  const biased = Object.keys(summary).filter((name) => bias(name));
+  const biased = Object.keys(summary).filter((name) => name.startsWith("orbit_radius_rms") && bias(name));
   return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
 }
 

@@ -43,7 +43,7 @@ export function well(context) {
         { type: "scatter3d", mode: "lines", ...line(axis), line: { color: soft, width: 2 }, hoverinfo: "skip", name: "axis of the hole" },
         { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: SCALE, width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
       ],
-      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.05, y: -1.05, z: 0.45 } } } },
+      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } },
       context.signal,
     );
   }

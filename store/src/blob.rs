@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::Write;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -41,19 +42,27 @@ pub struct BlobStore {
     trees: Arc<HashTrees>,
 }
 
-/// An object as it lies in the store.
+/// An object as it lies in the store, or the part of one whose upload was not finished.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct StoredObject {
+    /// Where it is or would be.
     path: ObjectPath,
     pub(crate) bytes: u64,
+    /// Where the part of an unfinished one is.
+    unfinished: Option<PathBuf>,
 }
 
 impl StoredObject {
-    /// The name of the blob that it is; none of a scratch object.
+    /// The name of the blob that it is or was to become; none of a scratch object.
     pub(crate) fn blob(&self) -> Option<String> {
         let name = self.path.filename()?;
         let id: BlobId = name.parse().ok()?;
         (id.path() == self.path).then(|| name.to_owned())
+    }
+
+    /// Whether its upload was not finished.
+    pub(crate) fn is_upload(&self) -> bool {
+        self.unfinished.is_some()
     }
 }
 
@@ -330,25 +339,28 @@ impl BlobStore {
     /// them.
     pub(crate) async fn objects_before(&self, cutoff: i64) -> Result<Vec<StoredObject>> {
         let is_old = async |meta: ObjectMeta| {
-            let object = StoredObject { path: meta.location, bytes: meta.size };
+            let object = StoredObject { path: meta.location, bytes: meta.size, unfinished: None };
             let is_ours = object.blob().is_some() || object.path.prefix_matches(&ObjectPath::from(SCRATCH));
             Ok((is_ours && meta.last_modified.timestamp_millis() < cutoff).then_some(object))
         };
         Ok(self.backend.objects.list(None).try_filter_map(is_old).try_collect().await?)
     }
 
-    /// Deletes an object; one that is gone already is no matter.
+    /// Deletes an object, or the part of one; one that is gone already is no matter.
     pub(crate) async fn delete(&self, object: &StoredObject) -> Result<()> {
+        if let Some(file) = &object.unfinished {
+            return backend::delete_file(file);
+        }
         match self.backend.objects.delete(&object.path).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }
 
-    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished; they are deleted if so
-    /// wanted. None of a bucket, whose own rule deletes them.
-    pub(crate) async fn unfinished_uploads(&self, cutoff: i64, is_deleting: bool) -> Result<Vec<u64>> {
-        self.backend.unfinished_uploads(cutoff, is_deleting).await
+    /// Parts of uploads that were begun before a time \[ms since the epoch\] and not finished. None of a bucket, whose own rule deletes
+    /// them.
+    pub(crate) async fn unfinished_uploads(&self, cutoff: i64) -> Result<Vec<StoredObject>> {
+        self.backend.unfinished_uploads(cutoff).await
     }
 
     /// Writes, reads and deletes a scratch object: a full or read-only disk shows here.

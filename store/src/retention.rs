@@ -2,7 +2,8 @@
 //!
 //! Rows say what is wanted; blobs that no row names, and that nobody has reserved for a row to come, are deleted after a grace time. That a
 //! blob is about to be deleted is noted under the lock under which it is looked whether it may be; deleted it is after that, for an object
-//! store may be slow. Nobody reserves it meanwhile: so a blob that a worker has found to exist cannot vanish behind its back.
+//! store may be slow. Nobody reserves it meanwhile, and no other collector deletes it: so a blob that a worker has found to exist cannot
+//! vanish behind its back, however many collect at once.
 
 use std::collections::{BTreeMap, HashSet};
 use std::time::{Duration, Instant};
@@ -13,7 +14,7 @@ use crate::blob::StoredObject;
 use crate::connection::Store;
 use crate::database::Transaction;
 use crate::error::Result;
-use crate::query::query;
+use crate::query::{Query, query};
 use crate::sql;
 
 /// Blobs that are looked up under one hold of the write lock.
@@ -154,9 +155,12 @@ impl Store {
             garbage.blobs += deleted.len() as u64;
             garbage.blob_bytes += deleted.iter().map(|object| object.bytes).sum::<u64>();
         }
-        let unfinished = self.blobs().unfinished_uploads(cutoff, !is_dry_run).await?;
-        garbage.unfinished_uploads = unfinished.len() as u64;
-        garbage.unfinished_bytes = unfinished.iter().sum();
+        for batch in self.blobs().unfinished_uploads(cutoff).await?.chunks(BATCH) {
+            let deleted =
+                if is_dry_run { self.unreserved(batch).await? } else { self.delete_unnamed(batch).await? };
+            garbage.unfinished_uploads += deleted.len() as u64;
+            garbage.unfinished_bytes += deleted.iter().map(|object| object.bytes).sum::<u64>();
+        }
         if !is_dry_run {
             // Pages that were freed go back to the file system with the next checkpoint of the log.
             query(sql::retention::TRUNCATE_LOG).scalars::<i64>(&self.database).await?;
@@ -173,35 +177,70 @@ impl Store {
         self.write().await
     }
 
-    /// Deletes those of the objects that no row names now, and that nobody has reserved for one.
+    /// Deletes those of the objects that no row names now, and that nobody has reserved for one; of unfinished uploads those that nobody has
+    /// reserved.
     async fn delete_unnamed(&self, objects: &[StoredObject]) -> Result<Vec<StoredObject>> {
         let began = Instant::now();
         let mut unwanted = Vec::new();
         let mut tx = self.write().await?;
         for object in objects {
             let Some(blob) = object.blob() else {
-                unwanted.push(object);
+                unwanted.push((object, None));
                 continue;
             };
-            if !query(sql::retention::IS_BLOB_IN_USE).bind(&blob).scalar::<bool>(&mut tx).await? {
-                query(sql::retention::BEGIN_REMOVAL).bind(blob).bind(REMOVAL_MS).execute(&mut tx).await?;
-                unwanted.push(object);
+            let is_wanted = match object.is_upload() {
+                true => unreserved(&blob).scalars::<String>(&mut tx).await?.is_empty(),
+                false => query(sql::retention::IS_BLOB_IN_USE).bind(&blob).scalar(&mut tx).await?,
+            };
+            if is_wanted {
+                continue;
+            }
+            let begin = query(sql::retention::BEGIN_REMOVAL).bind(&blob).bind(REMOVAL_MS);
+            // Where another collector deletes it, somebody may write it again as soon as that is done.
+            if let Some(until) = begin.first_scalar::<i64>(&mut tx).await? {
+                unwanted.push((object, Some((blob, until))));
             }
         }
         tx.commit().await?;
         let mut deleted = Vec::new();
-        for object in unwanted {
-            if began.elapsed() > REMOVAL_TIME {
-                break;
+        let mut failure = None;
+        for (object, removal) in unwanted {
+            if failure.is_none() && began.elapsed() <= REMOVAL_TIME {
+                match self.blobs().delete(object).await {
+                    Ok(()) => deleted.push(object.clone()),
+                    // The object store may yet do what it was asked for: the note stays until it runs out.
+                    Err(error) => {
+                        failure = Some(error);
+                        continue;
+                    }
+                }
             }
-            self.blobs().delete(object).await?;
-            deleted.push(object.clone());
-            if let Some(blob) = object.blob() {
-                query(sql::retention::END_REMOVAL).bind(blob).execute(&self.database).await?;
+            if let Some((blob, until)) = removal {
+                query(sql::retention::END_REMOVAL).bind(blob).bind(until).execute(&self.database).await?;
             }
         }
-        Ok(deleted)
+        failure.map_or(Ok(deleted), Err)
     }
+
+    /// Those of some unfinished uploads that are of no blob that is reserved.
+    async fn unreserved(&self, uploads: &[StoredObject]) -> Result<Vec<StoredObject>> {
+        let mut found = Vec::new();
+        for upload in uploads {
+            let is_reserved = match upload.blob() {
+                Some(blob) => unreserved(&blob).scalars::<String>(&self.database).await?.is_empty(),
+                None => false,
+            };
+            if !is_reserved {
+                found.push(upload.clone());
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Gives a blob's name unless it is reserved.
+fn unreserved(blob: &str) -> Query {
+    query(sql::upload::UNRESERVED).bind(json!([blob]).to_string())
 }
 
 /// Sweeps take their points, events and idempotency keys along.

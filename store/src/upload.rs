@@ -81,12 +81,15 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Worker)).await.unwrap();
         let blob = BlobId::of(b"history");
-        let note = query(sql::retention::BEGIN_REMOVAL).bind(blob.to_string()).bind(600_000);
-        note.execute(&store.database).await.unwrap();
+        let note = || query(sql::retention::BEGIN_REMOVAL).bind(blob.to_string()).bind(600_000);
+        let until: i64 = note().scalar(&store.database).await.unwrap();
+        let others: Option<i64> = note().first_scalar(&store.database).await.unwrap();
+        assert_eq!(others, None, "one at a time deletes it");
         let mut writing = Box::pin(store.put_blob(b"history".to_vec()));
         assert!(tokio::time::timeout(4 * POLL, &mut writing).await.is_err(), "it may vanish at any time");
-        let end = query(sql::retention::END_REMOVAL).bind(blob.to_string());
-        end.execute(&store.database).await.unwrap();
+        let end = |until: i64| query(sql::retention::END_REMOVAL).bind(blob.to_string()).bind(until);
+        assert_eq!(end(until + 1).execute(&store.database).await.unwrap(), 0, "only its own note");
+        assert_eq!(end(until).execute(&store.database).await.unwrap(), 1);
         assert_eq!(writing.await.unwrap(), blob);
         assert!(store.blobs().get(blob).await.is_ok());
     }

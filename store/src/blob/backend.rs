@@ -1,6 +1,7 @@
 //! What the objects lie on.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, UNIX_EPOCH};
@@ -8,9 +9,11 @@ use std::time::{Duration, UNIX_EPOCH};
 use object_store::aws::{AmazonS3, AmazonS3Builder, AmazonS3ConfigKey, S3ConditionalPut};
 use object_store::client::ClientConfigKey;
 use object_store::local::LocalFileSystem;
+use object_store::path::Path as ObjectPath;
 use object_store::prefix::PrefixStore;
 use object_store::{BackoffConfig, ObjectStore, RetryConfig};
 
+use super::StoredObject;
 use super::location::ObjectsLocation;
 use crate::error::{Result, StoreError};
 
@@ -87,20 +90,30 @@ impl Backend {
         Ok(Self { objects: open(&SHORT)?, uploads: open(&LONG)?, stretch: S3_STRETCH, directory: None })
     }
 
-    /// Sizes of the parts of uploads that were begun before a time \[ms since the epoch\] and never finished, as a killed
-    /// worker leaves them in a directory; they are deleted if so wanted. The object store does not list them. Those in a bucket are
-    /// for the bucket's rule about incomplete uploads to delete (`AbortIncompleteMultipartUpload`).
-    pub(super) async fn unfinished_uploads(&self, cutoff: i64, is_deleting: bool) -> Result<Vec<u64>> {
+    /// Parts of uploads that were begun before a time \[ms since the epoch\] and not finished, as a killed worker leaves them in a
+    /// directory. The object store does not list them. Those in a bucket are for the bucket's rule about incomplete uploads to delete
+    /// (`AbortIncompleteMultipartUpload`).
+    pub(super) async fn unfinished_uploads(&self, cutoff: i64) -> Result<Vec<StoredObject>> {
         let Some(directory) = self.directory.clone() else {
             return Ok(Vec::new());
         };
         let path = directory.display().to_string();
         let walking = tokio::task::spawn_blocking(move || {
-            let mut sizes = Vec::new();
-            visit_unfinished(&directory, cutoff, is_deleting, &mut sizes).map(|()| sizes)
+            let mut found = Vec::new();
+            visit_unfinished(&directory, &ObjectPath::default(), cutoff, &mut found).map(|()| found)
         });
         let walked = walking.await.map_err(std::io::Error::other).flatten();
         walked.map_err(|source| StoreError::Directory { path, source })
+    }
+}
+
+/// Deletes a file; one that is gone already is no matter.
+pub(super) fn delete_file(file: &Path) -> Result<()> {
+    match std::fs::remove_file(file) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            Err(StoreError::Directory { path: file.display().to_string(), source })
+        }
+        _ => Ok(()),
     }
 }
 
@@ -130,32 +143,42 @@ fn s3(bucket: &str, settings: &BTreeMap<String, String>, patience: &Patience) ->
     Ok(builder.build()?)
 }
 
+/// Finds the unfinished uploads in a folder and below. Files may go while it looks.
 fn visit_unfinished(
     directory: &Path,
+    folder: &ObjectPath,
     cutoff: i64,
-    is_deleting: bool,
-    sizes: &mut Vec<u64>,
+    found: &mut Vec<StoredObject>,
 ) -> std::io::Result<()> {
     for entry in std::fs::read_dir(directory)? {
         let entry = entry?;
-        let metadata = entry.metadata()?;
+        let name = entry.file_name();
+        let (Some(name), Some(metadata)) = (name.to_str(), still_there(entry.metadata())?) else { continue };
         if metadata.is_dir() {
-            visit_unfinished(&entry.path(), cutoff, is_deleting, sizes)?;
+            visit_unfinished(&entry.path(), &folder.clone().join(name), cutoff, found)?;
             continue;
         }
         let modified = metadata.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default();
         let is_old = i64::try_from(modified.as_millis()).is_ok_and(|modified| modified < cutoff);
         // `object_store` uploads to the object's path with `#` and a number after it.
-        let name = entry.file_name();
-        let is_upload = name.to_str().and_then(|name| name.rsplit_once('#')).is_some_and(|(_, number)| {
-            !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-        });
-        if is_old && is_upload {
-            if is_deleting {
-                std::fs::remove_file(entry.path())?;
-            }
-            sizes.push(metadata.len());
+        let Some((object, number)) = name.rsplit_once('#') else { continue };
+        let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+        if is_old && is_number {
+            found.push(StoredObject {
+                path: folder.clone().join(object),
+                bytes: metadata.len(),
+                unfinished: Some(entry.path()),
+            });
         }
     }
     Ok(())
+}
+
+/// None of what is gone.
+fn still_there<T>(found: std::io::Result<T>) -> std::io::Result<Option<T>> {
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    }
 }

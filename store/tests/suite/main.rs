@@ -29,6 +29,7 @@ macro_rules! conformance {
                 writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked,
                 several_may_open_a_new_store_at_once,
                 of_several_submissions_with_one_idempotency_key_one_is_stored,
+                no_row_loses_its_blob_while_garbage_is_collected_over_and_over,
             }
             control {
                 a_paused_sweep_is_not_handed_out_until_it_goes_on,

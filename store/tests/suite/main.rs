@@ -150,6 +150,63 @@ macro_rules! conformance {
     };
 }
 
+/// Those of them that write, read or delete objects, in one test: each process that has a bucket starts a server for it. A bucket has no
+/// unfinished uploads to be found, and nothing stops its users from writing.
+macro_rules! with_objects {
+    ($engine:ident) => {
+        with_objects! { $engine:
+            check {
+                a_whole_store_has_no_problems_and_damage_to_blobs_is_named,
+            }
+            concurrency {
+                four_workers_share_a_thousand_points_without_losing_or_doubling_one,
+                no_row_loses_its_blob_while_garbage_is_collected_over_and_over,
+            }
+            control {
+                a_refresh_computes_anew_and_keeps_the_old_result_until_then,
+                a_refresh_that_disagrees_is_told,
+            }
+            lease {
+                a_late_writer_changes_nothing,
+                a_checkpoint_reaches_the_next_attempts_until_the_work_is_done,
+            }
+            probe {
+                a_probe_leaves_nothing_behind,
+            }
+            repair {
+                a_lost_table_is_computed_again_and_is_whole_then,
+                what_fails_to_be_computed_again_is_not_tried_at_every_look,
+                a_repair_goes_on_whatever_becomes_of_other_sweeps,
+                a_repair_waits_while_its_sweep_is_paused,
+                what_nobody_computes_any_more_is_not_queued,
+                a_check_repairs_all_that_it_finds,
+            }
+            retention {
+                a_blob_that_no_row_names_goes_after_its_grace,
+                a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
+                an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
+                a_sweep_goes_at_its_time_and_leaves_what_others_have,
+                a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinished,
+                no_row_names_a_blob_that_is_gone,
+            }
+            submit {
+                a_result_is_read_back_with_its_artifacts_and_fills_the_table,
+                everything_is_there_after_reopening,
+            }
+        }
+    };
+    ($engine:ident: $($module:ident { $($test:ident,)+ })+) => {
+        #[tokio::test]
+        async fn all_that_concerns_objects() {
+            $($(
+                // The last one that is named is the one that fails.
+                eprintln!("{}::{}", stringify!($module), stringify!($test));
+                crate::$module::$test::<$engine>().await;
+            )+)+
+        }
+    };
+}
+
 mod bench;
 mod blobs;
 mod bucket;

@@ -27,11 +27,14 @@ fn stored(table: &Table) -> StoredTable<Bytes> {
     StoredTable::open(parquet::write(table).unwrap().into()).unwrap()
 }
 
-fn cut(table: &Table, columns: &[&str], rows: Range<usize>, stride: usize) -> Cut<Bytes> {
+fn cut(table: &Table, columns: &[&str], rows: Range<usize>, (run, stride): (usize, usize)) -> Cut<Bytes> {
     let stored = stored(table);
     let names: Vec<String> = columns.iter().map(|&name| name.to_owned()).collect();
     let layout = stored.layout().select(&names).unwrap().attribute("samples", rows.len());
-    stored.cut(layout, rows, stride).unwrap()
+    match run {
+        1 => stored.cut(layout, rows, stride).unwrap(),
+        _ => stored.cut_runs(layout, rows, run, stride).unwrap(),
+    }
 }
 
 fn all_formats(source: &impl Source) -> [Vec<u8>; 4] {
@@ -47,25 +50,32 @@ fn all_formats(source: &impl Source) -> [Vec<u8>; 4] {
 #[test]
 fn a_part_of_a_stored_table_is_written_as_the_same_part_in_memory() {
     let table = history();
-    for (columns, rows, stride) in [
-        (&["u_49", "steps", "regime", "time"][..], 0..25_000, 1),
-        (&["time", "u_49"], 9_998..20_003, 1),
-        (&["regime", "time"], 5..24_999, 7),
-        (&["time"], 3..24_000, 12_000),
-        (&["time", "steps"], 100..100, 1),
-        (&[], 0..25_000, 1),
+    for (columns, rows, run, stride) in [
+        (&["u_49", "steps", "regime", "time"][..], 0..25_000, 1, 1),
+        (&["time", "u_49"], 9_998..20_003, 1, 1),
+        (&["regime", "time"], 5..24_999, 1, 7),
+        (&["time"], 3..24_000, 1, 12_000),
+        (&["time", "steps"], 100..100, 1, 1),
+        (&[], 0..25_000, 1, 1),
+        // Every run of 297 rows, every third one, and one that is cut off by the end.
+        (&["steps", "u_49"], 297..24_057, 297, 1),
+        (&["steps", "regime"], 297..24_057, 297, 3),
+        (&["time", "steps"], 9_000..25_000, 4_000, 2),
+        (&["steps"], 0..25_000, 12_001, 2),
+        (&["steps"], 24_000..25_000, 600, 4),
     ] {
-        let part = cut(&table, columns, rows.clone(), stride);
+        let part = cut(&table, columns, rows.clone(), (run, stride));
+        let kept = || rows.clone().filter(|row| ((row - rows.start) / run).is_multiple_of(stride));
         let mut expected = Table::default().attribute("samples", rows.len());
         for &name in columns {
-            expected.push(name, table.columns[name].rows(rows.clone().step_by(stride)));
+            expected.push(name, table.columns[name].rows(kept()));
         }
-        assert_eq!(part.rows(), rows.clone().step_by(stride).len());
+        assert_eq!(part.rows(), kept().count());
         let read = part.read().unwrap();
         // As text, in which missing numbers equal each other.
         let text = serde_json::to_string(&expected).unwrap();
         assert_eq!(serde_json::to_string(&read).unwrap(), text);
-        assert!(all_formats(&part) == all_formats(&expected), "{columns:?} {rows:?} by {stride}");
+        assert!(all_formats(&part) == all_formats(&expected), "{columns:?} {rows:?} by {run} of {stride}");
         assert_eq!(all_formats(&part)[1], text.into_bytes(), "JSON is what serde makes of a table");
     }
 }

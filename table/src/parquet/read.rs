@@ -119,7 +119,7 @@ impl<R: ReadAt> StoredTable<R> {
         let mut table = self.layout.clone();
         table.columns.retain(|name, _| columns.contains(&name.as_str()));
         table.units.retain(|name, _| columns.contains(&name.as_str()));
-        self.fill(&mut table, rows, 1)?;
+        self.fill(&mut table, rows, Thinning::NONE)?;
         Ok(table)
     }
 
@@ -129,6 +129,20 @@ impl<R: ReadAt> StoredTable<R> {
     /// # Errors
     /// When a column is none of this table's.
     pub fn cut(self, layout: Table, rows: Range<usize>, stride: usize) -> Result<Cut<R>, TableError> {
+        self.cut_runs(layout, rows, 1, stride)
+    }
+
+    /// The same of every `stride`-th run of `run` rows, such as the rows of one time.
+    ///
+    /// # Errors
+    /// As [`StoredTable::cut`].
+    pub fn cut_runs(
+        self,
+        layout: Table,
+        rows: Range<usize>,
+        run: usize,
+        stride: usize,
+    ) -> Result<Cut<R>, TableError> {
         for (name, column) in &layout.columns {
             let own = self.layout.columns.get(name).map(std::mem::discriminant);
             if own != Some(std::mem::discriminant(column)) || !column.is_empty() {
@@ -136,36 +150,63 @@ impl<R: ReadAt> StoredTable<R> {
             }
         }
         let end = rows.end.min(self.rows());
-        Ok(Cut { rows: rows.start.min(end)..end, stride: stride.max(1), layout, stored: self })
+        let rows = rows.start.min(end)..end;
+        let thinning = Thinning { origin: rows.start, run: run.max(1), stride: stride.max(1) };
+        Ok(Cut { rows, thinning, layout, stored: self })
     }
 
-    /// Adds to the columns of `table`, which are columns of this one, every `stride`-th of some rows.
-    fn fill(&self, table: &mut Table, rows: Range<usize>, stride: usize) -> Result<(), TableError> {
+    /// Adds to the columns of `table`, which are columns of this one, those of some rows that stay.
+    fn fill(&self, table: &mut Table, rows: Range<usize>, thinning: Thinning) -> Result<(), TableError> {
         let mut columns = Vec::with_capacity(table.columns.len());
         for (name, column) in &mut table.columns {
             let index = self.layout.columns.get_index_of(name).ok_or(TableError::OtherColumns)?;
             columns.push((index, name.as_str(), column));
         }
         for (number, bounds) in self.bounds.windows(2).enumerate() {
-            let Some(first) = first_in(&rows, stride, bounds[0]) else { break };
+            let first = thinning.first_from(rows.start.max(bounds[0]));
             let within = first..rows.end.min(bounds[1]);
             if within.is_empty() {
                 continue;
             }
             let group = self.reader.get_row_group(number)?;
-            let within = within.start - bounds[0]..within.end - bounds[0];
             for (index, name, column) in &mut columns {
-                read_column(group.as_ref(), *index, name, within.clone(), stride, column)?;
+                read_column(group.as_ref(), *index, name, (bounds[0], within.clone()), thinning, column)?;
             }
         }
         Ok(())
     }
 }
 
-/// The first of every `stride`-th of some rows that is not before `bound`.
-fn first_in(rows: &Range<usize>, stride: usize, bound: usize) -> Option<usize> {
-    let first = rows.start + bound.saturating_sub(rows.start).div_ceil(stride) * stride;
-    (first < rows.end).then_some(first)
+/// Which rows stay: of runs of `run` rows, counted from the row `origin` on, every `stride`-th.
+#[derive(Clone, Copy)]
+struct Thinning {
+    origin: usize,
+    run: usize,
+    stride: usize,
+}
+
+impl Thinning {
+    const NONE: Thinning = Thinning { origin: 0, run: 1, stride: 1 };
+
+    /// Whether a row, which is not before the origin, stays.
+    fn keeps(&self, row: usize) -> bool {
+        self.stride == 1 || ((row - self.origin) / self.run).is_multiple_of(self.stride)
+    }
+
+    /// The first row that stays and is not before `row`.
+    fn first_from(&self, row: usize) -> usize {
+        if self.keeps(row) {
+            return row;
+        }
+        let period = self.run * self.stride;
+        self.origin + (row - self.origin).div_ceil(period) * period
+    }
+
+    /// How many of `rows`, from the origin on, stay.
+    fn count(&self, rows: usize) -> usize {
+        let period = self.run * self.stride;
+        rows / period * self.run + (rows % period).min(self.run)
+    }
 }
 
 /// A part of a stored table.
@@ -173,7 +214,7 @@ pub struct Cut<R: ReadAt> {
     stored: StoredTable<R>,
     layout: Table,
     rows: Range<usize>,
-    stride: usize,
+    thinning: Thinning,
 }
 
 impl<R: ReadAt> Cut<R> {
@@ -183,7 +224,7 @@ impl<R: ReadAt> Cut<R> {
     /// When the bytes cannot be read or are not such a table.
     pub fn read(&self) -> Result<Table, TableError> {
         let mut table = self.layout.clone();
-        self.stored.fill(&mut table, self.rows.clone(), self.stride)?;
+        self.stored.fill(&mut table, self.rows.clone(), self.thinning)?;
         Ok(table)
     }
 
@@ -208,7 +249,7 @@ impl<R: ReadAt> Cut<R> {
 
     /// The number of rows.
     pub fn rows(&self) -> usize {
-        self.rows.len().div_ceil(self.stride)
+        self.thinning.count(self.rows.len())
     }
 
     /// Rows of the stored table that make the next piece after `start`: of one row group, and of bounded bytes.
@@ -219,7 +260,7 @@ impl<R: ReadAt> Cut<R> {
         let bounds = &self.stored.bounds;
         let group_end = bounds[bounds.partition_point(|bound| *bound <= start)];
         let width: usize = self.layout.columns.values().map(width).sum();
-        let most = (PIECE_BYTES / width.max(1)).max(1).saturating_mul(self.stride);
+        let most = (PIECE_BYTES / width.max(1)).max(1).saturating_mul(self.thinning.stride);
         Some(start..start.saturating_add(most).min(group_end).min(self.rows.end))
     }
 }
@@ -233,9 +274,9 @@ impl<R: ReadAt> Source for Cut<R> {
         let mut next = self.rows.start;
         std::iter::from_fn(move || {
             let piece = self.piece_from(next)?;
-            next = first_in(&self.rows, self.stride, piece.end).unwrap_or(self.rows.end);
+            next = self.thinning.first_from(piece.end).min(self.rows.end);
             let mut table = self.layout.clone();
-            Some(self.stored.fill(&mut table, piece, self.stride).map(|()| Cow::Owned(table)))
+            Some(self.stored.fill(&mut table, piece, self.thinning).map(|()| Cow::Owned(table)))
         })
     }
 
@@ -256,7 +297,7 @@ impl<R: ReadAt> Source for Cut<R> {
             }
             let own = piece.iter().map(|&(name, column)| (name.clone(), column.clone()));
             let mut table = Table { columns: own.collect(), ..Table::default() };
-            Some(self.stored.fill(&mut table, self.rows.clone(), self.stride).map(|()| Cow::Owned(table)))
+            Some(self.stored.fill(&mut table, self.rows.clone(), self.thinning).map(|()| Cow::Owned(table)))
         })
     }
 }
@@ -380,23 +421,25 @@ pub fn read(bytes: Bytes, columns: Option<&[&str]>, rows: Option<Range<usize>>) 
     stored.read(columns.unwrap_or(&all), rows.unwrap_or(0..usize::MAX))
 }
 
-/// Adds every `stride`-th of some rows of a row group to a column.
+/// Adds those of some rows of a row group, which begins at the row `start`, to a column that stay.
 fn read_column(
     group: &dyn RowGroupReader,
     index: usize,
     name: &str,
-    rows: Range<usize>,
-    stride: usize,
+    (start, rows): (usize, Range<usize>),
+    thinning: Thinning,
     column: &mut Column,
 ) -> Result<(), TableError> {
     macro_rules! read {
         ($reader:expr, $values:expr, $convert:expr) => {{
             let mut reader = $reader;
-            reader.skip_records(rows.start)?;
+            reader.skip_records(rows.start - start)?;
             let mut values = Vec::with_capacity(rows.len());
             reader.read_records(rows.len(), None, None, &mut values)?;
-            for value in values.into_iter().step_by(stride) {
-                $values.push($convert(value)?);
+            for (row, value) in rows.zip(values) {
+                if thinning.keeps(row) {
+                    $values.push($convert(value)?);
+                }
             }
         }};
     }

@@ -127,7 +127,7 @@ pub struct Retention {
     /// How often the service deletes what need not be kept; absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval_seconds: Option<f64>,
-    /// Age at which recordings (histories) expire.
+    /// Age at which recordings (histories and snapshots) expire.
     pub recordings_days: f64,
     /// Age at which other tables of points expire.
     pub tables_days: f64,

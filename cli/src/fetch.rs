@@ -16,8 +16,14 @@ use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 
 /// Tables of one point.
-static TABLES: [&Layout; 5] =
-    [&tables::PROFILE, &tables::STATICS, &tables::HISTORY, &tables::CONTACTS, &tables::ENERGY];
+static TABLES: [&Layout; 6] = [
+    &tables::PROFILE,
+    &tables::STATICS,
+    &tables::HISTORY,
+    &tables::SNAPSHOTS,
+    &tables::CONTACTS,
+    &tables::ENERGY,
+];
 
 #[derive(Args)]
 pub(crate) struct FetchArguments {

@@ -6,7 +6,6 @@ use anyhow::Context;
 use clap::Args;
 use drillsweep_server::Retaining;
 use drillsweep_store::{Garbage, RetentionPolicy, Role, Store};
-use drillsweep_table::quantity::tables::HISTORY;
 
 use crate::data::DataArguments;
 use crate::print;
@@ -30,7 +29,7 @@ pub(crate) struct GcArguments {
 /// How long data are kept.
 #[derive(Args, Clone)]
 pub(crate) struct RetentionArguments {
-    /// Days for which recordings (histories; orbits and spectra are cut from them) are kept.
+    /// Days for which recordings (histories, from which orbits and spectra are cut, and snapshots) are kept.
     #[arg(long, default_value_t = 30)]
     recordings_days: u32,
     /// Days for which the other tables of points are kept.
@@ -48,7 +47,7 @@ impl RetentionArguments {
     /// What is kept for how long.
     pub(crate) fn policy(&self) -> RetentionPolicy {
         let mut policy = Retaining::default().policy;
-        policy.artifact_ages.insert(HISTORY.name.to_owned(), DAY * self.recordings_days);
+        policy.artifact_ages = Retaining::of_recordings(DAY * self.recordings_days);
         policy.other_artifacts = DAY * self.tables_days;
         policy.events = DAY * self.events_days;
         policy.blob_grace = Duration::from_secs(3_600) * self.grace_hours;

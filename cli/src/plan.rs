@@ -57,9 +57,11 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         plan.elements, plan.shortest_element, plan.longest_element, plan.nodes
     )?;
     writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
-    let Footprint { memory_bytes, table_bytes } = plan.footprint;
-    let [memory, tables] = [memory_bytes, table_bytes].map(megabytes);
-    writeln!(text, "{memory} of memory at most, {tables} of tables before compression")?;
+    let Footprint { memory_bytes, table_bytes, snapshot_bytes } = plan.footprint;
+    let [memory, tables, snapshots] = [memory_bytes, table_bytes, snapshot_bytes].map(megabytes);
+    let snapshots =
+        if snapshot_bytes > 0 { format!(", {snapshots} of them snapshots") } else { String::new() };
+    writeln!(text, "{memory} of memory at most, {tables} of tables before compression{snapshots}")?;
     if let Some(estimate) = &plan.mesh_error {
         writeln!(text, "{estimate}")?;
     }

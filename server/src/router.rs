@@ -19,8 +19,8 @@ use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
-    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, statistics,
-    status, sweeps, verification, web,
+    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
+    statistics, status, sweeps, verification, web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -60,6 +60,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(results::profile))
         .routes(routes!(results::statics))
         .routes(routes!(results::history))
+        .routes(routes!(snapshots::show))
         .routes(routes!(results::orbit))
         .routes(routes!(results::spectrum))
         .routes(routes!(results::contacts))

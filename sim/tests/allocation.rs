@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, Integrator, TimeStepping, preset};
+use drillsweep_sim::scenario::{Accuracy, Integrator, Snapshots, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 
@@ -16,13 +16,14 @@ fn steps_allocate_nothing() {
         TimeStepping::fixed(Integrator::Rk4, 5e-5),
         adaptive,
     ] {
-        // Rows of the ledger and samples of three nodes included.
+        // Rows of the ledger, samples of three nodes and snapshots of all included.
         let [shorter, longer] = [0.2, 0.4].map(|duration| {
             let mut scenario = preset("paper-200m").expect("it ships with the crate");
             scenario.duration = duration;
             scenario.accuracy = Accuracy::Explicit(stepping);
             scenario.recording.spectrum_windows = Some(Vec::new());
             scenario.recording.orbit_window = None;
+            scenario.recording.snapshots = Some(Snapshots { rate_hz: 50.0, window: None });
             let model = Model::new(&scenario).expect("the preset has a model");
             let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
             let run = Transient::new(&model, &equilibrium).expect("the preset can be run");

@@ -16,7 +16,7 @@ use drillsweep_sim::study::ensemble::{distances, parting_time};
 use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{Histories, NodeHistory, Outcome, Transient, TransientError, recorded_nodes};
+use drillsweep_sim::transient::{Block, Histories, Outcome, Transient, TransientError, recorded_nodes};
 use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
@@ -338,7 +338,9 @@ impl<'a> Runs<'a> {
             .ok()?;
         let nodes = recorded_nodes(self.model);
         let recorded = if nodes.is_empty() { 0 } else { transient.recorded() };
-        let has_samples = spool.samples() as u64 == recorded && (recorded == 0 || spool.nodes() == nodes);
+        let has_samples = spool.samples() as u64 == recorded
+            && (recorded == 0 || spool.nodes() == nodes)
+            && spool.snapshot_count() as u64 == transient.snapshots_taken();
         if !has_samples {
             tracing::warn!(
                 "a checkpoint has other samples than its run; the point starts from its beginning"
@@ -348,7 +350,7 @@ impl<'a> Runs<'a> {
     }
 
     fn run(&self, transient: Transient<'_>, mut spool: Spool) -> Result<Outcome<Spool>, ComputeError> {
-        let mut keep = |block: &[NodeHistory]| spool.append(block).map_err(|error| error.to_string());
+        let mut keep = |block: Block<'_>| spool.append(block).map_err(|error| error.to_string());
         let ended = transient.run_into(&self.control.part(), &mut keep);
         Ok(match ended.map_err(|error| self.failed(error))? {
             Outcome::Finished(records) => Outcome::Finished(Box::new(records.with_histories(spool))),
@@ -399,9 +401,10 @@ mod tests {
     use std::collections::BTreeSet;
     use std::os::unix::fs::FileExt;
 
-    use drillsweep_sim::scenario::{Effect, Outputs, Switch, TimeWindow, preset};
+    use drillsweep_sim::scenario::{Effect, NodeChoice, Outputs, Snapshots, Switch, TimeWindow, preset};
+    use drillsweep_sim::study::footprint::Footprint;
     use drillsweep_table::quantity::{Name, tables};
-    use drillsweep_table::{Table, parquet};
+    use drillsweep_table::{Column, Table, parquet};
 
     use super::*;
 
@@ -480,6 +483,7 @@ mod tests {
             scenario.ensemble = 2;
             scenario.recording.stability = true;
             scenario.recording.outputs = outputs;
+            scenario.recording.snapshots = Some(Snapshots { rate_hz: 100.0, window: None });
             scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: 0.0, to: 0.02 }]);
             scenario.recording.orbit_window = None;
             compute(&scenario, &Control::new()).expect("runs")
@@ -491,6 +495,7 @@ mod tests {
             &tables::PROFILE,
             &tables::STATICS,
             &tables::HISTORY,
+            &tables::SNAPSHOTS,
             &tables::SPECTRA,
             &tables::CONTACTS,
             &tables::ENERGY,
@@ -520,8 +525,16 @@ mod tests {
         scenario.duration = 0.4;
         scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
+        let window = Some(TimeWindow { from: 0.1, to: 0.38 });
+        scenario.recording.snapshots = Some(Snapshots { rate_hz: 125.0, window });
         let scratch = std::env::temp_dir();
         let whole = compute(&scenario, &Control::new()).expect("runs");
+        assert!(
+            whole
+                .artifacts
+                .iter()
+                .any(|artifact| artifact.name == "snapshots" && artifact.row_count == 35 * 297)
+        );
         // Before its first step, and on its way.
         for at in [0.0, 0.2] {
             let control = Control::observed_by(move |control, time| {
@@ -542,6 +555,59 @@ mod tests {
                 assert_eq!(read(resumed), read(whole), "{} from {at} s", whole.name);
             }
         }
+    }
+
+    #[test]
+    fn snapshots_are_the_histories_of_all_nodes_and_change_nothing_else() {
+        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        scenario.duration = 0.4;
+        scenario.recording.spectrum_windows = Some(Vec::new());
+        scenario.recording.orbit_window = None;
+        scenario.recording.nodes = [1, 2, 49, 150, 297].map(NodeChoice::Node).to_vec();
+        let plain = compute(&scenario, &Control::new()).expect("runs");
+        scenario.recording.snapshots = Some(Snapshots { rate_hz: 40.0, window: None });
+        let with = compute(&scenario, &Control::new()).expect("runs");
+        let table = |computed: &Computed, name: &str| {
+            read(computed.artifacts.iter().find(|artifact| artifact.name == name).expect(name))
+        };
+        assert_eq!(with.summary_row(), plain.summary_row());
+        for artifact in &plain.artifacts {
+            assert_eq!(table(&with, artifact.name), read(artifact), "{}", artifact.name);
+        }
+        let (snapshots, history) = (table(&with, "snapshots"), table(&with, "history"));
+        let single = |table: &Table, name: &str| match &table.columns[name] {
+            Column::Single(values) => values.clone(),
+            other => panic!("{name}: {other:?}"),
+        };
+        assert_eq!(snapshots.rows(), 16 * 297);
+        for node in [1, 2, 49, 150, 297] {
+            for name in ["u", "v", "w", "theta_z", "rotation_speed", "torque"] {
+                // Every 25th sample; a row a node.
+                let sampled: Vec<f32> =
+                    single(&history, &format!("{name}_{node}")).into_iter().step_by(25).collect();
+                let taken: Vec<f32> =
+                    single(&snapshots, name).into_iter().skip(node - 1).step_by(297).collect();
+                assert_eq!(taken, sampled, "{name} of node {node}");
+            }
+        }
+        // At the start the string rests on the wall with the forces of the equilibrium: in its law that is a matter of penetration alone.
+        let statics = table(&with, "statics");
+        let Column::Number(at_rest) = &statics.columns["normal_force"] else { panic!("{statics:?}") };
+        let largest = at_rest.iter().copied().fold(0.0, f64::max);
+        for (node, (taken, at_rest)) in single(&snapshots, "normal_force").iter().zip(at_rest).enumerate() {
+            assert!(
+                (f64::from(*taken) - at_rest).abs() < 1e-6 * largest,
+                "node {}: {taken} {at_rest}",
+                node + 1
+            );
+        }
+        // The plan tells the bytes of the table: those of its columns.
+        let plan = Footprint::of(&scenario).expect("has a model");
+        assert_eq!(plan.snapshot_bytes, 16 * 297 * (8 + 8 + 7 * 4));
+        assert_eq!(plan.table_bytes - plan.snapshot_bytes, {
+            scenario.recording.snapshots = None;
+            Footprint::of(&scenario).expect("has a model").table_bytes
+        });
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The samples of a run in a temporary file: a worker's memory does not grow with the duration of a point.
+//! The samples and snapshots of a run in a temporary file: a worker's memory does not grow with the duration of a point.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -7,18 +7,24 @@ use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use drillsweep_sim::transient::{Checkpoint, CheckpointError, Histories, NodeHistory, Series};
+use drillsweep_sim::transient::{
+    Block, Checkpoint, CheckpointError, Histories, Series, SnapshotBlock, SnapshotSeries,
+};
 use serde::{Deserialize, Serialize};
 
 /// Bytes of a sample.
 const SAMPLE: usize = size_of::<f64>();
 
+/// Bytes of a value of a snapshot.
+const VALUE: usize = size_of::<f32>();
+
 /// The last bytes of a suspended run's file, after the length of what stands before them.
 const MAGIC: &[u8; 8] = b"dsweepS1";
 
-/// Histories of a run's recorded nodes in a file without a name, which vanishes with the process.
+/// Histories of a run's recorded nodes and snapshots of its string in a file without a name, which vanishes with the process.
 ///
-/// The file holds block after block; a block holds for each node and each series its samples in a row.
+/// The file holds block after block; a block holds for each node and each series its samples in a row, and behind them for each series
+/// of the snapshots their values in a row, in single precision.
 #[derive(Debug)]
 pub struct Spool {
     file: File,
@@ -31,6 +37,33 @@ struct Index {
     nodes: Vec<usize>,
     /// Samples of each block.
     blocks: Vec<usize>,
+    /// Absent where there are no snapshots.
+    #[serde(default)]
+    snapshots: SnapshotIndex,
+}
+
+/// Where the snapshots are.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+struct SnapshotIndex {
+    series: Vec<SnapshotSeries>,
+    /// Nodes of each.
+    nodes: usize,
+    /// Snapshots of each block.
+    blocks: Vec<usize>,
+}
+
+/// Where a block lies in the file.
+struct Place {
+    /// Its samples, by number.
+    samples: Range<usize>,
+    /// Its snapshots, by number.
+    snapshots: Range<usize>,
+    /// The first byte of its samples.
+    start: u64,
+    /// The first byte of its snapshots.
+    start_of_snapshots: u64,
+    /// The first byte behind it.
+    end: u64,
 }
 
 /// A suspended run: where it goes on, and what it has recorded.
@@ -38,7 +71,7 @@ struct Index {
 pub struct Suspended {
     /// Where it goes on.
     pub checkpoint: Checkpoint,
-    /// Its samples so far.
+    /// Its samples and snapshots so far.
     pub spool: Spool,
 }
 
@@ -65,28 +98,90 @@ impl Spool {
         Ok(Self { file: tempfile::tempfile_in(directory)?, index: Index::default() })
     }
 
-    /// Adds the samples that follow.
+    /// Adds the samples and snapshots that follow.
     ///
     /// # Errors
-    /// When the file cannot be written, or the block is of other nodes than the ones before it.
-    pub fn append(&mut self, block: &[NodeHistory]) -> std::io::Result<()> {
-        let nodes: Vec<usize> = block.iter().map(|history| history.node).collect();
+    /// When the file cannot be written, or the block is of other nodes or series than the ones before it.
+    pub fn append(&mut self, Block { histories, snapshots }: Block<'_>) -> std::io::Result<()> {
+        let nodes: Vec<usize> = histories.iter().map(|history| history.node).collect();
         if self.index.blocks.is_empty() {
             self.index.nodes = nodes;
+            self.index.snapshots.series = snapshots.map_or(Vec::new(), |block| block.series.clone());
         } else if self.index.nodes != nodes {
             return Err(std::io::Error::other("a block of samples of other nodes"));
         }
-        let samples = block.first().map_or(0, |history| history.u.len());
+        self.index.snapshots.begin(snapshots)?;
+        let samples = histories.first().map_or(0, |history| history.u.len());
         let mut bytes = Vec::with_capacity(samples * SAMPLE);
         self.file.seek(SeekFrom::End(0))?;
-        for history in block {
+        for history in histories {
             for series in Series::ALL {
                 bytes.clear();
                 bytes.extend(history.series(series).iter().flat_map(|value| value.to_le_bytes()));
                 self.file.write_all(&bytes)?;
             }
         }
+        for values in snapshots.iter().flat_map(|block| &block.values) {
+            bytes.clear();
+            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+            self.file.write_all(&bytes)?;
+        }
         self.index.blocks.push(samples);
+        self.index.snapshots.blocks.push(snapshots.map_or(0, |block| block.count));
+        Ok(())
+    }
+
+    /// The number of snapshots.
+    pub fn snapshot_count(&self) -> usize {
+        self.index.snapshots.blocks.iter().sum()
+    }
+
+    /// Some of the snapshots, by number from 0.
+    ///
+    /// # Errors
+    /// When the file cannot be read or there are no such snapshots.
+    pub fn snapshots(&self, snapshots: Range<usize>) -> std::io::Result<SnapshotBlock> {
+        let SnapshotIndex { series, nodes, .. } = &self.index.snapshots;
+        let mut read = SnapshotBlock::new(series.clone());
+        let mut bytes = Vec::new();
+        for place in self.index.places() {
+            let within = overlap(&snapshots, &place.snapshots);
+            if !within.is_empty() {
+                bytes.resize(within.len() * nodes * VALUE, 0);
+                for (row, values) in read.values.iter_mut().enumerate() {
+                    let offset = (row * place.snapshots.len() + within.start) * nodes * VALUE;
+                    self.file.read_exact_at(&mut bytes, place.start_of_snapshots + offset as u64)?;
+                    let (own, _) = bytes.as_chunks::<VALUE>();
+                    values.extend(own.iter().copied().map(f32::from_le_bytes));
+                }
+                read.count += within.len();
+            }
+        }
+        if read.count != snapshots.len() {
+            return Err(std::io::Error::other("snapshots beyond the end of a recording"));
+        }
+        Ok(read)
+    }
+}
+
+/// What of a range lies in a block, counted from the block's beginning.
+fn overlap(range: &Range<usize>, block: &Range<usize>) -> Range<usize> {
+    let within = |end: usize| end.clamp(block.start, block.end) - block.start;
+    within(range.start)..within(range.end)
+}
+
+impl SnapshotIndex {
+    /// Takes in what the next block has, which must be what those before it have.
+    fn begin(&mut self, block: Option<&SnapshotBlock>) -> std::io::Result<()> {
+        let series = block.map_or([].as_slice(), |block| &block.series);
+        let per_snapshot = |block: &SnapshotBlock| Some(block.values.first()?.len() / block.count.max(1));
+        let nodes = block.filter(|block| block.count > 0).and_then(per_snapshot);
+        if self.nodes == 0 {
+            self.nodes = nodes.unwrap_or(0);
+        }
+        if self.series != series || nodes.is_some_and(|nodes| nodes != self.nodes) {
+            return Err(std::io::Error::other("a block of other snapshots"));
+        }
         Ok(())
     }
 }
@@ -94,12 +189,29 @@ impl Spool {
 impl Index {
     /// Bytes of all blocks.
     fn length(&self) -> u64 {
-        self.blocks.iter().map(|&block| self.bytes(block)).sum()
+        self.places().last().map_or(0, |place| place.end)
     }
 
-    /// Bytes of a block of so many samples.
-    fn bytes(&self, samples: usize) -> u64 {
-        (samples * self.nodes.len() * Series::ALL.len() * SAMPLE) as u64
+    /// Where each block lies.
+    fn places(&self) -> impl Iterator<Item = Place> {
+        let SnapshotIndex { series, nodes, blocks } = &self.snapshots;
+        // A run that was suspended by a program without snapshots has none.
+        let snapshots = blocks.iter().copied().chain(std::iter::repeat(0));
+        let (mut end, mut samples_before, mut snapshots_before) = (0, 0, 0);
+        self.blocks.iter().zip(snapshots).map(move |(&samples, snapshots)| {
+            let start = end;
+            let start_of_snapshots = start + (samples * self.nodes.len() * Series::ALL.len() * SAMPLE) as u64;
+            end = start_of_snapshots + (snapshots * series.len() * nodes * VALUE) as u64;
+            let place = Place {
+                samples: samples_before..samples_before + samples,
+                snapshots: snapshots_before..snapshots_before + snapshots,
+                start,
+                start_of_snapshots,
+                end,
+            };
+            (samples_before, snapshots_before) = (place.samples.end, place.snapshots.end);
+            place
+        })
     }
 }
 
@@ -117,19 +229,16 @@ impl Histories for Spool {
     fn read(&self, index: usize, series: Series, samples: Range<usize>) -> std::io::Result<Cow<'_, [f64]>> {
         let mut values = Vec::with_capacity(samples.len());
         let mut bytes = Vec::new();
-        let (mut first, mut start) = (0, 0);
-        for &length in &self.index.blocks {
-            let from = samples.start.clamp(first, first + length) - first;
-            let to = samples.end.clamp(first, first + length) - first;
-            if from < to {
+        for place in self.index.places() {
+            let within = overlap(&samples, &place.samples);
+            if !within.is_empty() {
                 let row = index * Series::ALL.len() + series as usize;
-                bytes.resize((to - from) * SAMPLE, 0);
-                self.file.read_exact_at(&mut bytes, start + ((row * length + from) * SAMPLE) as u64)?;
+                bytes.resize(within.len() * SAMPLE, 0);
+                let offset = (row * place.samples.len() + within.start) * SAMPLE;
+                self.file.read_exact_at(&mut bytes, place.start + offset as u64)?;
                 let (samples, _) = bytes.as_chunks::<SAMPLE>();
                 values.extend(samples.iter().copied().map(f64::from_le_bytes));
             }
-            first += length;
-            start += self.index.bytes(length);
         }
         if values.len() != samples.len() {
             return Err(std::io::Error::other("samples beyond the end of a recording"));
@@ -198,7 +307,7 @@ mod tests {
     use drillsweep_sim::model::Model;
     use drillsweep_sim::scenario::preset;
     use drillsweep_sim::statics::Equilibrium;
-    use drillsweep_sim::transient::{Outcome, Transient};
+    use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
 
     use super::*;
 
@@ -224,13 +333,50 @@ mod tests {
         vec![history(4), history(7)]
     }
 
+    fn of(histories: &[NodeHistory]) -> Block<'_> {
+        Block { histories, snapshots: None }
+    }
+
+    /// Snapshots of three nodes with values that tell series, number and node apart, from `first` on.
+    fn snapshots(first: usize, count: usize) -> SnapshotBlock {
+        let series = vec![SnapshotSeries::U, SnapshotSeries::NormalForce];
+        let values = |series: usize| {
+            (first * 3..(first + count) * 3).map(|value| (1000 * series + value) as f32).collect()
+        };
+        SnapshotBlock { values: (0..series.len()).map(values).collect(), series, count }
+    }
+
+    #[test]
+    fn snapshots_lie_between_the_samples_and_are_read_across_blocks() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut spool = Spool::new(directory.path()).unwrap();
+        // Blocks of both, of either alone, and of none.
+        let parts = [(0..33, 0..2), (33..34, 2..2), (34..34, 2..9), (34..34, 9..9), (34..60, 9..10)];
+        for (samples, taken) in parts {
+            let taken = snapshots(taken.start, taken.len());
+            let histories = block(samples.start, samples.len());
+            spool.append(Block { histories: &histories, snapshots: Some(&taken) }).unwrap();
+        }
+        assert_eq!((spool.samples(), spool.snapshot_count()), (60, 10));
+        for range in [0..10, 0..0, 1..3, 2..9, 9..10] {
+            let expected = snapshots(range.start, range.len());
+            assert_eq!(spool.snapshots(range.clone()).unwrap(), expected, "{range:?}");
+        }
+        assert!(spool.snapshots(8..11).is_err());
+        assert_eq!(*spool.read(1, Series::V, 30..50).unwrap(), block(0, 60)[1].v[30..50]);
+        let other = SnapshotBlock::new(vec![SnapshotSeries::U]);
+        let histories = block(60, 1);
+        assert!(spool.append(Block { histories: &histories, snapshots: Some(&other) }).is_err());
+        assert!(spool.append(of(&histories)).is_err());
+    }
+
     #[test]
     fn what_was_kept_in_blocks_is_read_across_them() {
         let directory = tempfile::tempdir().unwrap();
         let mut spool = Spool::new(directory.path()).unwrap();
         let whole = block(0, 100);
         for (first, samples) in [(0, 33), (33, 1), (34, 66)] {
-            spool.append(&block(first, samples)).unwrap();
+            spool.append(of(&block(first, samples))).unwrap();
         }
         assert_eq!((spool.nodes(), spool.samples()), (vec![4, 7], 100));
         for (index, history) in whole.iter().enumerate() {
@@ -242,7 +388,7 @@ mod tests {
             }
         }
         assert!(spool.read(0, Series::U, 90..101).is_err());
-        assert!(spool.append(&block(100, 1)[..1]).is_err(), "a node less");
+        assert!(spool.append(of(&block(100, 1)[..1])).is_err(), "a node less");
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0, "nothing is left behind");
     }
 

@@ -10,7 +10,7 @@ use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::spread;
 use drillsweep_sim::study::errors::OtherMember;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{EnergyRow, Histories, Records, Series};
+use drillsweep_sim::transient::{EnergyRow, Histories, Records, Series, SnapshotSeries, SnapshotTimes};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::quantity::{self, Variant};
@@ -47,6 +47,7 @@ pub(crate) fn point_tables(
         Outputs::Spectra => artifacts.push(spectra(model, records, scratch)?),
         Outputs::Summary => {}
     }
+    artifacts.extend(snapshots(model, records, scratch)?);
     artifacts.push(small(&tables::CONTACTS, &contacts(model, records))?);
     artifacts.push(small(&tables::ENERGY, &energy(records))?);
     Ok(artifacts)
@@ -262,6 +263,49 @@ fn history(
     let length = (PIECE_BYTES / width).next_multiple_of(every).max(every);
     let pieces = all.clone().step_by(length).map(|from| piece(from..(from + length).min(all.end)));
     EncodedArtifact::pieces(tables::HISTORY.name, &piece(0..0)?, scratch, pieces)
+}
+
+/// A row a node, from the top, snapshot after snapshot, in single precision; none where none were asked for.
+fn snapshots(
+    model: &Model,
+    records: &Records<Spool>,
+    scratch: &Path,
+) -> Result<Option<EncodedArtifact>, ArtifactError> {
+    let Some(times) = SnapshotTimes::of(&model.scenario) else { return Ok(None) };
+    let spool = &records.histories;
+    let nodes = model.node_count();
+    let piece = |range: Range<usize>| {
+        let block = spool.snapshots(range.clone())?;
+        let time = |snapshot: usize| times.sample(snapshot as u64) as f64 / records.rate_hz;
+        let mut table = Table::default();
+        numbers(
+            &mut table,
+            &TIME,
+            range.clone().flat_map(|snapshot| std::iter::repeat_n(time(snapshot), nodes)),
+        );
+        integers(&mut table, &NODE, range.flat_map(|_| (1..=nodes).map(|number| number as i64)));
+        for (series, values) in SnapshotSeries::of(model).into_iter().zip(block.values) {
+            table.push(quantity_of(series), Column::Single(values));
+        }
+        Ok(table)
+    };
+    let width = size_of::<f64>() * tables::SNAPSHOTS.columns.len() * nodes;
+    let length = (PIECE_BYTES / width.max(1)).max(1);
+    let all = 0..spool.snapshot_count();
+    let pieces = all.clone().step_by(length).map(|from| piece(from..(from + length).min(all.end)));
+    EncodedArtifact::pieces(tables::SNAPSHOTS.name, &piece(0..0)?, scratch, pieces).map(Some)
+}
+
+fn quantity_of(series: SnapshotSeries) -> &'static Quantity {
+    match series {
+        SnapshotSeries::U => &U,
+        SnapshotSeries::V => &V,
+        SnapshotSeries::W => &W,
+        SnapshotSeries::ThetaZ => &THETA_Z,
+        SnapshotSeries::RotationSpeed => &ROTATION_SPEED,
+        SnapshotSeries::Torque => &TORQUE,
+        SnapshotSeries::NormalForce => &NORMAL_FORCE,
+    }
 }
 
 /// A row a frequency, for each recorded node and spectrum window in turn; an amplitude for each weighting of the samples.

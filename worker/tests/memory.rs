@@ -4,7 +4,7 @@
 
 use allocation_counter::measure;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::{NodeChoice, Scenario, TimeWindow, preset};
+use drillsweep_sim::scenario::{NodeChoice, Scenario, Snapshots, TimeWindow, preset};
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_worker::compute;
 
@@ -34,12 +34,29 @@ fn the_memory_of_a_point_does_not_grow_with_its_duration() {
 }
 
 #[test]
+fn snapshots_take_no_more_memory_in_a_longer_run() {
+    let of = |duration| {
+        let mut scenario = scene(1, duration);
+        scenario.recording.snapshots = Some(Snapshots { rate_hz: 100.0, window: None });
+        peak(&scenario)
+    };
+    // Both are longer than a block of 5 s; what 6 s more take are 5 MB.
+    let [shorter, longer] = [6.0, 12.0].map(of);
+    let taken = 600 * 297 * 7 * 4;
+    assert!(longer < shorter + taken / 10, "{shorter} and {longer} bytes");
+}
+
+#[test]
 fn the_plan_tells_what_memory_a_point_takes_at_most() {
     let spectra = |mut scenario: Scenario| {
         scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: 0.0, to: scenario.duration }]);
         scenario
     };
-    for scenario in [scene(3, 4.0), scene(100, 2.0), spectra(scene(2, 20.0))] {
+    let snapshots = |mut scenario: Scenario| {
+        scenario.recording.snapshots = Some(Snapshots { rate_hz: 1000.0, window: None });
+        scenario
+    };
+    for scenario in [scene(3, 4.0), scene(100, 2.0), spectra(scene(2, 20.0)), snapshots(scene(1, 2.0))] {
         let (told, taken) = (Footprint::of(&scenario).unwrap().memory_bytes, peak(&scenario));
         assert!((taken..4 * taken).contains(&told), "{told} bytes told, {taken} taken");
     }

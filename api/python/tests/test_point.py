@@ -8,7 +8,8 @@ import numpy as np
 import polars
 import pytest
 
-from drillsweep import InvalidRequest, Sweep, plot
+from drillsweep import Client, InvalidRequest, Sweep, plot
+from service import SHORT
 
 
 def test_orbit_and_summary_follow_from_the_recorded_motion(sweep: Sweep) -> None:
@@ -68,6 +69,30 @@ def test_full_spectrum_is_the_transform_of_the_orbit(sweep: Sweep) -> None:
     for peak in spectrum.attributes["peaks"]:
         if abs(peak["frequency"]) > spectrum.attributes["resolution"]:
             assert peak["whirl"] == ("forward" if peak["frequency"] > 0.0 else "backward")
+
+
+def test_snapshots_are_what_the_histories_hold_of_every_node(client: Client) -> None:
+    changes = SHORT | {"recording.snapshots": {"rate_hz": 50, "window": {"from": 0.1, "to": 0.5}}}
+    sweep = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}).wait(timeout=120.0)
+    point = sweep.point(1)
+    assert "snapshots" in point.tables
+    snapshots = point.snapshots()
+    nodes = snapshots.attributes["nodes"]
+    assert (nodes, snapshots.attributes["snapshots"], snapshots.rows) == (297, 20, 20 * 297)
+    history = point.history(node=49, time=(0.1, 0.5))
+    for name in ("u", "v", "w", "theta_z", "rotation_speed", "torque"):
+        np.testing.assert_array_equal(snapshots[name].reshape(-1, nodes)[:, 48], history[f"{name}_49"][::20], name)
+    np.testing.assert_allclose(snapshots["time"][::nodes], history["time"][::20], rtol=1e-12)
+    # A node that the wall pushes is in it.
+    clearance = np.tile(point.statics()["clearance"], 20)
+    pushed = snapshots["normal_force"] > 0
+    assert pushed.any()
+    assert np.all(np.hypot(snapshots["u"], snapshots["v"])[pushed] > clearance[pushed] * (1 - 1e-6))
+    thinned = point.snapshots(time=(0.2, None), max_frames=5, fields=["node", "normal_force"])
+    assert list(thinned) == ["node", "normal_force"]
+    np.testing.assert_array_equal(
+        thinned["normal_force"].reshape(-1, nodes), snapshots["normal_force"].reshape(-1, nodes)[5::3]
+    )
 
 
 def test_tables_come_as_arrays(sweep: Sweep) -> None:

@@ -4,6 +4,7 @@ pub mod history;
 pub mod node;
 pub mod orbit;
 pub mod points;
+pub mod snapshots;
 pub mod spectrum;
 pub mod statistics;
 pub mod verification;

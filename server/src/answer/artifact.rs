@@ -38,6 +38,10 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     let names: Vec<_> = artifacts.iter().map(|artifact| artifact.name.as_str()).collect();
     let detail = match names.as_slice() {
         [] => format!("the run has no table {name}: its `outputs` keep the summary only"),
+        names if name == tables::SNAPSHOTS.name => format!(
+            "the run has no table {name}: its scenario asks for none (`recording.snapshots`); it has {}",
+            names.join(", ")
+        ),
         names => format!("the run has no table {name}; it has {}", names.join(", ")),
     };
     Err(Error::new(ProblemKind::NoSuchTable, detail))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use drillsweep_store::RetentionPolicy;
-use drillsweep_table::quantity::tables::HISTORY;
+use drillsweep_table::quantity::tables::{HISTORY, SNAPSHOTS};
 
 const DAY: Duration = Duration::from_secs(86_400);
 
@@ -18,14 +18,22 @@ pub struct Retaining {
 }
 
 impl Default for Retaining {
-    /// Recordings (histories; orbits and spectra are cut from them) are kept for 30 days, other tables for a year, events for 30 days.
+    /// Recordings (histories, from which orbits and spectra are cut, and snapshots) are kept for 30 days, other tables for a year, events
+    /// for 30 days.
     fn default() -> Self {
         let policy = RetentionPolicy {
-            artifact_ages: BTreeMap::from([(HISTORY.name.to_owned(), 30 * DAY)]),
+            artifact_ages: Self::of_recordings(30 * DAY),
             other_artifacts: 365 * DAY,
             events: 30 * DAY,
             blob_grace: DAY,
         };
         Retaining { policy, interval: None }
+    }
+}
+
+impl Retaining {
+    /// An age for every table that is a recording.
+    pub fn of_recordings(age: Duration) -> BTreeMap<String, Duration> {
+        [&HISTORY, &SNAPSHOTS].map(|layout| (layout.name.to_owned(), age)).into()
     }
 }

@@ -187,7 +187,7 @@ async fn part(
 }
 
 /// A table as it is stored.
-async fn whole_file(app: &App, stored: Stored, file_name: &str) -> Result<Response> {
+pub(super) async fn whole_file(app: &App, stored: Stored, file_name: &str) -> Result<Response> {
     let place = app.file().await?;
     let mut hasher = blake3::Hasher::new();
     hasher.update(stored.blob().to_string().as_bytes());

@@ -17,6 +17,7 @@ mod pictures;
 mod results;
 mod schema;
 mod shutdown;
+mod snapshots;
 mod submit;
 mod trust;
 mod upkeep;

@@ -83,6 +83,7 @@ fn every_route_is_documented() {
         "profile",
         "statics",
         "history",
+        "snapshots",
         "orbit",
         "spectrum",
         "contacts",

@@ -197,7 +197,10 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
     assert!(seen.len() > 5, "{seen:?}");
     // The head names all modules, so that none waits for another one's imports.
     for module in seen.iter().filter(|path| path.ends_with(".js") && !path.contains('/')) {
-        assert!(text.contains(&format!("<link rel=\"modulepreload\" href=\"{folder}{module}\">")), "{module}");
+        assert!(
+            text.contains(&format!("<link rel=\"modulepreload\" href=\"{folder}{module}\">")),
+            "{module}"
+        );
     }
 
     // What has a copy is told that it is still right; another version has no files here.

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use crate::scenario::{
-    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud, Operation,
-    RayleighDamping, Recording, ScaledMesh, Scenario, Section, TimeStepping, ToolJoint, UnbalanceMass, Well,
+    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud,
+    NodeChoice, Operation, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots,
+    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 
 /// What decides the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
@@ -18,7 +19,7 @@ struct Canonical {
     damping: RayleighDamping,
     mesh: CanonicalMesh,
     duration: f64,
-    recording: Recording,
+    recording: CanonicalRecording,
     accuracy: TimeStepping,
     effects: ActiveEffects,
     ensemble: u32,
@@ -48,6 +49,25 @@ impl CanonicalString {
     }
 }
 
+/// What is kept of a run but for its snapshots, which have a place of their own.
+#[derive(Serialize)]
+struct CanonicalRecording {
+    rate_hz: f64,
+    nodes: Vec<NodeChoice>,
+    spectrum_windows: Option<Vec<TimeWindow>>,
+    orbit_window: Option<TimeWindow>,
+    stability: bool,
+    outputs: Outputs,
+}
+
+impl CanonicalRecording {
+    fn new(recording: Recording) -> (Self, Option<Snapshots>) {
+        let Recording { rate_hz, nodes, spectrum_windows, orbit_window, stability, outputs, snapshots } =
+            recording;
+        (Self { rate_hz, nodes, spectrum_windows, orbit_window, stability, outputs }, snapshots)
+    }
+}
+
 /// A mesh whose encoding distinguishes its forms.
 #[derive(Serialize)]
 enum CanonicalMesh {
@@ -61,8 +81,9 @@ impl Scenario {
     /// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
     /// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
     /// as integrator and step, with the material of every section and tool joint, with what a length of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every
-    /// effect decided, and with -0.0 written as 0.0. Any change of the scenario's fields changes the encoding, so
-    /// keys of different versions of the program must not be compared.
+    /// effect decided, and with -0.0 written as 0.0. Snapshots, which most scenarios do not ask for, stand behind all
+    /// else where there are some, and leave no trace where there are none. Any other change of the scenario's fields changes
+    /// the encoding, so keys of different versions of the program must not be compared.
     pub fn canonical_bytes(&self) -> Vec<u8> {
         let active = self.active_effects();
         // Taken apart in full, so that a new field cannot be forgotten.
@@ -82,6 +103,7 @@ impl Scenario {
             ensemble,
             cost_study,
         } = self.without_negative_zeros().with_windows_written_out();
+        let (recording, snapshots) = CanonicalRecording::new(recording);
         let canonical = Canonical {
             well,
             string: CanonicalString::new(string),
@@ -101,13 +123,21 @@ impl Scenario {
             ensemble,
             cost_study,
         };
-        postcard::to_stdvec(&canonical)
-            .expect("postcard encodes structs, sequences and numbers of known length")
+        let encoded = postcard::to_stdvec(&canonical);
+        let encoded = match snapshots {
+            Some(snapshots) => encoded.and_then(|encoded| postcard::to_extend(&snapshots, encoded)),
+            None => encoded,
+        };
+        encoded.expect("postcard encodes structs, sequences and numbers of known length")
     }
 
     fn with_windows_written_out(mut self) -> Self {
         self.recording.spectrum_windows = Some(self.spectrum_windows());
         self.recording.orbit_window = Some(self.orbit_window());
+        let window = self.snapshot_window();
+        if let Some(snapshots) = &mut self.recording.snapshots {
+            snapshots.window = window;
+        }
         self
     }
 
@@ -125,7 +155,7 @@ impl Scenario {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
+    use serde_json::{Value, json};
 
     use super::*;
     use crate::scenario::{Accuracy, AccuracyPreset, Effect, Material, Switch, preset};
@@ -172,6 +202,24 @@ mod tests {
         let joint = other.string.sections[1].tool_joint.as_mut().unwrap();
         joint.material = Some(Material { density: 2800.0, ..steel });
         assert_ne!(other.canonical_bytes(), bytes);
+    }
+
+    #[test]
+    fn snapshots_count_where_they_are_asked_for_and_leave_other_keys_as_they_were() {
+        let bytes = paper().canonical_bytes();
+        let of = |snapshots: Value| paper().with("recording.snapshots", snapshots).unwrap().canonical_bytes();
+        assert_eq!(of(Value::Null), bytes);
+        let asked = of(json!({ "rate_hz": 25.0 }));
+        assert!(asked.starts_with(&bytes) && asked.len() > bytes.len());
+        assert_eq!(of(json!({ "rate_hz": 25.0, "window": { "from": 0.0, "to": 60.0 } })), asked);
+        let others = [
+            json!({ "rate_hz": 50.0 }),
+            json!({ "rate_hz": 25.0, "window": { "from": 1.0, "to": 60.0 } }),
+            json!({ "rate_hz": 25.0, "window": { "from": 0.0, "to": 59.0 } }),
+        ];
+        for other in others {
+            assert_ne!(of(other.clone()), asked, "{other}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod canonical;
 mod hole;
 mod loads;
 mod report;
+mod snapshots;
 mod string;
 mod study;
 mod time;
@@ -34,8 +35,11 @@ impl Scenario {
         let leads_to = |path: &str, part: &str| {
             path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
         };
+        // How many snapshots there may be depends on the nodes.
+        let of_snapshots = self.recording.snapshots.is_some().then_some("duration");
+        let parts = || shapes.into_iter().chain(of_snapshots);
         let mut changed = changed.into_iter();
-        self.check(changed.any(|path| shapes.into_iter().any(|part| leads_to(path, part))))
+        self.check(changed.any(|path| parts().any(|part| leads_to(path, part))))
     }
 
     fn check(&self, with_shape: bool) -> Result<Vec<Warning>, Problems> {

@@ -1,7 +1,7 @@
 //! Rules of duration, accuracy and recording.
 
 use super::report::Report;
-use super::study;
+use super::{snapshots, study};
 use crate::scenario::{
     Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
     TOLERANCES, TimeStepping, TimeWindow,
@@ -70,6 +70,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         check_nodes(report, &recording.nodes, mesh);
     }
     check_outputs(report, scenario, mesh);
+    snapshots::check(report, scenario, mesh);
 }
 
 fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
@@ -260,7 +261,7 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-fn check_window(report: &mut Report, scenario: &Scenario, window: &TimeWindow, path: &str) {
+pub(super) fn check_window(report: &mut Report, scenario: &Scenario, window: &TimeWindow, path: &str) {
     let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
     report.not_negative(window.from, format!("{path}.from"));
     if duration > 0.0 && duration.is_finite() {

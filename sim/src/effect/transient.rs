@@ -10,10 +10,11 @@ fn called_for(scene: &Scene<'_>) -> Call {
     let in_time = !recording.nodes.is_empty()
         || recording.spectrum_windows.as_ref().is_some_and(|windows| !windows.is_empty())
         || recording.orbit_window.is_some()
+        || recording.snapshots.is_some()
         || scene.scenario.cost_study.is_some();
     if in_time {
         yes("histories are asked for")
     } else {
-        no("no node is recorded and no window asked for: statics and hydraulics are all")
+        no("no node is recorded and no window or snapshot asked for: statics and hydraulics are all")
     }
 }

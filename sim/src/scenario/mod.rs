@@ -13,6 +13,7 @@ mod preset;
 mod problem;
 mod request;
 mod set;
+mod snapshots;
 mod study;
 
 pub(crate) use accuracy::TOLERANCES;
@@ -23,6 +24,7 @@ pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
+pub use snapshots::Snapshots;
 pub(crate) use study::USUAL_STEPS;
 pub use study::{CostStudy, MethodSteps, StudyReference};
 
@@ -524,6 +526,10 @@ pub struct Recording {
     /// not kept can only be had by another run.
     #[serde(default)]
     pub outputs: Outputs,
+    /// Snapshots of all nodes, for a view of the whole string in motion and maps of its contacts over depth and time; absent means
+    /// none. They change no other number of the result.
+    #[serde(default)]
+    pub snapshots: Option<Snapshots>,
 }
 
 /// One node, by number (1 is the top) or by measured depth (the nearest node).

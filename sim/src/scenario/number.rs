@@ -7,8 +7,8 @@ use super::set::{Step, parse};
 use super::{
     Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Material, Mesh,
     MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, ScaledMesh,
-    Scenario, Section, StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass,
-    Well,
+    Scenario, Section, Snapshots, StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint,
+    UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -102,7 +102,8 @@ numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_lengt
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);
 numbers!(ElementLengths: drillpipe, tool_joint, collar, stabilizer, bit);
 numbers!(ScaledMesh: auto);
-numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs; without stability);
+numbers!(Recording: rate_hz, nodes, spectrum_windows, orbit_window, outputs, snapshots; without stability);
+numbers!(Snapshots: rate_hz, window);
 numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
@@ -204,6 +205,10 @@ mod tests {
             .and_then(|scenario| scenario.with("accuracy.spectral_radius", json!(0.8)))
             .and_then(|scenario| scenario.with("contact.stiffness_per_length", json!(1e7)))
             .and_then(|scenario| scenario.with("contact.damping_per_length", json!(1e4)))
+            .and_then(|scenario| {
+                let window = json!({ "from": 1.0, "to": 2.0 });
+                scenario.with("recording.snapshots", json!({ "rate_hz": 25.0, "window": window }))
+            })
             .and_then(|scenario| {
                 let study = json!({
                     "duration": 10.0,

@@ -10,7 +10,7 @@ impl Scenario {
     /// `string.sections[1].count`, `recording.nodes`. An object given for an object changes the fields it
     /// names and leaves the others; `null` removes what is optional (`mud`). A field of a named accuracy may
     /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance;
-    /// a factor on the mesh `auto` that of target lengths.
+    /// a factor on the mesh `auto` that of target lengths. Snapshots come to be by their rate, `recording.snapshots.rate_hz`.
     ///
     /// # Errors
     /// A path that names no field (with the fields there are), or a value of the wrong type.
@@ -22,6 +22,11 @@ impl Scenario {
                 tree["accuracy"] = json!({ *target: null });
             }
             [Step::Field("mesh"), Step::Field("auto")] => tree["mesh"] = json!({ "auto": null }),
+            [Step::Field("recording"), Step::Field("snapshots"), Step::Field("rate_hz")]
+                if self.recording.snapshots.is_none() =>
+            {
+                tree["recording"]["snapshots"] = json!({ "rate_hz": null });
+            }
             [Step::Field("accuracy"), _, ..] => {
                 tree["accuracy"] = serde_json::to_value(self.accuracy.time_stepping())
                     .expect("an accuracy has only string keys");
@@ -139,7 +144,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::scenario::{Accuracy, Integrator, NodeChoice, Switch, preset};
+    use crate::scenario::{Accuracy, Integrator, NodeChoice, Switch, TimeWindow, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
@@ -187,6 +192,19 @@ mod tests {
         let Accuracy::Explicit(stepping) = changed.accuracy else { panic!("{:?}", changed.accuracy) };
         assert_eq!((stepping.integrator, stepping.step), (Integrator::Esdirk4, 5e-4));
         assert_eq!(changed.with("accuracy", json!("standard")).unwrap(), paper());
+    }
+
+    #[test]
+    fn snapshots_are_asked_for_by_their_rate() {
+        let asked = paper().with("recording.snapshots.rate_hz", json!(25)).unwrap();
+        assert_eq!(asked, paper().with("recording.snapshots", json!({"rate_hz": 25})).unwrap());
+        let window = json!({"from": 1, "to": 2});
+        let windowed = asked.with("recording.snapshots.window", window.clone()).unwrap();
+        assert_eq!(windowed.snapshot_window(), Some(TimeWindow { from: 1.0, to: 2.0 }));
+        assert_eq!(windowed.with("recording.snapshots.rate_hz", json!(25)).unwrap(), windowed);
+        assert_eq!(windowed.with("recording.snapshots", Value::Null).unwrap(), paper());
+        let problem = paper().with("recording.snapshots.window", window).unwrap_err();
+        assert!(problem.message.contains("recording.snapshots is absent"), "{problem}");
     }
 
     #[test]

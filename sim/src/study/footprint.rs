@@ -5,7 +5,10 @@ use serde::Serialize;
 use crate::model::{Model, ModelError};
 use crate::scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use crate::signal::sample_range;
-use crate::transient::{BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, Series, recorded_nodes};
+use crate::transient::{
+    BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,
+    recorded_nodes,
+};
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
 const PER_NODE: u64 = 40_000;
@@ -36,6 +39,8 @@ pub struct Footprint {
     pub memory_bytes: u64,
     /// Its tables before they are compressed \[bytes\]; stored they usually take half of that, and a string at rest nearly nothing.
     pub table_bytes: u64,
+    /// Of that its snapshots, `recording.snapshots` \[bytes\]; stored they usually take two fifths of it.
+    pub snapshot_bytes: u64,
 }
 
 impl Footprint {
@@ -50,9 +55,14 @@ impl Footprint {
     pub(super) fn of_model(model: &Model) -> Self {
         let recorded = Recorded::of(model);
         let study = model.scenario.cost_study.as_ref().map_or(0, |study| recorded.study_bytes(study));
+        let snapshots = PlannedSnapshots::of(model);
         Self {
-            memory_bytes: PER_NODE * model.node_count() as u64 + recorded.memory() + study,
-            table_bytes: table_bytes(model, &recorded),
+            memory_bytes: PER_NODE * model.node_count() as u64
+                + recorded.memory().max(snapshots.memory_of_table())
+                + snapshots.memory_of_blocks()
+                + study,
+            table_bytes: table_bytes(model, &recorded) + snapshots.table_bytes(),
+            snapshot_bytes: snapshots.table_bytes(),
         }
     }
 }
@@ -111,7 +121,41 @@ impl Recorded {
     }
 }
 
-/// Bytes of all tables that the scenario keeps.
+/// The snapshots of a scenario.
+struct PlannedSnapshots {
+    /// Snapshots times nodes.
+    rows: u64,
+    series: u64,
+}
+
+impl PlannedSnapshots {
+    fn of(model: &Model) -> Self {
+        let times = SnapshotTimes::of(&model.scenario)
+            .filter(|_| model.effects.transient && model.scenario.cost_study.is_none());
+        let count = times.map_or(0, |times| times.count());
+        Self { rows: count * model.node_count() as u64, series: SnapshotSeries::of(model).len() as u64 }
+    }
+
+    /// Time, node, and the series in single precision.
+    fn table_bytes(&self) -> u64 {
+        self.rows * (16 + 4 * self.series)
+    }
+
+    /// Bytes of memory of the block that a run gathers, and of the bytes that it becomes.
+    fn memory_of_blocks(&self) -> u64 {
+        2 * SNAPSHOT_BLOCK_BYTES.min(4 * self.rows * self.series)
+    }
+
+    /// Bytes of memory while the table is written.
+    fn memory_of_table(&self) -> u64 {
+        /// Of a row as it is read back and made a row group.
+        const PER_ROW: u64 = 200;
+        let columns = (2 + self.series) * PER_COLUMN_CHUNK;
+        PER_ROW * ROW_GROUP.min(self.rows) + (self.rows / ROW_GROUP + 1) * columns
+    }
+}
+
+/// Bytes of all tables that the scenario keeps, but for its snapshots.
 fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
     /// Columns of numbers of the profile, by element; of equilibrium and contacts, by node.
     const OF_ELEMENTS: usize = 24;

@@ -196,6 +196,7 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
             orbit_window: None,
             stability: false,
             outputs: Outputs::Full,
+            snapshots: None,
         },
         accuracy: Accuracy::Explicit(accuracy),
         effects: draw_effects(&mut draw),

@@ -21,6 +21,7 @@ mod histories;
 mod implicit;
 mod rk4;
 mod run;
+mod snapshots;
 mod stability;
 
 pub(crate) use adaptive::SMALLEST_MOTION;
@@ -32,8 +33,10 @@ pub use error::ErrorEstimate;
 pub use failure::{DivergenceReason, TransientError};
 pub use histories::{Histories, NodeHistory, Series};
 pub use implicit::SweepMonitor;
-pub use run::Keep;
 pub(crate) use run::{BLOCK_BYTES, LEDGER_RATE_HZ};
+pub use run::{Block, Keep};
+pub(crate) use snapshots::SNAPSHOT_BLOCK_BYTES;
+pub use snapshots::{SnapshotBlock, SnapshotSeries, SnapshotTimes};
 
 use serde::{Deserialize, Serialize};
 
@@ -187,6 +190,15 @@ impl<'m> Transient<'m> {
         }
     }
 
+    /// Snapshots that a resumed run has taken already; 0 at the start.
+    pub fn snapshots_taken(&self) -> u64 {
+        match &self.0 {
+            Solved::Six(run) => run.snapshots_taken(),
+            Solved::Five(run) => run.snapshots_taken(),
+            Solved::Four(run) => run.snapshots_taken(),
+        }
+    }
+
     /// Samples of each recorded node that the whole run records.
     fn samples(&self) -> u64 {
         match &self.0 {
@@ -196,7 +208,7 @@ impl<'m> Transient<'m> {
         }
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it, with the histories in memory.
+    /// Runs to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots are passed over.
     ///
     /// # Errors
     /// When the motion diverges.
@@ -223,8 +235,8 @@ impl<'m> Transient<'m> {
             let detail = format!("a run suspended after {recorded} samples is resumed with others");
             return Err(TransientError::Histories(detail));
         }
-        let mut keep = |block: &[NodeHistory]| {
-            for (history, block) in histories.iter_mut().zip(block) {
+        let mut keep = |block: Block<'_>| {
+            for (history, block) in histories.iter_mut().zip(block.histories) {
                 history.append(block);
             }
             Ok(())
@@ -236,7 +248,7 @@ impl<'m> Transient<'m> {
         })
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it; samples are handed over to `keep` block by
+    /// Runs to the end of the scenario's duration, or until `control` stops it; samples and snapshots are handed over to `keep` block by
     /// block, so that the run's memory does not grow with its duration. Before it ends in any way but by an error or a
     /// cancel, all of them are.
     ///

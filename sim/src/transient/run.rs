@@ -18,6 +18,7 @@ use super::grid::Grid;
 use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
+use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
 use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::freedom::{DOFS, Freedoms, U, V};
@@ -84,11 +85,22 @@ pub(super) struct Run<'m, const D: usize> {
     fastest: usize,
     /// Samples of the recorded nodes that were not handed over yet.
     block: Vec<NodeHistory>,
+    /// Present where snapshots are asked for.
+    snapshots: Option<Recorder<D>>,
     progress: Progress<D>,
 }
 
-/// Takes a block of samples of the recorded nodes, which follow those of the block before; says why it cannot be kept.
-pub type Keep<'a> = dyn FnMut(&[NodeHistory]) -> Result<(), String> + 'a;
+/// What a run has recorded since it last handed something over.
+#[derive(Debug, Clone, Copy)]
+pub struct Block<'a> {
+    /// Samples of the recorded nodes.
+    pub histories: &'a [NodeHistory],
+    /// Snapshots; absent where none are asked for.
+    pub snapshots: Option<&'a SnapshotBlock>,
+}
+
+/// Takes a block of what is recorded, which follows the block before; says why it cannot be kept.
+pub type Keep<'a> = dyn FnMut(Block<'_>) -> Result<(), String> + 'a;
 
 /// What a run starts from.
 pub(super) struct Start<'a> {
@@ -252,6 +264,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 .into_iter()
                 .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
                 .collect(),
+            snapshots: Recorder::new(model, of_a_step),
         };
         run.start()?;
         Ok(run)
@@ -278,6 +291,15 @@ impl<'m, const D: usize> Run<'m, D> {
 
     pub(super) fn model(&self) -> &'m Model {
         self.model
+    }
+
+    /// Snapshots that were taken so far.
+    pub(super) fn snapshots_taken(&self) -> u64 {
+        // As with samples: a run that has not begun has none.
+        match (SnapshotTimes::of(&self.model.scenario), self.progress.ticks) {
+            (Some(times), 1..) => times.among_first(self.recorded()),
+            _ => 0,
+        }
     }
 
     /// Samples of a whole run.
@@ -312,7 +334,10 @@ impl<'m, const D: usize> Run<'m, D> {
             }
             let next_row = (self.progress.ticks / row + 1) * row;
             self.advance(next_row.min(end))?;
-            if self.block.first().is_some_and(|first| first.u.len() as u64 >= self.block_samples) {
+            let is_full = |first: &NodeHistory| first.u.len() as u64 >= self.block_samples;
+            if self.block.first().is_some_and(is_full)
+                || self.snapshots.as_ref().is_some_and(Recorder::is_full)
+            {
                 self.hand_over(keep)?;
             }
             control.report(self.time());
@@ -342,12 +367,15 @@ impl<'m, const D: usize> Run<'m, D> {
         })))
     }
 
-    /// Hands the samples of the block over.
+    /// Hands over what is recorded.
     fn hand_over(&mut self, keep: &mut Keep<'_>) -> Result<(), TransientError> {
-        if self.block.first().is_some_and(|first| !first.u.is_empty()) {
-            keep(&self.block).map_err(TransientError::Histories)?;
+        let snapshots = self.snapshots.as_ref().map(Recorder::block);
+        let has_samples = self.block.first().is_some_and(|first| !first.u.is_empty());
+        if has_samples || snapshots.is_some_and(|snapshots| snapshots.count > 0) {
+            keep(Block { histories: &self.block, snapshots }).map_err(TransientError::Histories)?;
         }
         self.block.iter_mut().for_each(NodeHistory::clear);
+        self.snapshots.iter_mut().for_each(Recorder::clear);
         Ok(())
     }
 
@@ -418,6 +446,10 @@ impl<'m, const D: usize> Run<'m, D> {
             for history in &mut self.block {
                 push(history, self.model, self.system.freedoms, &self.rest, motion);
             }
+            if let Some(snapshots) = &mut self.snapshots {
+                let of = (&self.forces, self.system.freedoms, &self.rest);
+                snapshots.take(0, self.model, of, motion);
+            }
         }
     }
 
@@ -446,6 +478,10 @@ impl<'m, const D: usize> Run<'m, D> {
             };
             for history in &mut self.block {
                 push(history, self.model, self.system.freedoms, &self.rest, motion);
+            }
+            if let Some(snapshots) = &mut self.snapshots {
+                let of = (&self.forces, self.system.freedoms, &self.rest);
+                snapshots.take(sample, self.model, of, motion);
             }
         }
     }
@@ -622,11 +658,8 @@ fn push<const D: usize>(
     let node = history.node;
     let (x, v) = motion(node);
     let x = freedoms.among(&x, rest[node]);
-    // Element e joins the nodes e and e + 1.
-    let above = node.saturating_sub(1);
-    let other = if node == above { above + 1 } else { above };
-    let x_other = freedoms.among(&motion(other).0, rest[other]);
-    let ends = if node == above { [x, x_other] } else { [x_other, x] };
-    let torque = model.elements[above].torque_row.iter().zip(ends.as_flattened()).map(|(a, x)| a * x).sum();
+    let of_node =
+        |other: usize| if other == node { x } else { freedoms.among(&motion(other).0, rest[other]) };
+    let torque = torque(model, node, of_node);
     history.push(&x, &freedoms.among(&v, [0.0; DOFS]), torque);
 }

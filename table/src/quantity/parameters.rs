@@ -120,6 +120,9 @@ pub(super) static ALL: &[Quantity] = &[
     field("recording.outputs.orbits.window.from", "", Some(&units::TIME), "start of the kept window"),
     field("recording.outputs.orbits.window.to", "", Some(&units::TIME), "end of the kept window"),
     field("recording.outputs.orbits.decimation", "", None, "decimation"),
+    field("recording.snapshots.rate_hz", "", Some(&units::FREQUENCY), "snapshot rate"),
+    field("recording.snapshots.window.from", "", Some(&units::TIME), "start of the snapshots"),
+    field("recording.snapshots.window.to", "", Some(&units::TIME), "end of the snapshots"),
     // Accuracy.
     field("accuracy.statistics", "", Some(&units::RATIO), "tolerance of statistics"),
     field("accuracy.trajectory", "", Some(&units::RATIO), "tolerance of the history"),

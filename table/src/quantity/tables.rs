@@ -74,6 +74,13 @@ pub static HISTORY: Layout = Layout {
     by_node: &[&U, &V, &W, &THETA_Z, &U_RATE, &V_RATE, &W_RATE, &THETA_Z_RATE, &ROTATION_SPEED, &TORQUE],
 };
 
+/// Snapshots of the whole string: a row a node, snapshot after snapshot; only what was solved for.
+pub static SNAPSHOTS: Layout = Layout {
+    name: "snapshots",
+    columns: &[&TIME, &NODE, &U, &V, &W, &THETA_Z, &ROTATION_SPEED, &TORQUE, &NORMAL_FORCE],
+    by_node: &[],
+};
+
 /// Full spectra that are kept in place of the motion: a row a frequency, for each recorded node and window in turn.
 pub static SPECTRA: Layout = Layout {
     name: "spectra",
@@ -144,5 +151,5 @@ pub static STATISTICS: Layout = Layout {
 };
 
 /// All of them.
-pub static ALL: [&Layout; 9] =
-    [&PROFILE, &STATICS, &HISTORY, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM, &STATISTICS];
+pub static ALL: [&Layout; 10] =
+    [&PROFILE, &STATICS, &HISTORY, &SNAPSHOTS, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM, &STATISTICS];

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -207,6 +207,27 @@ class Point:
         """
         query = {"window": window, "range_hz": range_hz, "peaks": peaks}
         return self.view("spectrum", **_node_window(node, depth, nearest, time), **query)
+
+    def snapshots(
+        self,
+        *,
+        time: TimeWindow = (None, None),
+        max_frames: int | None = None,
+        fields: Sequence[str] | None = None,
+    ) -> Table:
+        """Snapshots of the whole string, where the scenario asks for them (`recording.snapshots`).
+
+        A row a node, from the top, snapshot after snapshot: `time`, `node`, `u`, `v`, `normal_force`, and of axial
+        motion and torsion, where solved for, `w`, `theta_z`, `rotation_speed`, `torque`. A column as an array of
+        snapshots by nodes: `table["u"].reshape(-1, table.attributes["nodes"])`.
+
+        Args:
+            time: Window [s].
+            max_frames: At most so many snapshots; every k-th stays.
+            fields: Only these columns.
+        """
+        names = ",".join(fields) if fields is not None else None
+        return self.view("snapshots", **{"from": time[0], "to": time[1]}, max_frames=max_frames, fields=names)
 
     def contacts(self) -> Table:
         """Contacts of every node with the hole over the run."""

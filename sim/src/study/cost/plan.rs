@@ -165,6 +165,7 @@ fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
         orbit_window: Some(if is_own { scenario.orbit_window() } else { last(1.0 / 3.0) }),
         stability: false,
         outputs: Outputs::Full,
+        snapshots: None,
     }
 }
 

@@ -1,0 +1,118 @@
+//! Snapshots of the whole string.
+
+use std::ops::Range;
+
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::view::history;
+use drillsweep_api::view::snapshots::SnapshotTimes;
+use drillsweep_table::parquet::StoredTable;
+use drillsweep_table::quantity::columns::TIME;
+use drillsweep_table::{Column, quantity::tables};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use super::results::{PointPath, check_window, file_name, whole_file};
+use crate::answer::artifact;
+use crate::answer::document::{Conditional, Problems, TableResponse};
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{self, Answer, Format, TableFormat};
+use crate::answer::stored::{Stored, StoredFile};
+use crate::app::App;
+
+/// Which part of the snapshots is wanted.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SnapshotsQuery {
+    /// Start of the window \[s\], included.
+    #[serde(default, deserialize_with = "value::number")]
+    from: Option<f64>,
+    /// End of the window \[s\], not included.
+    #[serde(default, deserialize_with = "value::number")]
+    to: Option<f64>,
+    /// At most so many snapshots: every k-th one stays, with all its nodes. Absent means all.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    max_frames: Option<u32>,
+    /// Format of the table; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<TableFormat>,
+    /// Only these columns, separated by commas.
+    #[serde(default, deserialize_with = "value::names")]
+    #[param(value_type = Option<String>)]
+    fields: Option<Vec<String>>,
+}
+
+impl SnapshotsQuery {
+    fn is_whole(&self) -> bool {
+        self.from.is_none() && self.to.is_none() && self.max_frames.is_none() && self.fields.is_none()
+    }
+}
+
+/// Snapshots of the whole string in motion
+///
+/// A row a node, from the top, snapshot after snapshot; kept where the scenario asks for them (`recording.snapshots`). There are no
+/// columns of motions that were not solved for. Attributes: `nodes`, the rows of a snapshot; `snapshots`, the number of them in
+/// the window before `max_frames` thins them; `first`, the time of the first, and `interval`, from one that is served to the next \[s\].
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/snapshots",
+    tag = "points",
+    operation_id = "get_snapshots",
+    params(PointPath, SnapshotsQuery, Conditional),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<SnapshotsQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(query.format, &headers)?;
+    check_window(query.from, query.to)?;
+    let file_name = file_name(&id, n, tables::SNAPSHOTS.name);
+    let stored = artifact::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
+    if format == Format::Parquet && query.is_whole() {
+        return whole_file(&app, stored, &file_name).await;
+    }
+    let nodes = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?.rows();
+    let nodes = usize::try_from(nodes).map_err(|_| Error::internal("a string of too many nodes"))?;
+    let place = app.view(format.memory(stored.memory().await?)).await?;
+    place
+        .answer(move || {
+            let table = stored.open()?;
+            let times = times(&stored, &table, nodes)?;
+            let frames = times.window(query.from, query.to);
+            let stride = history::stride(frames.len(), query.max_frames.map(|frames| frames as usize));
+            let layout = table.layout().clone();
+            let layout = layout
+                .attribute("snapshots", frames.len())
+                .attribute("nodes", nodes)
+                .attribute("first", times.time(frames.start))
+                .attribute("interval", times.interval() * stride as f64);
+            let layout = format::select(layout, query.fields.as_deref())?;
+            let rows: Range<usize> = frames.start * nodes..frames.end * nodes;
+            let part = table.cut_runs(layout, rows, nodes, stride)?;
+            Ok(Answer::of_part(stored, part, format, &file_name, &(nodes, &query)))
+        })
+        .await
+}
+
+/// When the snapshots of a table were taken, each of which has as many rows as the string has nodes.
+fn times(stored: &Stored, table: &StoredTable<StoredFile>, nodes: usize) -> Result<SnapshotTimes> {
+    let rows = table.rows();
+    if nodes == 0 || !rows.is_multiple_of(nodes) {
+        return Err(Error::internal(&format!("{rows} rows are no snapshots of {nodes} nodes")));
+    }
+    let time = |row: usize| {
+        let read = table.read(&[TIME.name], row..row + 1).map_err(|error| stored.problem(error))?;
+        match read.columns.get(TIME.name) {
+            Some(Column::Number(times)) => Ok(times.first().copied().unwrap_or(0.0)),
+            _ => Err(Error::internal("a table of snapshots without times")),
+        }
+    };
+    Ok(SnapshotTimes { first: time(0)?, last: time(rows.saturating_sub(1))?, count: rows / nodes })
+}

@@ -1,6 +1,6 @@
 """Pictures of every view of the web page in both themes, for the book: `python docs/screenshots.py SERVER SWEEP OTHER`.
 
-Both sweeps are complete, of the same parameters, with points that have histories; the first one verifies some.
+Both sweeps are complete, of the same parameters, with points that have histories and snapshots; the first one verifies some.
 Pictures go to `docs/page/`, or to the folder that is given, as WebP.
 """
 
@@ -27,7 +27,7 @@ def views(sweep: str, other: str) -> dict[str, str]:
     for view in ("map", "scatter", "parallel", "effects", "table", "failures"):
         links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_49"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
-    for view in ("profiles", "motion", "well", "energy", "about"):
+    for view in ("profiles", "motion", "string", "well", "energy", "about"):
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
     points = f"{sweep}:1,{sweep}:4,{other}:4"
     for view in ("profiles", "orbit", "history", "rotation", "spectrum", "well", "energy"):

@@ -69,6 +69,17 @@ export function getNeeded(path) {
 }
 
 /**
+ * The same for an answer that is no JSON.
+ * @param {string} path
+ * @param {Record<string, any>} [query]
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<ArrayBuffer>}
+ */
+export function getBytes(path, query, signal) {
+  return ask("GET", address(path, query), undefined, signal, (answer) => answer.arrayBuffer());
+}
+
+/**
  * A request with side effects, or one with a body.
  * @param {"POST" | "PATCH" | "DELETE"} method
  * @param {string} path
@@ -85,8 +96,9 @@ export function send(method, path, body, signal) {
  * @param {string} url
  * @param {any} body
  * @param {AbortSignal} [signal]
+ * @param {(answer: Response) => Promise<any>} [read] the answer that is no problem
  */
-async function ask(method, url, body, signal) {
+async function ask(method, url, body, signal, read = (answer) => answer.json()) {
   /** @type {Record<string, string>} */
   const headers = { Accept: "application/json" };
   if (body !== undefined) headers["Content-Type"] = "application/json";
@@ -103,7 +115,7 @@ async function ask(method, url, body, signal) {
     throw new Unreachable();
   }
   if (answer.status === 204) return null;
-  if (answer.ok) return answer.json();
+  if (answer.ok) return read(answer);
   const document = await answer.json().catch(() => ({}));
   if (answer.status === 401) connection.dispatchEvent(new Event("login"));
   throw new Problem(answer.status, document);

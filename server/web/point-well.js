@@ -4,6 +4,7 @@ import { choice, fill, h } from "./dom.js";
 import { canvas, colourBar, draw, inks, SCALE } from "./plots.js";
 import { QUANTITIES, tableOf } from "./point-profiles.js";
 import { label, say, shown, title, unit } from "./units.js";
+import { nodeFrames } from "./well-frames.js";
 
 /** How many times the string's distance from the axis of the hole is drawn. */
 const EXAGGERATIONS = ["1", "20", "100", "300"];
@@ -62,7 +63,7 @@ export function well(context) {
  * @param {number} nodes
  * @returns {(number | null)[]}
  */
-function onNodes(columns, name, nodes) {
+export function onNodes(columns, name, nodes) {
   const values = columns[name];
   if (values.length === nodes) return values;
   return Array.from({ length: nodes }, (_, node) => (values[Math.max(0, node - 1)] + values[Math.min(values.length - 1, node)]) / 2);
@@ -75,27 +76,13 @@ function onNodes(columns, name, nodes) {
  * @param {number} factor
  */
 export function displaced(statics, axis, factor) {
-  const count = axis.north.length;
+  const frames = nodeFrames(statics);
   const result = { north: [...axis.north], east: [...axis.east], down: [...axis.down] };
-  for (let node = 0; node < count; node += 1) {
-    const [before, after] = [Math.max(0, node - 1), Math.min(count - 1, node + 1)];
-    const tangent = unitVector([axis.north[after] - axis.north[before], axis.east[after] - axis.east[before], axis.down[after] - axis.down[before]]);
-    // The low side is what gravity leaves across the hole; a vertical hole has none, and north takes its place.
-    const gravity = [0, 0, 1].map((value, index) => value - tangent[2] * tangent[index]);
-    const low = Math.hypot(...gravity) > 1e-6 ? unitVector(gravity) : [1, 0, 0];
-    const side = [tangent[1] * low[2] - tangent[2] * low[1], tangent[2] * low[0] - tangent[0] * low[2], tangent[0] * low[1] - tangent[1] * low[0]];
-    const [cosine, sine] = [Math.cos(statics.low_side_angle[node]), Math.sin(statics.low_side_angle[node])];
-    const [u, v] = [statics.u[node], statics.v[node]];
-    const [down, across] = [factor * (u * cosine + v * sine), factor * (v * cosine - u * sine)];
-    result.north[node] += down * low[0] + across * side[0];
-    result.east[node] += down * low[1] + across * side[1];
-    result.down[node] += down * low[2] + across * side[2];
+  for (let node = 0; node < axis.north.length; node += 1) {
+    const [u, v] = [factor * statics.u[node], factor * statics.v[node]];
+    result.north[node] += u * frames.u[node][0] + v * frames.v[node][0];
+    result.east[node] += u * frames.u[node][1] + v * frames.v[node][1];
+    result.down[node] += u * frames.u[node][2] + v * frames.v[node][2];
   }
   return result;
-}
-
-/** @param {number[]} vector */
-function unitVector(vector) {
-  const length = Math.hypot(...vector) || 1;
-  return vector.map((value) => value / length);
 }

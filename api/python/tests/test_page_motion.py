@@ -1,0 +1,160 @@
+"""The views of a point's motion in a real browser: the string in its hole, contacts over time."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from drillsweep import Client, Sweep
+from service import SHORT
+from test_page import Opens, browser, drawn, opened, troubles, until
+
+__all__ = ["browser", "opened", "troubles"]
+
+
+@pytest.fixture(scope="module")
+def recorded(client: Client) -> Sweep:
+    """One point with 50 snapshots, of 0.01 to 0.49 s."""
+    snapshots = {"rate_hz": 100, "window": {"from": 0.01, "to": 0.5}}
+    changes = SHORT | {"recording.snapshots": snapshots}
+    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="snapshots").wait(timeout=120.0)
+
+
+def scene(page: Page) -> Locator:
+    """The picture of the string, once it is drawn."""
+    picture = page.get_by_role("application", name=re.compile("The string moving"))
+    expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
+    return picture
+
+
+def pixels(picture: Locator) -> str:
+    return str(picture.evaluate("canvas => canvas.toDataURL()"))
+
+
+def clock(page: Page) -> float:
+    return float(str(page.locator("output").text_content()).removesuffix(" s"))
+
+
+def trace(picture: Locator, number: int) -> dict[str, Any]:
+    """What plotly was given to draw."""
+    read = "(place, number) => { const { x, y, z } = place.data[number]; return { x: [...x], y: [...y], z }; }"
+    return dict(picture.evaluate(read, number))
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_string_moves_is_stopped_and_is_shown_at_any_time(
+    opened: Opens, recorded: Sweep, theme: Literal["light", "dark"]
+) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&exaggerate=300&speed=0.1", color_scheme=theme)
+    picture = scene(page)
+    # With everything in its place nothing changes the size of the picture.
+    drawn(page, "Contact force")
+    drawn(page, "Rotation speed and torque")
+    assert clock(page) == pytest.approx(0.01)
+    at_first = pixels(picture)
+    page.get_by_role("button", name="Play").click()
+    until(page, lambda: clock(page) > 0.05)
+    # The keyboard stops it where the picture has the focus.
+    picture.focus()
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+    stopped, then = clock(page), pixels(picture)
+    assert then != at_first
+    page.wait_for_timeout(100)
+    assert (clock(page), pixels(picture)) == (stopped, then)
+    # Back where it was, it looks as it did.
+    page.get_by_label("Time", exact=True).fill("0.01")
+    assert clock(page) == pytest.approx(0.01)
+    until(page, lambda: pixels(picture) == at_first)
+    page.keyboard.press("End")
+    assert clock(page) == pytest.approx(0.49, abs=0.011)
+    picture.focus()
+    turned = pixels(picture)
+    page.keyboard.press("ArrowLeft")
+    until(page, lambda: pixels(picture) != turned)
+
+
+def test_the_string_is_coloured_by_what_is_chosen_in_the_units_shown(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string")
+    picture = scene(page)
+    seen = {pixels(picture)}
+    for name, unit in [
+        ("whirl amplitude", "mm"),
+        ("distance from the axis", "mm"),
+        ("friction coefficient C_f", ""),
+        ("effective tension", "kN"),
+        ("rotation speed", "rad/s"),
+        ("torque", "kN·m"),
+    ]:
+        page.get_by_label("Colour", exact=True).select_option(label=name)
+        expect(page.locator(".scale")).to_contain_text(f"{name} [{unit}]" if unit else name)
+        until(page, lambda: pixels(picture) not in seen)
+        seen.add(pixels(picture))
+    page.get_by_label("Colour", exact=True).select_option(label="whirl amplitude")
+    snapshots = recorded.point(1).snapshots(fields=["u", "v"])
+    place = (snapshots["u"] + 1j * snapshots["v"]).reshape(-1, snapshots.attributes["nodes"])
+    most = 1e3 * np.sqrt(np.mean(np.abs(place - place.mean(axis=0)) ** 2, axis=0)).max()
+    expect(page.locator(".scale .number").last).to_have_text(re.compile(f"^{float(f'{most:.3g}'):g}$"))
+    # A stretch of depth fills the picture.
+    whole = pixels(picture)
+    page.get_by_label("From depth [m]").fill("150")
+    page.get_by_label("From depth [m]").blur()
+    until(page, lambda: pixels(picture) != whole)
+    assert "top=150" in page.url
+
+
+def test_contacts_rotation_and_torque_are_those_of_the_service(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string")
+    scene(page)
+    snapshots = recorded.point(1).snapshots()
+    nodes = snapshots.attributes["nodes"]
+    contacts = drawn(page, "Contact force over depth and time")
+    shown = trace(contacts, 0)
+    force = snapshots["normal_force"].reshape(-1, nodes)
+    # In kilonewtons, over depth and time.
+    np.testing.assert_allclose(np.array(shown["z"]), force.T / 1e3, rtol=1e-6)
+    np.testing.assert_allclose(shown["x"], snapshots["time"][::nodes], atol=1e-9)
+    np.testing.assert_allclose(shown["y"], recorded.point(1).statics()["measured_depth"])
+    turning = drawn(page, "Rotation speed and torque at bit and top")
+    speed, torque = (snapshots[name].reshape(-1, nodes) for name in ("rotation_speed", "torque"))
+    for number, expected in enumerate([speed[:, -1], speed[:, 0], torque[:, -1] / 1e3, torque[:, 0] / 1e3]):
+        np.testing.assert_allclose(trace(turning, number)["y"], expected, rtol=1e-6)
+    # The top turns as it is told to.
+    np.testing.assert_allclose(speed[:, 0], 120.0 * np.pi / 30, rtol=1e-6)
+
+
+def test_a_point_without_snapshots_says_what_to_ask_for(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=string")
+    expect(page.get_by_text('"recording.snapshots": {"rate_hz":25}')).to_be_visible()
+    page.get_by_role("link", name="Compute this point with snapshots").click()
+    expect(page.get_by_role("button", name="Submit 1 point")).to_be_enabled()
+    scenario = json.loads(page.get_by_label("Scenario as JSON").input_value())
+    assert scenario["recording"]["snapshots"] == {"rate_hz": 25}
+
+
+def test_snapshots_are_a_change_of_a_new_sweep(opened: Opens, troubles: list[str]) -> None:
+    page = opened("#/new?preset=paper-200m")
+    plan = page.locator("dt", has_text="Storage").locator("xpath=following-sibling::dd[1]")
+    expect(plan).to_be_visible()
+    without = plan.text_content()
+    page.get_by_role("button", name="Add a change").click()
+    page.get_by_role("combobox", name="Field").last.fill("recording.snapshots")
+    page.get_by_role("textbox", name="Value", exact=True).last.fill('{"rate_hz": 25}')
+    until(page, lambda: plan.text_content() != without)
+    expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+    page.get_by_role("textbox", name="Value", exact=True).last.fill('{"rate_hz": 30}')
+    expect(page.get_by_text("a whole part of recording.rate_hz")).to_be_visible()
+    expect(page.get_by_role("button", name="Submit")).to_be_disabled()
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 422" not in text]
+
+
+def test_a_phone_shows_the_string_without_sideways_scrolling(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string", viewport={"width": 390, "height": 844})
+    page.wait_for_load_state("networkidle")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390

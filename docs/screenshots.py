@@ -27,7 +27,7 @@ def views(sweep: str, other: str) -> dict[str, str]:
     for view in ("map", "scatter", "parallel", "effects", "table", "failures"):
         links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_49"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
-    for view in ("profiles", "motion", "string", "well", "energy", "about"):
+    for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
     points = f"{sweep}:1,{sweep}:4,{other}:4"
     for view in ("profiles", "orbit", "history", "rotation", "spectrum", "well", "energy"):

@@ -20,7 +20,7 @@ use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
     cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
-    statistics, status, sweeps, verification, web,
+    spectrogram, statistics, status, sweeps, verification, web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -63,6 +63,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(snapshots::show))
         .routes(routes!(results::orbit))
         .routes(routes!(results::spectrum))
+        .routes(routes!(spectrogram::show))
         .routes(routes!(results::contacts))
         .routes(routes!(results::energy))
         .routes(routes!(statistics::show))

@@ -8,6 +8,7 @@ import { about } from "./point-about.js";
 import { energy } from "./point-energy.js";
 import { motion } from "./point-motion.js";
 import { profiles } from "./point-profiles.js";
+import { spectrogram } from "./point-spectrogram.js";
 import { string } from "./point-string.js";
 import { well } from "./point-well.js";
 import { keep, link } from "./router.js";
@@ -35,6 +36,7 @@ import { say } from "./units.js";
 const PARTS = [
   ["profiles", "Profiles", profiles],
   ["motion", "Orbit, history, spectrum", motion],
+  ["spectrogram", "Spectrogram", spectrogram],
   ["string", "String in motion", string],
   ["well", "Well", well],
   ["energy", "Energy", energy],

@@ -1,4 +1,4 @@
-"""The views of a point's motion in a real browser: the string in its hole, contacts over time."""
+"""The views of a point's motion in a real browser: the string in its hole, contacts over time, the spectrogram."""
 
 from __future__ import annotations
 
@@ -128,6 +128,25 @@ def test_contacts_rotation_and_torque_are_those_of_the_service(opened: Opens, re
     np.testing.assert_allclose(speed[:, 0], 120.0 * np.pi / 30, rtol=1e-6)
 
 
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_a_spectrogram_is_drawn_of_the_node_that_is_chosen(
+    opened: Opens, recorded: Sweep, theme: Literal["light", "dark"]
+) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=spectrogram&node=1&range=50", color_scheme=theme)
+    picture = drawn(page, "Spectrogram of node 49")
+    expect(page.get_by_text(re.compile("Node 49 at 57.73 m"))).to_be_visible()
+    table = recorded.point(1).spectrogram(node=49, range_hz=50)
+    shown = trace(picture, 0)
+    frequency = np.array(shown["y"])
+    away = np.abs(frequency) >= 2.5 * table.attributes["resolution"]
+    amplitude = table["amplitude"].reshape(table.attributes["windows"], -1).T
+    levels = np.array([row for row, is_kept in zip(shown["z"], away, strict=True) if is_kept], dtype=float)
+    # Their logarithms, in millimetres.
+    np.testing.assert_allclose(10**levels, 1e3 * amplitude[away], rtol=1e-6)
+    page.get_by_label("Node", exact=True).select_option("0")
+    drawn(page, "Spectrogram of node 10")
+
+
 def test_a_point_without_snapshots_says_what_to_ask_for(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=string")
     expect(page.get_by_text('"recording.snapshots": {"rate_hz":25}')).to_be_visible()
@@ -155,6 +174,7 @@ def test_snapshots_are_a_change_of_a_new_sweep(opened: Opens, troubles: list[str
 
 
 def test_a_phone_shows_the_string_without_sideways_scrolling(opened: Opens, recorded: Sweep) -> None:
-    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string", viewport={"width": 390, "height": 844})
-    page.wait_for_load_state("networkidle")
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for view in ("string", "spectrogram"):
+        page = opened(f"#/sweeps/{recorded.id}/points/1?view={view}", viewport={"width": 390, "height": 844})
+        page.wait_for_load_state("networkidle")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, view

@@ -95,6 +95,17 @@ def test_snapshots_are_what_the_histories_hold_of_every_node(client: Client) -> 
     )
 
 
+def test_a_spectrogram_is_the_spectra_of_its_windows(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    table = point.spectrogram(node=49, window_s=0.1, step_s=0.05, window="rectangular", range_hz=95)
+    amplitude = table["amplitude"].reshape(table.attributes["windows"], -1)
+    assert amplitude.shape == (9, 19)
+    for index in range(9):
+        start = 0.05 * index
+        spectrum = point.spectrum(node=49, time=(start, start + 0.1), window="rectangular", range_hz=95)
+        np.testing.assert_allclose(amplitude[index], spectrum["amplitude"], rtol=1e-9, atol=1e-15)
+
+
 def test_tables_come_as_arrays(sweep: Sweep) -> None:
     point = sweep.point(2)
     profile = point.profile()

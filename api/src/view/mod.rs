@@ -5,6 +5,7 @@ pub mod node;
 pub mod orbit;
 pub mod points;
 pub mod snapshots;
+pub mod spectrogram;
 pub mod spectrum;
 pub mod statistics;
 pub mod verification;

@@ -13,6 +13,7 @@ pub(crate) mod scenarios;
 pub(crate) mod scene;
 pub(crate) mod session;
 pub(crate) mod snapshots;
+pub(crate) mod spectrogram;
 pub(crate) mod statistics;
 pub(crate) mod status;
 pub(crate) mod sweeps;

@@ -18,6 +18,7 @@ mod results;
 mod schema;
 mod shutdown;
 mod snapshots;
+mod spectrogram;
 mod submit;
 mod trust;
 mod upkeep;

@@ -86,6 +86,7 @@ fn every_route_is_documented() {
         "snapshots",
         "orbit",
         "spectrum",
+        "spectrogram",
         "contacts",
         "energy",
         "cost",

@@ -150,6 +150,21 @@ pub static STATISTICS: Layout = Layout {
     by_node: &[],
 };
 
+/// The full spectrum of one node's orbit over time.
+pub static SPECTROGRAM: Layout =
+    Layout { name: "spectrogram", columns: &[&TIME, &FREQUENCY, &AMPLITUDE], by_node: &[] };
+
 /// All of them.
-pub static ALL: [&Layout; 10] =
-    [&PROFILE, &STATICS, &HISTORY, &SNAPSHOTS, &SPECTRA, &CONTACTS, &ENERGY, &ORBIT, &SPECTRUM, &STATISTICS];
+pub static ALL: [&Layout; 11] = [
+    &PROFILE,
+    &STATICS,
+    &HISTORY,
+    &SNAPSHOTS,
+    &SPECTRA,
+    &CONTACTS,
+    &ENERGY,
+    &ORBIT,
+    &SPECTRUM,
+    &STATISTICS,
+    &SPECTROGRAM,
+];

@@ -208,6 +208,35 @@ class Point:
         query = {"window": window, "range_hz": range_hz, "peaks": peaks}
         return self.view("spectrum", **_node_window(node, depth, nearest, time), **query)
 
+    def spectrogram(
+        self,
+        *,
+        node: int | None = None,
+        depth: float | None = None,
+        nearest: bool = False,
+        time: TimeWindow = (None, None),
+        window_s: float | None = None,
+        step_s: float | None = None,
+        window: str | None = None,
+        range_hz: float | None = None,
+    ) -> Table:
+        """The full spectrum of a node's orbit over time: `time`, `frequency` (positive is forward whirl), `amplitude`.
+
+        Window after window, whose middle is `time`; `attributes["windows"]` is how many there are.
+
+        Args:
+            node: A recorded node, 1 at the top; either this or `depth`.
+            depth: Measured depth [m] of a recorded node, to within half an element.
+            nearest: Take the recorded node nearest to `depth`, however far.
+            time: What is looked at [s].
+            window_s: Length of each window [s].
+            step_s: From the beginning of a window to that of the next [s].
+            window: Weighting of the samples in each window, `hann` or `rectangular`.
+            range_hz: Frequencies from minus to plus this [Hz].
+        """
+        query = {"window_s": window_s, "step_s": step_s, "window": window, "range_hz": range_hz}
+        return self.view("spectrogram", **_node_window(node, depth, nearest, time), **query)
+
     def snapshots(
         self,
         *,

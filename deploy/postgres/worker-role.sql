@@ -12,7 +12,7 @@ WHERE NOT EXISTS (SELECT 1 FROM pg_roles WHERE rolname = :'role') \gexec
 
 REVOKE ALL ON ALL TABLES IN SCHEMA public FROM :"role";
 
-GRANT SELECT ON _sqlx_migrations, clock, scenario, work, owner_turn, result, artifact, upload, removal, worker TO :"role";
+GRANT SELECT ON _sqlx_migrations, clock, scenario, work, owner_turn, queue_start, result, artifact, upload, removal, worker TO :"role";
 GRANT UPDATE (state, fencing_token, attempts, progress, worker_note, lease_owner, lease_until, lease_ms, changed, error,
               checkpoint, crash_count, failure_count, ready_at) ON work TO :"role";
 GRANT INSERT, DELETE, UPDATE (disagrees, provenance) ON result TO :"role";
@@ -20,5 +20,3 @@ GRANT INSERT ON artifact TO :"role";
 GRANT INSERT, UPDATE ON upload TO :"role";
 GRANT INSERT, UPDATE, DELETE ON worker TO :"role";
 GRANT SELECT, INSERT, UPDATE ON machine_speed TO :"role";
--- To lock it, which is what it is there for: it has no columns.
-GRANT UPDATE ON turnstile TO :"role";

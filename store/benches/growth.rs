@@ -2,6 +2,9 @@
 //! nothing, while others submit and look.
 //!
 //! `cargo bench -p drillsweep-store --bench growth -- --engine postgres --points 1000000 --workers 200 --seconds 120`
+//!
+//! With `--compute-ms` each worker waits for so long before it finishes a point, so that all together claim no more than the workers
+//! over that time.
 
 #![expect(clippy::print_stdout, reason = "a report")]
 
@@ -31,6 +34,8 @@ struct Plan {
     workers: usize,
     /// How long the workers work.
     seconds: u64,
+    /// How long a worker has each point before it finishes it.
+    compute: Duration,
 }
 
 fn main() {
@@ -45,6 +50,7 @@ fn main() {
         points: number("--points", "100000"),
         workers: usize::try_from(number("--workers", "200")).expect("a number of workers"),
         seconds: number("--seconds", "30").unsigned_abs(),
+        compute: Duration::from_millis(number("--compute-ms", "0").unsigned_abs()),
     };
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     let directory = tempfile::tempdir().expect("a temporary directory");
@@ -53,7 +59,8 @@ fn main() {
     if let Some(server) = &server {
         config.database = server.url().parse::<DatabaseLocation>().expect("a URL");
     }
-    println!("{}: {} points, {} workers", plan.engine, plan.points, plan.workers);
+    let Plan { engine, points, workers, compute, .. } = &plan;
+    println!("{engine}: {points} points, {workers} workers that have a point for {compute:?}");
     runtime.block_on(run(&plan, &config));
     let bytes = match &server {
         Some(server) => {
@@ -73,9 +80,10 @@ async fn run(plan: &Plan, config: &StoreConfig) {
     let store = Store::open(config).await.expect("a store");
     let is_over = Arc::new(AtomicBool::new(false));
 
+    let large = sweep(SWEEP, "anne", plan.points);
     let others = tokio::spawn(submit_beside(store.clone(), is_over.clone()));
     let began = Instant::now();
-    store.submit_sweep(&sweep(SWEEP, "anne", plan.points)).await.expect("submitted");
+    store.submit_sweep(&large).await.expect("submitted");
     println!("submit: {:.1} s", began.elapsed().as_secs_f64());
     is_over.store(true, Ordering::Relaxed);
     report("another owner's submit meanwhile", others.await.expect("it ends"));
@@ -87,7 +95,7 @@ async fn run(plan: &Plan, config: &StoreConfig) {
     for number in 0..plan.workers {
         let config = StoreConfig { role: Role::Worker, ..config.clone() };
         let store = Store::open(&config).await.expect("a store");
-        workers.push(tokio::spawn(work(store, number, is_over.clone(), finished.clone())));
+        workers.push(tokio::spawn(work(store, number, plan.compute, is_over.clone(), finished.clone())));
     }
     let began = Instant::now();
     tokio::time::sleep(Duration::from_secs(plan.seconds)).await;
@@ -99,10 +107,11 @@ async fn run(plan: &Plan, config: &StoreConfig) {
     let rate = finished.load(Ordering::Relaxed) as f64 / began.elapsed().as_secs_f64();
     println!("claims and finishes: {rate:.0} a second");
     report("a claim", claims);
-    let (lists, pages, versions) = readers.await.expect("it ends");
-    report("a page of sweeps", lists);
-    report("a page of 100 points", pages);
-    report("a sweep's version", versions);
+    let readings = readers.await.expect("it ends");
+    report("a page of sweeps", readings.lists);
+    report("a page of 100 points", readings.pages);
+    report("500 rows of the table", readings.tables);
+    report("a sweep's version", readings.versions);
 }
 
 /// Another owner's sweeps of one point, one after the other.
@@ -118,34 +127,43 @@ async fn submit_beside(store: Store, is_over: Arc<AtomicBool>) -> Vec<Duration> 
     times
 }
 
-async fn read_beside(
-    store: Store,
-    points: i64,
-    is_over: Arc<AtomicBool>,
-) -> (Vec<Duration>, Vec<Duration>, Vec<Duration>) {
-    let (mut lists, mut pages, mut versions) = (Vec::new(), Vec::new(), Vec::new());
+/// How long readers waited.
+#[derive(Default)]
+struct Readings {
+    lists: Vec<Duration>,
+    pages: Vec<Duration>,
+    tables: Vec<Duration>,
+    versions: Vec<Duration>,
+}
+
+async fn read_beside(store: Store, points: i64, is_over: Arc<AtomicBool>) -> Readings {
+    let mut readings = Readings::default();
     let mut after = 0;
     while !is_over.load(Ordering::Relaxed) {
         let began = Instant::now();
         store.sweeps(&SweepFilter::default(), None, 50).await.expect("a list");
-        lists.push(began.elapsed());
-        let began = Instant::now();
+        readings.lists.push(began.elapsed());
         // All over the sweep, by steps that share no divisor with its size.
         after = (after + 7_919) % points;
+        let began = Instant::now();
         store.points(SWEEP, &[], after, 100).await.expect("a page");
-        pages.push(began.elapsed());
+        readings.pages.push(began.elapsed());
+        let began = Instant::now();
+        store.table_rows(SWEEP, after, 500).await.expect("a page");
+        readings.tables.push(began.elapsed());
         let began = Instant::now();
         store.sweep_version(SWEEP).await.expect("a version");
-        versions.push(began.elapsed());
+        readings.versions.push(began.elapsed());
         tokio::time::sleep(Duration::from_millis(50)).await;
     }
-    (lists, pages, versions)
+    readings
 }
 
 /// A worker that computes nothing. Gives how long its claims took.
 async fn work(
     store: Store,
     number: usize,
+    compute: Duration,
     is_over: Arc<AtomicBool>,
     finished: Arc<AtomicU64>,
 ) -> Vec<Duration> {
@@ -156,6 +174,9 @@ async fn work(
         let began = Instant::now();
         let Some(claim) = store.claim(&name, 1, 60_000).await.expect("claimed") else { break };
         claims.push(began.elapsed());
+        if !compute.is_zero() {
+            tokio::time::sleep(compute).await;
+        }
         store.renew(&claim.lease, 60_000, 0.5).await.expect("renewed");
         let blob = store.put_blob(claim.lease.key.to_vec()).await.expect("written");
         let artifact = NewArtifact {

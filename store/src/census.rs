@@ -38,6 +38,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn census(&self, silence: Duration) -> Result<Census> {
+        self.apply_left_transitions().await;
         let depths = self.queue_depths().await?;
         type Sums = (i64, i64, i64, i64, i64, i64);
         let (sweeps, queued, running, done, failed, cancelled): Sums =

@@ -7,7 +7,7 @@ use crate::database::{Database, DatabaseLocation, Transaction};
 use crate::error::Result;
 use crate::notification::Listening;
 use crate::query::query;
-use crate::queue::Reaping;
+use crate::queue::Looking;
 use crate::sql;
 
 /// Where the store lies and who opens it.
@@ -65,7 +65,8 @@ pub struct Store {
     /// The file of the embedded engine.
     pub(crate) database_path: Option<PathBuf>,
     pub(crate) listening: Listening,
-    pub(crate) reaping: Reaping,
+    pub(crate) reaping: Looking,
+    pub(crate) applying: Looking,
     blobs: BlobStore,
 }
 
@@ -95,7 +96,8 @@ impl Store {
             database,
             database_path,
             listening: Listening::default(),
-            reaping: Reaping::default(),
+            reaping: Looking::default(),
+            applying: Looking::default(),
             blobs: BlobStore::open(&config.objects)?,
         })
     }

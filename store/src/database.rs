@@ -1,10 +1,10 @@
 //! The engine behind the store: a SQLite file, or a PostgreSQL server.
 //!
 //! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
-//! failure) runs beside others of its kind, and what follows from it for others (the turn of its owner, the sweeps that have it) lies behind
-//! a turnstile that one passes at a time (migrations/postgres/0002_queues.sql). All that changes several (submitting, cancelling, pausing,
+//! failure) runs beside others of its kind, and what follows from it for others (the turn of its owner, the sweeps that have it) is noted
+//! with it and applied in batches (migrations/postgres/0004_transitions.sql). All that changes several (submitting, cancelling, pausing,
 //! collecting garbage) runs alone, as everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold
-//! shared. Triggers take the shared lock and the turnstile, so that no statement can forget them.
+//! shared. Triggers take the shared lock and note the changes, so that no statement can forget them.
 //!
 //! Futures are boxed here for the reason that `query.rs` gives.
 
@@ -79,6 +79,18 @@ impl Database {
         })
     }
 
+    /// The same, and in that state all is done that follows from changes of work items.
+    pub(crate) fn read_applied(&self) -> BoxFuture<'_, Result<Transaction>> {
+        Box::pin(async move {
+            match self {
+                Database::Sqlite(..) => self.read().await,
+                Database::Postgres(pool) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::read_applied(pool).await?))
+                }
+            }
+        })
+    }
+
     /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
     pub(crate) fn write(&self) -> BoxFuture<'_, Result<Transaction>> {
         Box::pin(async move {
@@ -103,6 +115,17 @@ impl Database {
         })
     }
 
+    /// Does what follows for others from changes of work items that are committed, where that is not done with the change. Who has made
+    /// such a change by a statement of its own calls it after that.
+    pub(crate) fn apply_transitions(&self) -> BoxFuture<'_, ()> {
+        Box::pin(async move {
+            match self {
+                Database::Sqlite(..) => {}
+                Database::Postgres(pool) => postgres::apply_transitions(pool).await,
+            }
+        })
+    }
+
     /// Closes all connections.
     pub(crate) fn close(&self) -> BoxFuture<'_, ()> {
         Box::pin(async move {
@@ -122,16 +145,6 @@ impl Transaction {
                 Transaction::Postgres(transaction) => transaction.commit().await?,
             }
             Ok(())
-        })
-    }
-
-    /// Commits a change of the state of a work item. On PostgreSQL it goes through the turnstile.
-    pub(crate) fn commit_in_turn(self) -> BoxFuture<'static, Result<()>> {
-        Box::pin(async move {
-            match self {
-                Transaction::Sqlite { .. } => self.commit().await,
-                Transaction::Postgres(transaction) => transaction.commit_in_turn().await,
-            }
         })
     }
 

@@ -30,6 +30,7 @@ impl Store {
     /// When the database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
         type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
+        self.apply_left_transitions().await;
         let rows: Vec<Row> =
             query(sql::event::LIST).bind(sweep_id).bind(after).bind(limit).rows(&self.database).await?;
         if !rows.is_empty() {

@@ -14,7 +14,7 @@ use sqlx::{
     SqlitePool, Type,
 };
 
-use crate::database::{Database, postgres};
+use crate::database::Database;
 use crate::error::Result;
 
 /// A statement in the words of each engine.
@@ -132,28 +132,23 @@ impl Query {
         fetch(self, session.into()).await?.iter().map(Row::record).collect()
     }
 
-    /// The same in a transaction of its own, beside which nothing runs that has to run alone.
-    pub(crate) async fn rows_beside_others<T: Record>(self, database: &Database) -> Result<Vec<T>> {
-        let Database::Postgres(pool) = database else { return self.rows(database).await };
-        let rows = postgres::beside_others(pool, &self.inlined()).await?;
-        Ok(rows.iter().map(T::from_row).collect::<sqlx::Result<_>>()?)
-    }
-
-    /// The same of a statement that changes the state of a work item: it waits for its turn before it begins.
-    pub(crate) async fn rows_in_turn<T: Record>(self, database: &Database) -> Result<Vec<T>> {
-        let Database::Postgres(pool) = database else { return self.rows(database).await };
-        let rows = postgres::in_turn(pool, &self.inlined()).await?;
-        Ok(rows.iter().map(T::from_row).collect::<sqlx::Result<_>>()?)
-    }
-
-    /// PostgreSQL's statement with its parameters in it, as SQL's constants.
-    fn inlined(self) -> String {
-        let mut text = self.statement.postgres.to_owned();
-        // From the last, since `$1` begins `$10`.
-        for (index, value) in self.parameters.into_iter().enumerate().rev() {
-            text = text.replace(&format!("${}", index + 1), &value.constant());
+    /// The same of a statement that changes the state of a work item where it gives rows; what follows from that for others is done
+    /// after it.
+    pub(crate) async fn rows_of_change<T: Record>(self, database: &Database) -> Result<Vec<T>> {
+        let rows = self.rows(database).await?;
+        if !rows.is_empty() {
+            database.apply_transitions().await;
         }
-        text
+        Ok(rows)
+    }
+
+    /// Runs a statement that changes the state of a work item, and what follows from that for others; tells how many rows it changed.
+    pub(crate) async fn execute_change(self, database: &Database) -> Result<u64> {
+        let changed = self.execute(database).await?;
+        if changed > 0 {
+            database.apply_transitions().await;
+        }
+        Ok(changed)
     }
 
     /// Runs it and gives its rows, each read by the names of its columns.
@@ -289,30 +284,6 @@ pub(crate) fn postgres_arguments(parameters: Vec<Value>) -> Result<PgArguments> 
         .map_err(sqlx::Error::Encode)?;
     }
     Ok(arguments)
-}
-
-impl Value {
-    /// It as a constant of PostgreSQL's. Texts and bytes are in hexadecimal digits, so that nothing in them means anything else.
-    fn constant(&self) -> String {
-        match self {
-            Value::Integer(Some(value)) => format!("{value}::bigint"),
-            Value::Integer(None) => "NULL::bigint".to_owned(),
-            Value::Real(Some(value)) => format!("'{value:e}'::double precision"),
-            Value::Real(None) => "NULL::double precision".to_owned(),
-            Value::Flag(Some(value)) => value.to_string(),
-            Value::Flag(None) => "NULL::boolean".to_owned(),
-            Value::Text(Some(value)) => {
-                format!("convert_from(decode('{}', 'hex'), 'UTF8')", hexadecimal(value.as_bytes()))
-            }
-            Value::Text(None) => "NULL::text".to_owned(),
-            Value::Bytes(Some(value)) => format!("decode('{}', 'hex')", hexadecimal(value)),
-            Value::Bytes(None) => "NULL::bytea".to_owned(),
-        }
-    }
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl From<i64> for Value {

@@ -30,19 +30,19 @@ const FIRST_RETRY_MS: i64 = 5_000;
 /// Longest wait before the last of these retries \[ms\].
 const LONGEST_RETRY_MS: i64 = (FIRST_RETRY_MS << (INFRASTRUCTURE_TRIES - 2)) * 3 / 2;
 
-/// How often those who claim look whether a lease has run out or a retry is due, as long as there is other work: looking costs as
-/// much as claiming.
-const REAP_EVERY: Duration = Duration::from_secs(1);
+/// How often those who claim look whether a lease has run out or a retry is due, as long as there is other work, and those who read
+/// whether a process has died before it had done what follows from a change: looking costs as much as claiming or reading.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// When a process looked last whether anything is due.
+/// When a process looked last whether there is something to do that nobody told it of.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Reaping(Arc<Mutex<Option<Instant>>>);
+pub(crate) struct Looking(Arc<Mutex<Option<Instant>>>);
 
-impl Reaping {
+impl Looking {
     /// Whether it is time to look again, now.
     fn is_due(&self) -> bool {
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_due = last.is_none_or(|last| last.elapsed() >= REAP_EVERY);
+        let is_due = last.is_none_or(|last| last.elapsed() >= LOOK_EVERY);
         if is_due {
             *last = Some(Instant::now());
         }
@@ -166,7 +166,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
-        let claim = || claiming(worker, physics_version, lease_ms).rows_in_turn(&self.database);
+        let claim = || claiming(worker, physics_version, lease_ms).rows_of_change(&self.database);
         let has_looked = self.reaping.is_due();
         if has_looked {
             self.reap().await?;
@@ -225,7 +225,8 @@ impl Store {
             .bind(result.summary_json)
             .bind(result.provenance_json)
             .bind(artifacts_json(result.artifacts));
-        if let Some((outcome,)) = finish.rows_in_turn::<(String,)>(&self.database).await?.into_iter().next() {
+        if let Some((outcome,)) = finish.rows_of_change::<(String,)>(&self.database).await?.into_iter().next()
+        {
             return match outcome.strip_prefix("missing ") {
                 Some(blob) => Err(StoreError::BlobMissing(blob.to_owned())),
                 None => Ok(outcome == "done"),
@@ -274,7 +275,8 @@ impl Store {
                 keep_disagreement(&mut tx, lease.key.as_slice(), &earlier.provenance).await?;
             }
         }
-        tx.commit_in_turn().await?;
+        tx.commit().await?;
+        self.database.apply_transitions().await;
         Ok(true)
     }
 
@@ -335,7 +337,7 @@ impl Store {
             .bind(&lease.worker)
             .bind(error_json)
             .bind(CRASH_LIMIT)
-            .execute(&self.database)
+            .execute_change(&self.database)
             .await?;
         Ok(changed == 1)
     }
@@ -350,7 +352,7 @@ impl Store {
             .bind(lease.key.as_slice())
             .bind(lease.fencing_token)
             .bind(&lease.worker)
-            .execute(&self.database)
+            .execute_change(&self.database)
             .await?;
         Ok(changed == 1)
     }
@@ -368,9 +370,16 @@ impl Store {
             .bind(error_json)
             .bind(INFRASTRUCTURE_TRIES)
             .bind(FIRST_RETRY_MS)
-            .execute(&self.database)
+            .execute_change(&self.database)
             .await?;
         Ok(changed == 1)
+    }
+
+    /// Does what follows for others from changes of work items whose processes died before they had: who reads that calls it.
+    pub(crate) async fn apply_left_transitions(&self) {
+        if self.applying.is_due() {
+            self.database.apply_transitions().await;
+        }
     }
 
     /// Takes work back from workers that are silent beyond their lease, and wakes retries that are due. Tells how
@@ -462,7 +471,7 @@ impl Store {
             .bind(lease.fencing_token)
             .bind(&lease.worker)
             .bind(text)
-            .execute(&self.database)
+            .execute_change(&self.database)
             .await?;
         Ok(changed == 1)
     }

@@ -39,7 +39,7 @@ pub enum Stage {
     Cancelled,
 }
 
-/// A way from one state to another. The database refuses all others, by the trigger `work_keeps_to_its_transitions`.
+/// A way from one state to another. The database refuses all others, by a trigger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// The state before.

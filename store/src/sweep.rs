@@ -68,6 +68,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
+        self.apply_left_transitions().await;
         query(sql::sweep::ONE).bind(id).first_record(&self.database, SweepRecord::read).await
     }
 
@@ -81,6 +82,7 @@ impl Store {
         before: Option<&str>,
         limit: i64,
     ) -> Result<Vec<SweepRecord>> {
+        self.apply_left_transitions().await;
         query(sql::sweep::LIST)
             .bind(filter.owner)
             .bind(before)
@@ -98,6 +100,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn sweep_version(&self, id: &str) -> Result<Option<i64>> {
+        self.apply_left_transitions().await;
         query(sql::sweep::VERSION).bind(id).first_scalar(&self.database).await
     }
 

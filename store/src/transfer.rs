@@ -127,8 +127,9 @@ pub enum TransferError {
 }
 
 /// Carries a store over to another one, which must have no rows yet. The first is read in one snapshot and not changed, nor is its
-/// schema. Broken off at any moment, it goes on when it is called again: blobs that are there and whole are not copied again, rows
-/// begin anew. Work that is leased there arrives as given back, under the fencing token that it has.
+/// schema; only what follows from changes of work items that are pending there is done first. Broken off at any moment, it goes on when
+/// it is called again: blobs that are there and whole are not copied again, rows begin anew. Work that is leased there arrives as given
+/// back, under the fencing token that it has.
 ///
 /// # Errors
 /// When one of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
@@ -142,7 +143,7 @@ pub async fn transfer(
         return Err(TransferError::Itself);
     }
     let source = Store::open_read_only(source).await?;
-    let mut snapshot = source.database.read().await?;
+    let mut snapshot = source.database.read_applied().await?;
     let tables = tables(&mut snapshot).await?;
     if source_use == SourceUse::Idle {
         refuse_use(&mut snapshot).await?;

@@ -48,7 +48,7 @@ impl Store {
         let name = blob.to_string();
         loop {
             let reserve = query(sql::upload::RESERVE).bind(&name).bind(RESERVED_MS);
-            if !reserve.rows_beside_others::<(String,)>(&self.database).await?.is_empty() {
+            if !reserve.rows::<(String,)>(&self.database).await?.is_empty() {
                 return Ok(());
             }
             // Until the note of it runs out, if whoever was deleting it has died.

@@ -1,10 +1,15 @@
 //! PostgreSQL: a team's engine, for many machines.
+//!
+//! Who changes the state of work items only notes the changes; what follows from them for others is applied in batches
+//! (migrations/postgres/0004_transitions.sql). Everybody who has committed such a change calls `apply_transitions`, which leaves it to
+//! whoever is applying others at that moment, and who does so calls it again until nothing is left: so all changes are applied once all
+//! those who have made them have returned. Who reads what follows from changes calls it now and then as well, since a process may have died
+//! in between.
 
 use std::time::Duration;
 
-use futures::future::BoxFuture;
 use sqlx::pool::PoolConnection;
-use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, PgRow};
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions};
 use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Postgres};
 
 use crate::connection::Role;
@@ -23,14 +28,14 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 /// answer.
 const TRUSTED_FOR: Duration = Duration::from_secs(1);
 
-/// Takes the writers' advisory lock exclusively; the schema's triggers use the same arbitrary key.
-const ALONE: &str = "SELECT pg_advisory_xact_lock(7237963465534699365)";
-
-/// Takes the same lock shared.
+/// Takes the writers' advisory lock shared; the schema's functions use the same arbitrary key.
 const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(7237963465534699365)";
 
-/// Goes through the turnstile (migrations/postgres/0002_queues.sql), after the writers' lock was taken.
-const TURNSTILE: &str = "LOCK TABLE turnstile IN EXCLUSIVE MODE";
+/// Begins a transaction that sees one state of the database and changes nothing.
+const READ: &str = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
+
+/// Applies what is pending, unless somebody else does; gives whether it has done so.
+const APPLY: &str = "SELECT apply_transitions()";
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
 pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms: i64) -> Result<Database> {
@@ -44,8 +49,7 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
         ("client_min_messages", "warning"),
     ]);
     if let Role::Worker = role {
-        // What a crash of the database forgets is computed again. All that workers do to one sweep goes through its row, one after the
-        // other: each would wait for the disk.
+        // What a crash of the database forgets is computed again.
         // Their statements look for a few rows by an index: planning one takes longer than running it.
         options = options.options([
             ("synchronous_commit", "off"),
@@ -115,16 +119,40 @@ pub(crate) struct PostgresTransaction {
 impl PostgresTransaction {
     /// One that sees one state of the database and changes nothing.
     pub(crate) async fn read(pool: &PgPool) -> Result<Self> {
-        Self::begin(pool, "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY".to_owned()).await
+        Self::begin(pool, READ.to_owned()).await
     }
 
-    /// One that holds the writers' lock exclusively. Deferred triggers run at once, since its later statements rely on what they do.
+    /// The same, and in that state nothing is pending. What is pending is applied before, where the schema knows of such, though the
+    /// connection may be one that changes nothing by default.
+    pub(crate) async fn read_applied(pool: &PgPool) -> Result<Self> {
+        let mut begun = Self { connection: pool.acquire().await?, has_ended: false };
+        let is_known: bool = sqlx::query_scalar("SELECT to_regproc('apply_pending_transitions') IS NOT NULL")
+            .fetch_one(begun.connection())
+            .await?;
+        let mut statements = vec![READ];
+        if is_known {
+            // Nobody changes work between the two. The snapshot is that of the first statement.
+            statements = vec![
+                "SELECT pg_advisory_lock(7237963465534699365)",
+                "BEGIN READ WRITE",
+                "SELECT apply_pending_transitions()",
+                "COMMIT",
+                READ,
+                "SELECT pg_advisory_unlock(7237963465534699365)",
+            ];
+        }
+        for statement in statements {
+            begun.connection.execute(statement).await?;
+        }
+        Ok(begun)
+    }
+
+    /// One that holds the writers' lock exclusively. What follows from its changes is done with each of its statements.
     pub(crate) async fn alone(pool: &PgPool) -> Result<Self> {
-        Self::begin(pool, format!("BEGIN; SET CONSTRAINTS ALL IMMEDIATE; {ALONE}")).await
+        Self::begin(pool, "BEGIN; SELECT write_alone()".to_owned()).await
     }
 
-    /// One that holds the writers' lock shared, as the schema's triggers do for statements outside one. Deferred triggers run at the
-    /// commit.
+    /// One that holds the writers' lock shared, as the schema's triggers do for statements outside one.
     pub(crate) async fn beside_others(pool: &PgPool) -> Result<Self> {
         Self::begin(pool, format!("BEGIN; {BESIDE_OTHERS}")).await
     }
@@ -141,11 +169,6 @@ impl PostgresTransaction {
 
     pub(crate) async fn commit(self) -> Result<()> {
         self.end("COMMIT".to_owned()).await
-    }
-
-    /// Goes through the turnstile and commits: one message, so that nobody waits there for this client.
-    pub(crate) async fn commit_in_turn(self) -> Result<()> {
-        self.end(format!("{TURNSTILE}; COMMIT")).await
     }
 
     pub(crate) async fn rollback(self) -> Result<()> {
@@ -167,21 +190,17 @@ impl Drop for PostgresTransaction {
     }
 }
 
-/// Runs one statement as a transaction that holds the writers' lock shared: one message. Its rows have their values as text.
-pub(crate) async fn beside_others(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>> {
-    script(pool, format!("{BESIDE_OTHERS}; {statement}")).await
-}
-
-/// The same of one that goes through the turnstile first; nobody waits there for this client.
-pub(crate) async fn in_turn(pool: &PgPool, statement: &str) -> Result<Vec<PgRow>> {
-    script(pool, format!("{BESIDE_OTHERS}; {TURNSTILE}; {statement}")).await
-}
-
-/// Statements in one message are one transaction. The first takes a lock.
-fn script(pool: &PgPool, statements: String) -> BoxFuture<'_, Result<Vec<PgRow>>> {
-    Box::pin(async move {
-        let rows = sqlx::raw_sql(AssertSqlSafe(statements)).fetch_all(pool).await?;
-        // The first row is what taking the lock gave.
-        Ok(rows.into_iter().skip(1).collect())
-    })
+/// Applies what is pending, until nothing is left or somebody else is at it. Where that fails, the changes from which it follows stand
+/// nevertheless, and the next one that comes applies it.
+pub(crate) async fn apply_transitions(pool: &PgPool) {
+    loop {
+        match sqlx::query_scalar(APPLY).fetch_one(pool).await {
+            Ok(true) => {}
+            Ok(false) => return,
+            Err(error) => {
+                tracing::warn!(%error, "what follows from changes of points is left to others");
+                return;
+            }
+        }
+    }
 }

@@ -14,7 +14,7 @@ use crate::bench::{
     verified,
 };
 use crate::place::Bucket;
-use crate::postgres::Postgres;
+use crate::postgres::{Postgres, claim_and_die};
 use crate::retention::{DAY_MS, collect};
 use crate::sqlite::Sqlite;
 
@@ -98,6 +98,20 @@ async fn a_store_goes_from_file_to_file_and_from_server_to_server() {
     carry(&second, &back).await.unwrap();
     assert_eq!(dump(&back).await, dump(&local).await);
     assert_eq!(contents(&back), contents(&local));
+}
+
+#[tokio::test]
+async fn what_follows_from_a_change_arrives_though_its_process_died_before() {
+    let (remote, local) = (Remote::new(), Local::new());
+    let store = remote.open().await;
+    submit(&store, &sweep("s", 0..3)).await;
+    claim_and_die(&remote.database().await).await;
+    carry_while(&remote, &local, SourceUse::Running).await.unwrap();
+    // The lease is given back, and both changes are told.
+    let arrived = local.open().await;
+    let told: Vec<_> = arrived.events("s", 0, 10).await.unwrap().iter().map(|event| event.state).collect();
+    assert_eq!(told, [WorkState::Leased, WorkState::Queued]);
+    assert_eq!(sweep_record(&arrived, "s").await.counts.queued, 3);
 }
 
 #[tokio::test]

@@ -1,8 +1,5 @@
--- Reserves a blob for a row to come, unless it is being deleted: it is not deleted until then. Who has reserved it for longer keeps it.
+-- Reserves a blob for a row to come, unless it is being deleted: it is not deleted until then. Who has reserved it for longer keeps it
+-- (migrations/postgres/0004_transitions.sql).
 -- $1 blob, $2 for how long [ms].
 -- Gives: the blob; nothing if it is being deleted.
-INSERT INTO upload (blob, expires)
-SELECT $1, (SELECT now FROM clock) + $2
-WHERE NOT EXISTS (SELECT 1 FROM removal WHERE blob = $1 AND expires > (SELECT now FROM clock))
-ON CONFLICT (blob) DO UPDATE SET expires = greatest(upload.expires, excluded.expires)
-RETURNING blob
+SELECT blob FROM reserve_blob($1, $2) AS reserved (blob)

@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use drillsweep_sim::beam::BeamSection;
-use drillsweep_sim::model::{GRAVITY, Model};
+use drillsweep_sim::model::{GRAVITY, Model, element_values};
+use drillsweep_sim::mud::element_flow;
 use drillsweep_sim::scenario::{
     Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
 };
-use drillsweep_sim::statics::{Equilibrium, StaticsError};
+use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::soak;
 
 /// A horizontal string of one section without mud, friction and torque.
@@ -249,25 +250,83 @@ fn a_pulled_string_carries_its_weight_and_the_pull() {
     assert!((w / stretch - 1.0).abs() < 1e-9, "{w} m for {stretch} m");
 }
 
-#[test]
-fn equilibria_that_end_as_friction_grows_end_at_one_friction() {
-    // A scene drawn at random of which no search finds an equilibrium, though it has one without friction.
-    let with_friction = |share: f64| {
-        let mut scenario = soak::scene(1, 207);
-        scenario.contact.static_friction *= share;
-        scenario.contact.dynamic_friction *= share;
-        Model::new(&scenario).unwrap()
-    };
-    let limit = |share: f64| match Equilibrium::find(&with_friction(share)).map(|found| found.effort) {
-        Err(StaticsError::NotConverged { friction_limit: Some(limit), overload: None, .. }) => limit * share,
-        found => panic!("at {share}: {found:?}"),
-    };
-    // It is the scene's, whatever friction the path was to lead to.
-    let whole = limit(1.0);
-    for share in [0.8, 1.2, 1.5] {
-        assert!((limit(share) / whole - 1.0).abs() < 0.01, "{share}: {whole}");
+/// The largest force or moment that the equations of the documents leave unbalanced at a node of a scene at rest, over the largest that
+/// acts on one: wall and friction by (11) and (36), drag by the eccentricity where the string lies.
+fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
+    let mud = model.scenario.mud.as_ref();
+    for (e, element) in model.elements.iter().enumerate().filter(|_| model.effects.mud_drag) {
+        let eccentricity = model.eccentricity(e, &rest.displacement);
+        let flow = element_flow(mud.unwrap(), &element.flow_geometry, eccentricity, model.rotation_speed);
+        let expected = flow.unwrap().effective_drag_per_length;
+        assert!((rest.drag[e] - expected).abs() <= 1e-9 * expected, "element {e}: {} N/m", rest.drag[e]);
     }
-    // Just below it an equilibrium is found, by whichever search comes first.
-    let found = Equilibrium::find(&with_friction(0.95 * whole)).unwrap();
-    assert!(found.normal_force.iter().any(|force| *force > 0.0));
+    let mut forces = model.constant_load(&rest.drag);
+    let mut largest = forces.as_flattened().iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    for (e, element) in model.elements.iter().enumerate() {
+        let q = element_values(&rest.displacement, e);
+        let inner = element.stiffness(element.tension_row.dot(&q), element.torque_row.dot(&q)) * q;
+        largest = largest.max(inner.amax());
+        for (i, force) in inner.iter().enumerate() {
+            forces[e + i / 6][i % 6] -= force;
+        }
+    }
+    let law = &model.scenario.contact;
+    let sense = if model.rotation_speed == 0.0 { 0.0 } else { model.rotation_speed.signum() };
+    let friction = law.static_friction * sense;
+    let along = if model.effects.friction { friction } else { 0.0 };
+    let about = if model.effects.friction_torque { friction } else { 0.0 };
+    for (node, site) in model.wall.touchable() {
+        let [u, v, ..] = rest.displacement[node];
+        let radius = u.hypot(v);
+        let depth = radius - site.clearance;
+        if depth > 0.0 {
+            let rise = 1.0 + 2.0 / PI * (PI * law.stiffness_sharpness * depth).atan();
+            let normal = 0.5 * law.stiffness * site.stiffness_share * rise * depth;
+            assert!((normal - rest.normal_force[node]).abs() <= 1e-9 * normal);
+            largest = largest.max(normal);
+            forces[node][0] -= normal * (u - along * v) / radius;
+            forces[node][1] -= normal * (v + along * u) / radius;
+            forces[node][5] -= normal * about * site.contact_radius;
+        }
+    }
+    let free = |node: usize, dof: usize| !model.held_by_top(node)[dof];
+    let left = (0..model.node_count()).flat_map(|node| {
+        let forces = &forces;
+        (0..6).filter(move |&dof| free(node, dof)).map(move |dof| forces[node][dof].abs())
+    });
+    left.fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn strings_under_strong_friction_rest_in_balance() {
+    // Random scenes in which no path from the unloaded string or from a wall without friction leads to an equilibrium.
+    for index in [4, 14, 155, 207, 265, 308, 390, 841, 993] {
+        let model = Model::new(&soak::scene(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
+        assert!(rest.normal_force.iter().any(|force| *force > 0.0), "scene {index}");
+        let left = unbalanced(&model, &rest);
+        assert!(left < 1e-9, "scene {index}: {left:e}");
+    }
+}
+
+#[test]
+fn strings_whose_drag_depends_strongly_on_where_they_lie_rest_in_balance() {
+    // Random scenes in which drag and position, computed from each other in turn, alternate or converge slowly.
+    for index in [9, 279, 416, 630, 2004, 2485, 3896] {
+        let model = Model::new(&soak::scene(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
+        let left = unbalanced(&model, &rest);
+        assert!(left < 1e-9, "scene {index}: {left:e}");
+    }
+}
+
+#[test]
+fn a_string_that_nothing_holds_stays_on_the_axis_of_a_vertical_hole() {
+    // Random scenes of short strings that are pinned in a vertical hole, without friction or stiffening by tension.
+    for index in [274, 3113] {
+        let model = Model::new(&soak::scene(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
+        assert!(rest.displacement.iter().all(|[u, v, ..]| *u == 0.0 && *v == 0.0), "scene {index}");
+        assert!(unbalanced(&model, &rest) < 1e-9, "scene {index}");
+    }
 }

@@ -16,7 +16,7 @@ mod tests;
 
 pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Yielding, dynamic_contact, implicit_contact};
-pub use rest::{StaticContactForce, static_contact};
+pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;
 

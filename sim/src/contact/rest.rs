@@ -66,3 +66,73 @@ pub fn static_contact(
         ],
     }
 }
+
+/// The force of a wall of growing sharpness and friction on a resting node, with its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SmoothContactForce {
+    /// Force along u and v \[N\] and torque about e3 \[N m\].
+    pub force: [f64; 3],
+    /// Their derivatives (rows) by u and v (columns) \[N/m, N\].
+    pub tangent: [[f64; 2]; 3],
+    /// Their derivatives by the width of the wall \[N/m, N\].
+    pub by_width: [f64; 3],
+    /// Their derivatives by the share of the friction \[N, N m\].
+    pub by_friction: [f64; 3],
+}
+
+/// [`static_contact`] with a share of its friction on a wall that is felt over a `width` \[m\] about where it stands, smooth everywhere, and
+/// the same at width 0 and share 1.
+///
+/// Radius and penetration are R = sqrt(r^2 + width^2) and P = (g + sqrt(g^2 + width^2)) / 2 with the gap g = R - sqrt(j0^2 + width^2): far short of
+/// the wall the force falls like that of a logarithmic barrier, K_c width^2 / (4 |g|).
+pub fn smooth_static_contact(
+    law: &ContactParameters<f64>,
+    node: &ContactNode<f64>,
+    [u, v]: [f64; 2],
+    rotation_speed: f64,
+    width: f64,
+    friction_share: f64,
+) -> SmoothContactForce {
+    let radius = u.hypot(v).hypot(width);
+    let clearance = node.clearance.hypot(width);
+    let gap = radius - clearance;
+    let root = gap.hypot(width);
+    if radius == 0.0 || root == 0.0 {
+        return SmoothContactForce::default();
+    }
+    // (gap + root) / 2 without the difference of what is nearly equal.
+    let penetration = if gap > 0.0 { 0.5 * (gap + root) } else { 0.5 * width * width / (root - gap) };
+    let sense = if rotation_speed == 0.0 { 0.0 } else { rotation_speed.signum() };
+    let whole_friction = sense * law.static_friction();
+    let friction = friction_share * whole_friction;
+    let tangential = friction * law.tangential_share;
+    let torque_arm = law.torque_share * node.contact_radius;
+    let (normal_u, normal_v) = (u / radius, v / radius);
+
+    // The force is -F_n d with d = n + mu t for u and v, and mu R_e for the torque.
+    let normal = law.stiffness(penetration) * penetration * node.stiffness_share;
+    let slope = law.elastic_slope(penetration) * node.stiffness_share;
+    let direction =
+        [normal_u - tangential * normal_v, normal_v + tangential * normal_u, friction * torque_arm];
+    let change = |normal_by: f64, normal_turns: [f64; 2]| {
+        let [by_u, by_v] = normal_turns;
+        let turned = [by_u - tangential * by_v, by_v + tangential * by_u, 0.0];
+        std::array::from_fn(|row| -(slope * normal_by * direction[row] + normal * turned[row]))
+    };
+    let by_gap = penetration / root;
+    let across = -normal_u * normal_v / radius;
+    let by_u: [f64; 3] = change(by_gap * normal_u, [(1.0 - normal_u * normal_u) / radius, across]);
+    let by_v: [f64; 3] = change(by_gap * normal_v, [across, (1.0 - normal_v * normal_v) / radius]);
+    let gap_by_width = width / radius - width / clearance;
+    let shrinks = -width / (radius * radius);
+    SmoothContactForce {
+        force: direction.map(|direction| -normal * direction),
+        tangent: std::array::from_fn(|row| [by_u[row], by_v[row]]),
+        by_width: change(
+            0.5 * (gap_by_width + (gap * gap_by_width + width) / root),
+            [normal_u * shrinks, normal_v * shrinks],
+        ),
+        by_friction: [-normal_v * law.tangential_share, normal_u * law.tangential_share, torque_arm]
+            .map(|direction| -normal * whole_friction * direction),
+    }
+}

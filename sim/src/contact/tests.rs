@@ -265,6 +265,57 @@ fn static_tangent_is_the_derivative_to_second_order() {
 }
 
 #[test]
+fn smooth_wall_has_the_derivatives_of_its_force() {
+    let law = parameters(&SOFT);
+    let at = |[u, v, width, friction]: [f64; 4]| {
+        smooth_static_contact(&law, &NODE, [u, v], 12.6, width, friction).force
+    };
+    // In the middle of the hole, short of the wall, and in it.
+    for (u, v) in [(0.0, 0.0), (0.02, -0.01), (0.03, 0.026), (-0.03, 0.027)] {
+        for width in [1e-2, 1e-3] {
+            let point = [u, v, width, 0.6];
+            let contact = smooth_static_contact(&law, &NODE, [u, v], 12.6, width, 0.6);
+            for row in 0..3 {
+                let [by_u, by_v] = contact.tangent[row];
+                let derivatives = [by_u, by_v, contact.by_width[row], contact.by_friction[row]];
+                for (place, derivative) in derivatives.into_iter().enumerate() {
+                    let step = if place == 3 { 1e-4 } else { 1e-4 * width };
+                    let moved = |by: f64| {
+                        let mut moved = point;
+                        moved[place] += by;
+                        at(moved)[row]
+                    };
+                    let difference = (moved(step) - moved(-step)) / (2.0 * step);
+                    // K_c is the largest derivative by a length, K_c width that of a force by the share.
+                    let scale = if place == 3 { SOFT.stiffness * width } else { SOFT.stiffness };
+                    assert!(
+                        (difference - derivative).abs() < 1e-6 * scale,
+                        "({u}, {v}) at {width} m, row {row} by {place}: {derivative} is {difference}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_wall_becomes_the_wall_as_its_width_goes_to_zero() {
+    let law = parameters(&BASE);
+    for (u, v) in [(0.01, 0.02), (0.0305, 0.026), (-0.0241, 0.0321)] {
+        let sharp = static_contact(&law, &NODE, u, v, -12.6);
+        let expected = [sharp.force_u, sharp.force_v, sharp.torque_z];
+        let error = |width: f64| {
+            let smooth = smooth_static_contact(&law, &NODE, [u, v], -12.6, width, 1.0);
+            let pairs = smooth.force.into_iter().zip(expected);
+            pairs.fold(0.0f64, |most, (smooth, sharp)| most.max((smooth - sharp).abs()))
+        };
+        // With the square of the width, in newtons of K_c width^2 / (4 |gap|).
+        let (coarse, fine) = (error(1e-5), error(1e-6));
+        assert!(fine < 0.011 * coarse && coarse < 10.0, "({u}, {v}): {coarse} N, {fine} N");
+    }
+}
+
+#[test]
 fn potential_energy_is_the_integral_of_the_elastic_force() {
     for law in [SOFT, BASE] {
         let parameters = parameters(&law);

@@ -4,21 +4,23 @@
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
 mod continuation;
+mod homotopy;
+mod hydraulics;
 mod newton;
 mod overload;
+mod path;
 mod relaxation;
 
-use continuation::End;
+use hydraulics::{Sections, drag, node_pressures};
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 
 use crate::contact::{StaticContactForce, Wall, static_contact};
-use crate::effect::{gravity, mud_drag};
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::SingularBlock;
 use crate::model::{Model, NodalVector, element_values};
-use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
-use crate::scenario::{ContactLaw, Mud};
+use crate::mud::{ElementFlow, MudError, Pressures};
+use crate::scenario::ContactLaw;
 
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;
@@ -79,7 +81,7 @@ pub enum StaticsError {
     /// Newton's method did not converge.
     #[error(
         "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
-        overload::verdict(overload.as_ref(), *friction_limit)
+        overload::verdict(overload.as_ref())
     )]
     NotConverged {
         /// Iterations made.
@@ -90,9 +92,6 @@ pub enum StaticsError {
         node: usize,
         /// The instability that the string has wherever it lies; absent where none is shown.
         overload: Option<Overload>,
-        /// Share of the wall's friction at which the equilibria end that begin on a wall without; absent where they were not followed to
-        /// their end.
-        friction_limit: Option<f64>,
     },
     /// The tangent broke down.
     #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
@@ -128,6 +127,15 @@ impl StaticsError {
             Self::Singular(block) => block.row + 1,
         }
     }
+
+    /// Whether there may be an equilibrium nevertheless, as far as is known.
+    fn is_open(&self) -> bool {
+        match self {
+            Self::NotConverged { overload, .. } => overload.is_none(),
+            Self::Singular(_) | Self::HydraulicsNotConverged { .. } => true,
+            Self::Mud { .. } => false,
+        }
+    }
 }
 
 impl Equilibrium {
@@ -145,14 +153,37 @@ impl Equilibrium {
     /// As [`Equilibrium::find`].
     pub fn find_from(
         model: &Model,
+        displacement: NodalVector,
+        settings: &NewtonSettings,
+    ) -> Result<Self, StaticsError> {
+        let sections = Sections::new(model)?;
+        let failure = match Self::find_in_passes(model, &sections, displacement, settings) {
+            Err(failure) if failure.is_open() => failure,
+            ended => return ended,
+        };
+        let Some((displacement, outcome)) = homotopy::find(model, &sections) else { return Err(failure) };
+        let eccentricity: Vec<f64> =
+            (0..model.elements.len()).map(|element| model.eccentricity(element, &displacement)).collect();
+        let flows = sections.flows(&eccentricity)?;
+        let drag = drag(model, &flows);
+        let effort = StaticsEffort {
+            newton_iterations: outcome.iterations,
+            hydraulic_passes: 1,
+            residual: outcome.residual,
+        };
+        Self::assemble(model, displacement, flows, drag, effort)
+    }
+
+    /// The equilibrium under the drag of the mud where the string lies, found by computing each from the other in turn.
+    fn find_in_passes(
+        model: &Model,
+        sections: &Sections,
         mut displacement: NodalVector,
         settings: &NewtonSettings,
     ) -> Result<Self, StaticsError> {
-        let n_elements = model.elements.len();
         let mut settings = settings.clone();
-        let mut eccentricity = vec![0.0; n_elements];
+        let mut eccentricity = vec![0.0; model.elements.len()];
         let mut newton_iterations = 0;
-        let sections = Sections::new(model)?;
         for pass in 1..=HYDRAULIC_PASSES {
             let flows = sections.flows(&eccentricity)?;
             let drag = drag(model, &flows);
@@ -257,21 +288,13 @@ fn with_fallbacks(
         }
     }
     displacement.clone_from(&start);
-    let mut friction_limit = None;
     let found = PATH_SPRINGS
         .iter()
         .find_map(|&spring| continuation::follow(model, load, displacement, spring))
         .or_else(|| relaxation::settle(model, load, displacement))
         .or_else(|| {
             displacement.clone_from(&start);
-            match with_growing_friction(model, load, displacement) {
-                End::Found(outcome) => Some(outcome),
-                End::TurnedBack { share } => {
-                    friction_limit = Some(share);
-                    None
-                }
-                End::Lost => None,
-            }
+            with_growing_friction(model, load, displacement)
         })
         .or_else(|| {
             displacement.clone_from(&start);
@@ -283,18 +306,21 @@ fn with_fallbacks(
     Err(match failure {
         StaticsError::NotConverged { iterations, residual, node, .. } => {
             let overload = overload::find(model);
-            StaticsError::NotConverged { iterations, residual, node, overload, friction_limit }
+            StaticsError::NotConverged { iterations, residual, node, overload }
         }
         other => other,
     })
 }
 
-/// The path of equilibria as friction grows, from the one on the wall without; [lost](End::Lost) also where that is not found, or the wall has
-/// no friction.
-fn with_growing_friction(model: &Model, load: &[[f64; DOFS]], displacement: &mut NodalVector) -> End {
+/// The path of equilibria as friction grows, from the one on the wall without; `None` also where that is not found, or the wall has no friction.
+fn with_growing_friction(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> Option<newton::NewtonOutcome> {
     let has_friction = model.effects.contact && model.effects.friction;
     if !has_friction || model.scenario.contact.static_friction == 0.0 {
-        return End::Lost;
+        return None;
     }
     let frictionless = continuation::frictionless(model);
     let start = displacement.clone();
@@ -309,7 +335,7 @@ fn with_growing_friction(model: &Model, load: &[[f64; DOFS]], displacement: &mut
         displacement.clone_from(&start);
         newton::solve(model, &frictionless, load, displacement, settings).is_ok()
     });
-    if is_found { continuation::with_growing_friction(model, load, displacement) } else { End::Lost }
+    if is_found { continuation::with_growing_friction(model, load, displacement) } else { None }
 }
 
 /// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.
@@ -337,59 +363,4 @@ fn contact_at(
     let site = wall.sites()[node].as_ref()?;
     let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
-}
-
-/// The flow past every cross-section of the string, solved once for each pair of diameters.
-struct Sections {
-    distinct: Vec<SectionFlow>,
-    of_element: Vec<usize>,
-}
-
-impl Sections {
-    fn new(model: &Model) -> Result<Self, StaticsError> {
-        let mut sections = Self { distinct: Vec::new(), of_element: Vec::new() };
-        let Some(mud) = &model.scenario.mud else { return Ok(sections) };
-        let mut seen: Vec<FlowGeometry> = Vec::new();
-        for (e, element) in model.elements.iter().enumerate() {
-            let geometry = element.flow_geometry;
-            let index = match seen.iter().position(|other| *other == geometry) {
-                Some(index) => index,
-                None => {
-                    let flow = SectionFlow::new(mud, &geometry, model.rotation_speed);
-                    sections.distinct.push(flow.map_err(|error| StaticsError::Mud { node: e + 1, error })?);
-                    seen.push(geometry);
-                    seen.len() - 1
-                }
-            };
-            sections.of_element.push(index);
-        }
-        Ok(sections)
-    }
-
-    /// The flow past every element at its eccentricity; empty without mud.
-    fn flows(&self, eccentricity: &[f64]) -> Result<Vec<ElementFlow>, StaticsError> {
-        let elements = self.of_element.iter().zip(eccentricity).enumerate();
-        let flow = |(e, (&section, &eccentricity)): (usize, (&usize, &f64))| {
-            let flow = self.distinct[section].at_eccentricity(eccentricity);
-            flow.map_err(|error| StaticsError::Mud { node: e + 1, error })
-        };
-        elements.map(flow).collect()
-    }
-}
-
-fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pressures, MudError> {
-    let true_vertical_depth: Vec<f64> = model.frames.iter().map(|frame| frame.position.z).collect();
-    let elements = model.mesh.elements.iter().zip(flows);
-    let steps: Vec<PressureStep> = elements
-        .map(|(element, flow)| PressureStep {
-            length: element.length,
-            friction_gradient: flow.friction_gradient,
-            bore_friction_gradient: flow.bore_friction_gradient,
-        })
-        .collect();
-    pressures(mud, gravity::acceleration(model.effects.gravity), &true_vertical_depth, &steps)
-}
-
-fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {
-    if model.effects.mud_drag { mud_drag::per_length(flows) } else { Vec::new() }
 }

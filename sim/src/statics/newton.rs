@@ -112,7 +112,6 @@ pub(super) fn solve(
         residual: largest(&residual),
         node,
         overload: None,
-        friction_limit: None,
     })
 }
 
@@ -122,14 +121,19 @@ pub(super) fn finish(
     load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
 ) -> Option<NewtonOutcome> {
-    let largest = displacement.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
     let plain = NewtonSettings {
         initial_shift: 0.0,
         largest_step: f64::INFINITY,
         iteration_limit: LAST_ITERATIONS,
-        tolerance: NewtonSettings::default().tolerance.max(ARRIVED * largest),
+        tolerance: last_step(displacement),
     };
     solve(model, &model.wall, load, displacement, &plain).ok()
+}
+
+/// The last step of plain Newton next to an equilibrium at `displacement` \[m, rad\].
+pub(super) fn last_step(displacement: &[[f64; DOFS]]) -> f64 {
+    let largest = displacement.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+    NewtonSettings::default().tolerance.max(ARRIVED * largest)
 }
 
 /// Unbalanced forces and the exact tangent stiffness, held degrees of freedom made trivial.
@@ -138,6 +142,22 @@ pub(super) fn linearise(
     wall: &Wall,
     load: &[[f64; DOFS]],
     displacement: &[[f64; DOFS]],
+) -> (NodalVector, BlockTridiagonal) {
+    linearise_with(model, load, displacement, |node| {
+        let contact = contact_at(wall, node, &displacement[node], model.rotation_speed)?;
+        Some(([contact.force_u, contact.force_v, contact.torque_z], contact.tangent))
+    })
+}
+
+/// Forces of a node's contact along u and v and the torque about e3, with their derivatives by u and v.
+pub(super) type NodeContact = ([f64; 3], [[f64; 2]; 3]);
+
+/// [`linearise`] with the contacts given.
+pub(super) fn linearise_with(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &[[f64; DOFS]],
+    contact_of: impl Fn(usize) -> Option<NodeContact>,
 ) -> (NodalVector, BlockTridiagonal) {
     let n = model.node_count();
     let mut residual = load.to_vec();
@@ -160,17 +180,12 @@ pub(super) fn linearise(
         }
         add_element_matrix(&mut tangent, e, &stiffness);
     }
-    for node in 0..n {
-        let Some(contact) = contact_at(wall, node, &displacement[node], model.rotation_speed) else {
-            continue;
-        };
-        let forces = [contact.force_u, contact.force_v, contact.torque_z];
-        for (row, (force, gradient)) in
-            [U, V, THETA_Z].into_iter().zip(forces.into_iter().zip(&contact.tangent))
-        {
-            residual[node][row] += force;
-            tangent.diagonal[node][(row, U)] -= gradient[0];
-            tangent.diagonal[node][(row, V)] -= gradient[1];
+    for (node, (residual, diagonal)) in residual.iter_mut().zip(&mut tangent.diagonal).enumerate() {
+        let Some((forces, gradients)) = contact_of(node) else { continue };
+        for (row, (force, gradient)) in [U, V, THETA_Z].into_iter().zip(forces.into_iter().zip(&gradients)) {
+            residual[row] += force;
+            diagonal[(row, U)] -= gradient[0];
+            diagonal[(row, V)] -= gradient[1];
         }
     }
     let held: Vec<[bool; DOFS]> = (0..n).map(|node| model.held_by_top(node)).collect();
@@ -199,6 +214,6 @@ fn force(node: &[f64; DOFS]) -> f64 {
     node.iter().fold(0.0, |m, f| m.max(f.abs()))
 }
 
-fn largest(residual: &[[f64; DOFS]]) -> f64 {
+pub(super) fn largest(residual: &[[f64; DOFS]]) -> f64 {
     residual.iter().fold(0.0, |m, node| if m.is_nan() { m } else { m.max(force(node)) })
 }

@@ -3,21 +3,27 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use nalgebra::{SMatrix, SymmetricEigen};
+use nalgebra::{SMatrix, SymmetricEigen, Vector3};
 
 use crate::freedom::{DOFS, THETA_X, THETA_Y};
 use crate::linalg::{Block, BlockTridiagonal};
-use crate::model::{Model, add_element_matrix, clear_held};
+use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
+use crate::scenario::TopCondition;
 
 /// Size up to which an eigenvalue of a pivot block, whose diagonal is scaled to 1, counts as zero.
 const ZERO: f64 = 1e-9;
 
-/// A string that is unstable at every equilibrium it may have: even with all nodes held by the wall, or under its loads where there is none, its
-/// stiffness has negative eigenvalues.
+/// Roundings of the largest entry of a stiffness that may add up to a resistance against turning: some for each of a row's entries.
+const ROUNDING: f64 = 16.0;
+
+/// A string that is not stable at any equilibrium it may have: even with all nodes held by the wall, or under its loads where there is none, its
+/// stiffness has negative eigenvalues, or none at all against turning about its top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overload {
-    /// Number of those eigenvalues.
+    /// Number of negative eigenvalues.
     pub negative_eigenvalues: usize,
+    /// Number of rotations of the whole string about its pinned top that nothing resists.
+    pub free_rotations: usize,
     /// Whether they are those of a string whose nodes are all held by the wall.
     pub held_by_wall: bool,
     /// Measured depth \[m\] of the upper end of the stretch that is loaded most.
@@ -34,6 +40,12 @@ pub struct Overload {
 
 impl fmt::Display for Overload {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.negative_eigenvalues == 0 {
+            return write!(
+                formatter,
+                "nothing holds the string: it has no wall, and neither tension nor stiffness resists its turning about the pinned top"
+            );
+        }
         write!(
             formatter,
             "the string is physically unstable: {} eigenvalues of its stiffness are negative{}; {:.2} m at {:.1} m depth carry {:.1} kN of \
@@ -50,16 +62,11 @@ impl fmt::Display for Overload {
 }
 
 /// What a failed search says about the physics.
-pub(super) fn verdict(overload: Option<&Overload>, friction_limit: Option<f64>) -> String {
-    match (overload, friction_limit) {
-        (Some(overload), _) => overload.to_string(),
-        (None, Some(share)) => format!(
-            "the equilibria that begin on a wall without friction end at {:.1} % of the wall's: beyond it friction may drive the string round \
-             its hole",
-            100.0 * share
-        ),
-        (None, None) => "the string is not shown to be unstable: the search itself failed".to_owned(),
-    }
+pub(super) fn verdict(overload: Option<&Overload>) -> String {
+    overload.map_or_else(
+        || "the string is not shown to be unstable: the search itself failed".to_owned(),
+        Overload::to_string,
+    )
 }
 
 /// The instability of a string wherever it lies, if there is one, with the stretch that is loaded most.
@@ -78,6 +85,7 @@ pub(super) fn find(model: &Model) -> Option<Overload> {
     let mut stiffness = BlockTridiagonal::zeros(model.node_count());
     let mut worst = Overload {
         negative_eigenvalues: 0,
+        free_rotations: 0,
         held_by_wall,
         measured_depth: 0.0,
         length: string,
@@ -104,8 +112,41 @@ pub(super) fn find(model: &Model) -> Option<Overload> {
             worst = Overload { measured_depth, length, compression, ratio, ..worst };
         }
     }
+    let free_rotations = free_rotations(model, &stiffness);
     let negative_eigenvalues = negative_directions(model, stiffness);
-    (negative_eigenvalues > 0).then_some(Overload { negative_eigenvalues, ..worst })
+    let is_unstable = negative_eigenvalues > 0 || free_rotations > 0;
+    is_unstable.then_some(Overload { negative_eigenvalues, free_rotations, ..worst })
+}
+
+/// In how many of the two lateral directions at its pinned top a string without a wall turns as a whole without its stiffness resisting it by
+/// more than rounding.
+fn free_rotations(model: &Model, stiffness: &BlockTridiagonal) -> usize {
+    if model.effects.contact || model.scenario.operation.top != TopCondition::Pinned {
+        return 0;
+    }
+    let Some(top) = model.frames.first() else { return 0 };
+    let turns_freely = |axis: &Vector3<f64>| {
+        let turned: NodalVector = model
+            .frames
+            .iter()
+            .map(|frame| {
+                let displacement = axis.cross(&(frame.position - top.position));
+                let axes = [frame.e1, frame.e2, frame.e3];
+                let [u, v, w] = axes.map(|e| e.dot(&displacement));
+                let [x, y, z] = axes.map(|e| e.dot(axis));
+                [u, v, w, x, y, z]
+            })
+            .collect();
+        let mut forces = turned.clone();
+        stiffness.multiply_into(&turned, &mut forces);
+        let size = |vector: &NodalVector| vector.as_flattened().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let entries = stiffness.diagonal.iter().flat_map(|block| block.columns.iter().flatten());
+        let largest = entries.fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        let products = turned.as_flattened().iter().zip(forces.as_flattened());
+        products.map(|(x, force)| x * force).sum::<f64>()
+            <= ROUNDING * f64::EPSILON * largest * size(&turned).powi(2)
+    };
+    [top.e1, top.e2].iter().filter(|axis| turns_freely(axis)).count()
 }
 
 /// In how many directions the stiffness is negative, with the lateral displacements of all nodes held where there is a wall: the negative
@@ -201,5 +242,31 @@ mod tests {
         assert_eq!(found(0.99), None);
         // In both planes.
         assert_eq!(found(1.01).unwrap().negative_eigenvalues, 2);
+    }
+
+    #[test]
+    fn pinned_strings_turn_freely_until_tension_or_a_wall_holds_them() {
+        let free = |change: fn(&mut Scenario)| {
+            let mut scenario = pushed(0.0);
+            scenario.operation.top = TopCondition::Pinned;
+            scenario.effects.set(Effect::Contact, Switch::Off);
+            change(&mut scenario);
+            find(&Model::new(&scenario).unwrap()).map_or(0, |found| found.free_rotations)
+        };
+        assert_eq!(free(|_| ()), 2);
+        assert_eq!(free(|scenario| scenario.operation.weight_on_bit = 1e3), 0);
+        assert_eq!(free(|scenario| scenario.operation.top = TopCondition::Clamped), 0);
+        assert_eq!(free(|scenario| scenario.effects.set(Effect::Contact, Switch::On)), 0);
+        // A string that hangs is a pendulum; without the stiffening by its tension it is not.
+        let hangs = |scenario: &mut Scenario| {
+            scenario.well.survey.iter_mut().for_each(|station| station.inclination_deg = 0.0);
+        };
+        let mut scenario = pushed(0.0);
+        hangs(&mut scenario);
+        scenario.operation.top = TopCondition::Pinned;
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        assert_eq!(find(&Model::new(&scenario).unwrap()), None);
+        scenario.effects.set(Effect::AxialStiffening, Switch::Off);
+        assert_eq!(find(&Model::new(&scenario).unwrap()).unwrap().free_rotations, 2);
     }
 }

@@ -256,8 +256,9 @@ fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
     let mud = model.scenario.mud.as_ref();
     for (e, element) in model.elements.iter().enumerate().filter(|_| model.effects.mud_drag) {
         let eccentricity = model.eccentricity(e, &rest.displacement);
-        let flow = element_flow(mud.unwrap(), &element.flow_geometry, eccentricity, model.rotation_speed);
-        let expected = flow.unwrap().effective_drag_per_length;
+        let flow =
+            element_flow(mud.expect("mud"), &element.flow_geometry, eccentricity, model.rotation_speed);
+        let expected = flow.expect("a flow").effective_drag_per_length;
         assert!((rest.drag[e] - expected).abs() <= 1e-9 * expected, "element {e}: {} N/m", rest.drag[e]);
     }
     let mut forces = model.constant_load(&rest.drag);

@@ -35,9 +35,12 @@ pub struct Extremes {
     run: usize,
     next: usize,
     /// Of each column that counts, its place, and the rows of the run so far with its smallest and largest value.
-    columns: Vec<(usize, Option<[(usize, f64); 2]>)>,
+    columns: Vec<(usize, Option<Ends>)>,
     kept: Vec<usize>,
 }
+
+/// Two rows and their values: the smallest, and the largest.
+type Ends = [(usize, f64); 2];
 
 impl Extremes {
     /// The fewest rows to which a table of these columns can be thinned.

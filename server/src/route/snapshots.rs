@@ -13,7 +13,6 @@ use drillsweep_table::{Column, quantity::tables};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::results::{PointPath, check_window, file_name, whole_file};
 use crate::answer::artifact;
 use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
@@ -21,6 +20,7 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, TableFormat};
 use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
+use crate::route::results::{PointPath, check_window, file_name, whole_file};
 
 /// Which part of the snapshots is wanted.
 #[derive(Debug, Deserialize, IntoParams)]

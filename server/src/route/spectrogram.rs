@@ -8,7 +8,6 @@ use drillsweep_api::view::{node, spectrum};
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
-use super::results::{PointPath, check_window, file_name};
 use crate::answer::artifact::Recording;
 use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::Result;
@@ -16,6 +15,7 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{Answer, Format, TableFormat};
 use crate::answer::records;
 use crate::app::App;
+use crate::route::results::{PointPath, check_window, file_name};
 
 /// Which spectrogram is wanted.
 #[derive(Deserialize, IntoParams)]

@@ -98,7 +98,7 @@ export function motion(context) {
   function choose(from, to) {
     const first = Math.max(0, Math.min(from, to));
     const last = Math.min(duration, Math.max(from, to));
-    if ((last - first) * recording.rate_hz < LEAST) return;
+    if ((last - first) * recording.rate_hz < LEAST) return void drawOrbit();
     context.keep({ from: String(Number(first.toFixed(4))), to: String(Number(last.toFixed(4))) });
     drawControls();
     void drawWindow();
@@ -152,7 +152,7 @@ export function motion(context) {
       brushed = null;
       brush?.end();
       brush = null;
-      if (!range) return;
+      if (!range) return void drawOrbit();
       choose(range[0], range[1]);
       void adjust(history, { selections: [] });
     });

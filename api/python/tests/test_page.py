@@ -32,6 +32,8 @@ POINT_VIEWS = ["profiles", "motion", "well", "energy", "about"]
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     assert Path(CHROMIUM).exists(), f"{CHROMIUM} is missing: apt install chromium"
+    # A machine that does other work beside takes its time.
+    expect.set_options(timeout=20_000)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         yield browser
@@ -84,7 +86,7 @@ def drawn(page: Page, name: str) -> Locator:
 
 def until(page: Page, holds: Callable[[], bool]) -> None:
     """Waits until something holds; the page's policy forbids Playwright's own way, which evaluates a text."""
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 30.0
     while not holds():
         assert time.monotonic() < deadline, "it never came to hold"
         page.wait_for_timeout(50)

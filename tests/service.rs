@@ -10,6 +10,7 @@ mod remote;
 #[path = "../store/tests/servers/mod.rs"]
 #[allow(dead_code, reason = "of the store's tests")]
 mod servers;
+mod upgrade;
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -40,7 +40,7 @@ pub use service::{
 };
 pub use sweep::{
     ColumnEntry, ColumnKind, ColumnList, PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList,
-    SweepState, SweepVerification,
+    SweepState, SweepVerification, WaitingFor,
 };
 pub use verify::{promise_of_scenario, sample};
 

@@ -32,6 +32,9 @@ pub struct Sweep {
     /// Fraction of the work that is done, reference runs included, running points counted by their simulated time; 1 when every point
     /// and every reference run is final.
     pub progress: f64,
+    /// Why its queued points do not begin, where that is for want of a worker; absent while there is one that could compute them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waiting_for: Option<WaitingFor>,
     /// Higher goes first among the sweeps of one owner.
     pub priority: i64,
     /// When it was submitted.
@@ -61,6 +64,31 @@ pub struct Sweep {
     pub appended: Vec<AppendRequest>,
     /// Where to read more.
     pub links: SweepLinks,
+}
+
+/// A worker that queued points wait for: one of their version of the physics, since no other one may compute them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct WaitingFor {
+    /// Version of the physics by which the points are computed.
+    pub physics_version: i64,
+    /// Versions of the physics that the workers compute which were heard of in the last 100 s; none without workers.
+    pub worker_physics_versions: Vec<i64>,
+    /// The same in words.
+    pub reason: String,
+}
+
+impl WaitingFor {
+    /// What points of a version wait for beside workers of other versions.
+    pub fn new(physics_version: i64, worker_physics_versions: Vec<i64>) -> Self {
+        let others: Vec<String> = worker_physics_versions.iter().map(i64::to_string).collect();
+        let there = match others.as_slice() {
+            [] => "no worker has been heard of in the last 100 s".to_owned(),
+            [one] => format!("those heard of in the last 100 s compute version {one}"),
+            several => format!("those heard of in the last 100 s compute versions {}", several.join(", ")),
+        };
+        let reason = format!("queued points wait for a worker of physics version {physics_version}: {there}");
+        WaitingFor { physics_version, worker_physics_versions, reason }
+    }
 }
 
 /// What goes with a sweep that is deleted.

@@ -123,6 +123,10 @@ pub(crate) struct WorkerArguments {
     /// Simulated seconds per second at most: holds points back, to see what becomes of a running one that is stopped or lost.
     #[arg(long, env = "DRILLSWEEP_PACE", hide = true, value_parser = parse_pace)]
     pace: Option<f64>,
+    /// Claim points of another version of the physics, as a worker of another version does.
+    #[cfg(debug_assertions)]
+    #[arg(long, hide = true, default_value_t = drillsweep_sim::PHYSICS_VERSION)]
+    physics_version: u32,
     /// End when the process that started this one ends.
     #[arg(long, hide = true)]
     with_parent: bool,
@@ -174,6 +178,8 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         max_runtime: arguments.max_runtime,
         point_timeout: arguments.point_timeout,
         pace: arguments.pace,
+        #[cfg(debug_assertions)]
+        physics_version: arguments.physics_version,
         scratch: arguments.scratch.directory(&arguments.data)?,
         ..WorkerConfig::new(arguments.data.store(Role::Worker)?)
     };

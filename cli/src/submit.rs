@@ -20,7 +20,7 @@ use crate::print;
 use crate::scenario::{ScenarioArguments, parse_value};
 use crate::sweeps::{print_sweep, verification_line, warn_of_bias};
 use crate::text::{Alignment, columns, number};
-use crate::watch::{check, follow};
+use crate::watch::{check, follow, warn_of_waiting};
 
 #[derive(Args)]
 pub(crate) struct SubmitArguments {
@@ -188,6 +188,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     if !arguments.json {
         print(&sweep.id);
         hints(&client, &sweep)?;
+    }
+    if arguments.detach {
+        warn_of_waiting(&sweep);
     }
     let sweep = if arguments.detach { sweep } else { follow(&client, &sweep.id)? };
     if let Some(verification) = &sweep.verification {

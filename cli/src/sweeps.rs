@@ -358,7 +358,7 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A sweep in one line, and in a second what verifying some of its points has shown.
+/// A sweep in one line, and in further ones what verifying some of its points has shown, and what its queued points wait for.
 pub(crate) fn sweep_line(sweep: &Sweep) -> String {
     let counts = &sweep.counts;
     let mut line = format!("{} {}: {} points", sweep.id, sweep.state.as_str(), counts.total);
@@ -366,6 +366,9 @@ pub(crate) fn sweep_line(sweep: &Sweep) -> String {
     write_counts(&mut line, &unfinished(counts));
     if let Some(verification) = &sweep.verification {
         let _ = write!(line, "\n{}", verification_line(verification));
+    }
+    if let Some(waiting) = &sweep.waiting_for {
+        let _ = write!(line, "\n{}", waiting.reason);
     }
     line
 }
@@ -471,8 +474,8 @@ fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_api::SweepLinks;
     use drillsweep_api::view::verification::WorstBias;
+    use drillsweep_api::{SweepLinks, WaitingFor};
 
     use super::*;
 
@@ -488,6 +491,23 @@ mod tests {
     fn a_line_names_only_the_states_that_occur() {
         let counts = PointCounts { total: 3, running: 1, succeeded: 2, ..PointCounts::default() };
         assert_eq!(sweep_line(&sweep(counts)), "a running: 3 points, 2 succeeded, 1 running");
+    }
+
+    #[test]
+    fn a_further_line_says_that_no_worker_is_there() {
+        let counts = PointCounts { total: 2, queued: 2, ..PointCounts::default() };
+        let waiting = |workers: &[i64]| {
+            let waiting_for = Some(WaitingFor::new(11, workers.to_vec()));
+            sweep_line(&Sweep { waiting_for, ..sweep(counts) })
+        };
+        assert_eq!(
+            waiting(&[9, 10]),
+            "a running: 2 points, 2 queued\n\
+             queued points wait for a worker of physics version 11: those heard of in the last 100 s compute versions 9, 10"
+        );
+        assert!(
+            waiting(&[]).ends_with("of physics version 11: no worker has been heard of in the last 100 s")
+        );
     }
 
     #[test]

@@ -40,8 +40,13 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
     let bar = ProgressBar::new(1000);
     bar.set_style(ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed}, {eta} left, {msg}")?);
     let mut sweep: Sweep = client.get(&path)?;
+    let mut told = None;
     loop {
         let counts = &sweep.counts;
+        if sweep.waiting_for != told {
+            told.clone_from(&sweep.waiting_for);
+            bar.suspend(|| warn_of_waiting(&sweep));
+        }
         bar.set_position((sweep.progress * 1000.0) as u64);
         let verified = match &sweep.verification {
             Some(SweepVerification { counts, .. }) => {
@@ -58,6 +63,13 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
             return Ok(sweep);
         }
         sweep = client.get_with_retries(&format!("{path}?wait=30s"))?;
+    }
+}
+
+/// Warns where queued points wait for a worker that is not there.
+pub(crate) fn warn_of_waiting(sweep: &Sweep) {
+    if let Some(waiting) = &sweep.waiting_for {
+        tracing::warn!("{}", waiting.reason);
     }
 }
 

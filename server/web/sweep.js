@@ -121,7 +121,8 @@ export async function show(main, route, signal) {
   function update(changed) {
     const hasResults = changed.counts.succeeded !== sweep.counts.succeeded || changed.counts.failed !== sweep.counts.failed;
     const wasFinal = isFinal(sweep);
-    sweep = { ...sweep, ...changed };
+    // What is absent is not so any more.
+    sweep = { ...sweep, waiting_for: undefined, ...changed };
     context.sweep = sweep;
     pace.note(sweep.progress);
     drawHead();
@@ -191,6 +192,7 @@ function headPart(sweep, pace, act, change) {
     h("div", { "aria-live": "off" }, progressPart(sweep, pace)),
     worst && h("p", { class: "small" }, `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`, worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : "."),
     warnings.map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
+    sweep.waiting_for && h("p", { class: "wrong" }, `${sweep.waiting_for.reason}.`),
     h("div", { style: "height:.8rem" }),
   ];
 }

@@ -202,6 +202,7 @@ statements! {
         ONE = "one",
         OWN_RESULTS = "own_results",
         PAUSE = "pause",
+        PHYSICS_VERSIONS = "physics_versions",
         RECOUNT = "recount",
         RETRY_WORK = "retry_work",
         REVIVE = "revive",

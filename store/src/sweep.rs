@@ -1,5 +1,7 @@
 //! Sweeps: reading, changing, pausing, cancelling, retrying.
 
+use std::collections::HashMap;
+
 use crate::connection::Store;
 use crate::database::Transaction;
 use crate::error::Result;
@@ -93,6 +95,17 @@ impl Store {
             .bind(filter.id)
             .records(&self.database, SweepRecord::read)
             .await
+    }
+
+    /// Versions of the numbers of some sweeps, by sweep.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn physics_versions(&self, sweeps: &[&str]) -> Result<HashMap<String, i64>> {
+        let sweeps = serde_json::json!(sweeps).to_string();
+        let versions: Vec<(String, i64)> =
+            query(sql::sweep::PHYSICS_VERSIONS).bind(sweeps).rows(&self.database).await?;
+        Ok(versions.into_iter().collect())
     }
 
     /// A number that rises with every change of the sweep's points; none if there is no such sweep.

@@ -46,6 +46,8 @@ pub struct WorkerConfig {
     /// Simulated seconds per second at most: a point that is held back can be watched, stopped and taken over as it runs, however fast the
     /// machine is.
     pub pace: Option<f64>,
+    /// Version of the physics whose points it claims: that of this program but in tests of workers of several versions side by side.
+    pub physics_version: u32,
 }
 
 impl WorkerConfig {
@@ -61,6 +63,7 @@ impl WorkerConfig {
             max_runtime: None,
             point_timeout: None,
             pace: None,
+            physics_version: PHYSICS_VERSION,
         }
     }
 }
@@ -134,7 +137,7 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
         host: host_name(),
         process: i64::from(std::process::id()),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        physics_version: i64::from(PHYSICS_VERSION),
+        physics_version: i64::from(config.physics_version),
         started: 0,
         last_seen: 0,
     };
@@ -147,7 +150,7 @@ pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<()
     while !*stop.borrow() {
         let lease_ms = config.lease.as_millis() as i64;
         let asked = Instant::now();
-        match store.claim(&id, i64::from(PHYSICS_VERSION), lease_ms).await {
+        match store.claim(&id, record.physics_version, lease_ms).await {
             Ok(Some(claim)) => {
                 let key = hex(&claim.lease.key);
                 let span =

@@ -98,6 +98,19 @@ def test_progress_is_told_and_drawn(client: Client) -> None:
     assert re.search(r"\[#{30}\] 100% 1 of 1 points, 0 running, \d:\d\d\n$", stream.getvalue())
 
 
+def test_a_sweep_without_workers_says_what_it_waits_for(tmp_path: Path) -> None:
+    service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    with Client(service.server) as client:
+        run = client.run("paper-200m", set=SHORT)
+        assert "no worker has been heard of" in (run.waiting_for or "")
+        stream = io.StringIO()
+        ProgressBar(stream).show(run)
+        assert "0 running, waiting for a worker" in stream.getvalue()
+        with pytest.raises(TimeoutError, match="no worker has been heard of"):
+            run.wait(timeout=0.2, progress=False)
+    service.stop()
+
+
 def test_wait_gives_up_in_time_and_a_sweep_can_be_cancelled_and_retried(client: Client) -> None:
     long = client.run("paper-200m", set={"duration": 1800, "recording.spectrum_windows": []})
     with pytest.raises(TimeoutError, match=long.id):

@@ -92,6 +92,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         counts: counts(&record.counts),
         verification,
         progress,
+        waiting_for: None,
         priority: record.priority,
         created: timestamp(record.created)?,
         finished: record.finished.map(timestamp).transpose()?,

@@ -18,4 +18,5 @@ pub(crate) mod statistics;
 pub(crate) mod status;
 pub(crate) mod sweeps;
 pub(crate) mod verification;
+pub(crate) mod waiting;
 pub(crate) mod web;

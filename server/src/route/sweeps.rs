@@ -35,6 +35,7 @@ use crate::guard::auth::Caller;
 use crate::guard::quota;
 use crate::route::status::WORKER_SILENCE;
 use crate::route::verification::{Verified, memory_of_points};
+use crate::route::waiting::note_waiting;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
@@ -294,7 +295,8 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
     let next = records.last().filter(|_| !is_last).map(|record| record.id.clone());
-    let sweeps = records.iter().map(records::sweep).collect::<Result<_>>()?;
+    let mut sweeps: Vec<Sweep> = records.iter().map(records::sweep).collect::<Result<_>>()?;
+    note_waiting(&app, &mut sweeps).await?;
     Ok(Json(SweepList { sweeps, next }))
 }
 
@@ -319,7 +321,9 @@ pub(crate) async fn load_whole(app: &App, id: &str) -> Result<Sweep> {
 
 async fn load_with(app: &App, id: &str, appended: i64) -> Result<Sweep> {
     let Some(record) = app.store.sweep(id).await? else { return Err(records::no_such_sweep(id)) };
-    records::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)
+    let mut sweep = records::sweep_with_requests(&record, &app.store.appended_requests(id, appended).await?)?;
+    note_waiting(app, std::slice::from_mut(&mut sweep)).await?;
+    Ok(sweep)
 }
 
 async fn with_findings(app: &App, mut sweep: Sweep) -> Result<Sweep> {
@@ -350,7 +354,7 @@ pub(crate) struct ShowQuery {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Until {
-    /// Any change of state, counts or progress.
+    /// Any change of state, counts or progress, or of the worker that queued points wait for.
     #[default]
     Change,
     /// Every point is final, and every reference run that verifies one.
@@ -392,7 +396,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
     let mut changes = app.store.sweep_changes().await;
     let seen = |sweep: &Sweep| {
         let verification = sweep.verification.as_ref().map(|verification| verification.counts);
-        (sweep.state, sweep.counts, verification, sweep.progress.to_bits())
+        (sweep.state, sweep.counts, verification, sweep.progress.to_bits(), sweep.waiting_for.clone())
     };
     let (mut sweep, mut version, mut read) = (before.clone(), None, start);
     while sweep.finished.is_none() && (until == Until::Completed || seen(&sweep) == seen(&before)) {

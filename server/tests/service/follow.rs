@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use axum::body::Body;
 use axum::http::Request;
+use drillsweep_api::PHYSICS_VERSION;
+use drillsweep_store::WorkerRecord;
 use serde_json::{Value, json};
 use tokio::time::{Instant, timeout};
 
@@ -141,4 +143,65 @@ async fn sweeps_are_listed_newest_first_in_pages() {
     let of_ann = bench.get("/v1/sweeps?owner=ann").await.json();
     assert_eq!(of_ann["sweeps"].as_array().unwrap().len(), 1);
     assert_eq!(of_ann["sweeps"][0]["name"], "2");
+}
+
+#[tokio::test]
+async fn a_sweep_says_that_it_waits_for_a_worker_of_its_version_until_there_is_one() {
+    let bench = Bench::new().await;
+    let physics = i64::from(PHYSICS_VERSION);
+    let id =
+        bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}})).await;
+    let path = format!("/v1/sweeps/{id}");
+    let waiting = async || bench.get(&path).await.json()["waiting_for"].clone();
+    let nobody = waiting().await;
+    assert_eq!(
+        (&nobody["physics_version"], &nobody["worker_physics_versions"]),
+        (&json!(physics), &json!([]))
+    );
+    assert!(nobody["reason"].as_str().unwrap().contains("no worker has been heard of"), "{nobody}");
+
+    for version in [physics + 1, physics - 1] {
+        bench.store.register_worker(&worker(version)).await.unwrap();
+    }
+    // One of its own version, but long silent.
+    bench.later(Duration::from_secs(110)).await.register_worker(&worker(physics)).await.unwrap();
+    let others = waiting().await;
+    assert_eq!(others["worker_physics_versions"], json!([physics - 1, physics + 1]));
+    assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"][0]["waiting_for"], others);
+    let paused = bench.post(&format!("{path}/pause"), json!({})).await.json();
+    assert_eq!(paused["waiting_for"], Value::Null, "it would not begin anyway");
+    let resumed = bench.post(&format!("{path}/resume"), json!({})).await.json();
+    assert_eq!(resumed["waiting_for"], others);
+
+    // Who waits for a change hears of a worker that comes or goes, whichever comes first after the wait has begun.
+    let come_and_go = async {
+        loop {
+            bench.store.register_worker(&worker(physics)).await.unwrap();
+            tokio::time::sleep(Duration::from_secs(3)).await;
+            bench.store.remove_worker(&worker(physics).id).await.unwrap();
+            tokio::time::sleep(Duration::from_secs(3)).await;
+        }
+    };
+    let poll = format!("{path}?wait=60s");
+    let changed = async {
+        tokio::select! {
+            answer = bench.get(&poll) => answer.json(),
+            () = come_and_go => unreachable!("it goes on"),
+        }
+    };
+    assert_eq!(timeout(SOON, changed).await.unwrap()["counts"]["queued"], 2, "nothing else has changed");
+    bench.store.register_worker(&worker(physics)).await.unwrap();
+    assert_eq!(waiting().await, Value::Null);
+}
+
+fn worker(physics_version: i64) -> WorkerRecord {
+    WorkerRecord {
+        id: format!("worker of {physics_version}"),
+        host: "rig".to_owned(),
+        process: 42,
+        version: "0.1.0".to_owned(),
+        physics_version,
+        started: 0,
+        last_seen: 0,
+    }
 }

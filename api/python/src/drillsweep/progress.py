@@ -40,6 +40,8 @@ class ProgressBar:
             text += f", {counts.failed} failed"
         if sweep.verified:
             text += f", {sweep.verified.succeeded} of {sweep.verified.total} verified"
+        if sweep.waiting_for:
+            text += ", waiting for a worker"
         text += f", {_clock(elapsed)}"
         done = sweep.progress - self._first
         if done > 0.0 and sweep.progress < 1.0:

@@ -147,6 +147,12 @@ class Sweep:
         return float(self._data["progress"])
 
     @property
+    def waiting_for(self) -> str | None:
+        """Why its queued points do not begin, where no worker of their version of the physics is there; else None."""
+        waiting = self._data.get("waiting_for")
+        return None if waiting is None else str(waiting["reason"])
+
+    @property
     def created(self) -> datetime:
         """When it was submitted."""
         return _time(self._data["created"])
@@ -211,7 +217,8 @@ class Sweep:
             while not self.is_finished:
                 wait = _LONG_POLL if deadline is None else min(_LONG_POLL, deadline - time.monotonic())
                 if wait <= 0.0:
-                    raise TimeoutError(f"sweep {self.id} is not complete after {timeout:g} s")
+                    reason = f": {self.waiting_for}" if self.waiting_for else ""
+                    raise TimeoutError(f"sweep {self.id} is not complete after {timeout:g} s{reason}")
                 self._data = self._client.get_json(self.path, {"wait": f"{wait:.3f}s"}, read_timeout=wait + 30.0)
                 show(self)
         finally:

@@ -59,6 +59,11 @@ impl Logged {
 }
 
 impl Logged {
+    /// What it has logged so far.
+    pub(crate) fn log(&self) -> String {
+        self.log.lock().unwrap().clone()
+    }
+
     pub(crate) fn kill(&mut self) {
         self.process.signal(Signal::KILL);
         self.process.0.wait().unwrap();
@@ -136,12 +141,12 @@ fn known_worker(data: &Path, pace: &str) -> Logged {
 }
 
 /// The wall clock of processes, to be set while they run.
-struct Clock {
+pub(crate) struct Clock {
     directory: tempfile::TempDir,
 }
 
 impl Clock {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let clock = Clock { directory: tempfile::tempdir().unwrap() };
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/clock_shift.c");
         let mut compiler = Command::new("cc");
@@ -160,13 +165,13 @@ impl Clock {
     }
 
     /// Puts a process that is yet to be started under this clock.
-    fn rules(&self, mut command: Command) -> Command {
+    pub(crate) fn rules(&self, mut command: Command) -> Command {
         command.env("LD_PRELOAD", self.library()).env("CLOCK_SHIFT_FILE", self.file());
         command
     }
 
     /// So many seconds before or after the machine's clock.
-    fn set(&self, seconds: i64) {
+    pub(crate) fn set(&self, seconds: i64) {
         // In one step: nobody reads half a number.
         let written = self.directory.path().join("next");
         std::fs::write(&written, seconds.to_string()).unwrap();

@@ -68,6 +68,12 @@ impl Server {
         self.directory.path().join("data")
     }
 
+    /// Its address.
+    #[allow(dead_code, reason = "not all that use this module stand before it")]
+    pub(crate) fn address(&self) -> String {
+        format!("127.0.0.1:{}", self.port)
+    }
+
     /// The URL of its database.
     pub(crate) fn url(&self) -> String {
         format!("postgres://drillsweep@127.0.0.1:{}/postgres", self.port)

@@ -5,6 +5,7 @@ use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
+use std::time::Duration;
 
 /// What becomes of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,9 @@ pub(crate) enum Behaviour {
     Pass,
     /// It is answered with a status and its reason, and a body.
     Refuse(&'static str, &'static str),
+    /// It is passed on and so is its answer, each piece of up to 64 KiB so much later.
+    #[allow(dead_code, reason = "not all that use this module are in no hurry")]
+    Delay(Duration),
     /// Once so many bytes of requests were passed on, no more are.
     StallAfter(u64),
     /// The next request that has this text in its head is passed on, and the connection ends when its answer comes.
@@ -70,6 +74,12 @@ impl Proxy {
     pub(crate) fn wait_for(&self, bytes: u64) {
         let state = self.shared.state.lock().expect("no thread panics");
         drop(self.shared.changed.wait_while(state, |state| state.passed < bytes));
+    }
+
+    /// Bytes of requests that were passed on.
+    #[allow(dead_code, reason = "not all that use this module count them")]
+    pub(crate) fn passed(&self) -> u64 {
+        self.shared.state.lock().expect("no thread panics").passed
     }
 
     /// Waits until so many requests were disturbed.
@@ -134,6 +144,7 @@ fn ask(mut client: &TcpStream, mut server: &TcpStream, is_lost: &AtomicBool, sha
         state.passed += length as u64;
         shared.changed.notify_all();
         drop(state);
+        shared.delay();
         if server.write_all(bytes).is_err() {
             return;
         }
@@ -148,8 +159,19 @@ fn answer(mut server: &TcpStream, mut client: &TcpStream, is_lost: &AtomicBool, 
             shared.changed.notify_all();
             return;
         }
+        shared.delay();
         if client.write_all(&buffer[..length]).is_err() {
             return;
+        }
+    }
+}
+
+impl Shared {
+    /// Waits for as long as a piece takes now.
+    fn delay(&self) {
+        let behaviour = self.state.lock().expect("no thread panics").behaviour;
+        if let Behaviour::Delay(time) = behaviour {
+            thread::sleep(time);
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Faults that a service meets in years of work, made to happen: kills, sleep, full disks, points that kill whoever
 //! simulates them, starved processors, clocks that are set.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -11,6 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 use serde_json::{Value, json};
 
+use crate::servers::small_disk::SmallDisk;
 use crate::{BINARY, PATIENCE, Process, completed, get, post, wait, worker};
 
 const WORKER_KILLS: usize = 20;
@@ -500,66 +500,18 @@ fn heartbeat_comes_within_five_seconds_while_all_cores_are_busy() {
     }
 }
 
-/// A small disk of its own for server and workers, in a mount namespace that ends with them.
-struct SmallDisk {
-    up: Logged,
-    /// The directory within the namespace.
-    mount_point: PathBuf,
-    /// The directory as seen from outside.
-    data: PathBuf,
-}
-
-impl SmallDisk {
-    /// `up` with one worker on a disk of so many MiB.
-    fn up(megabytes: u32, mount_point: &Path) -> Self {
-        let script = format!(r#"mount -t tmpfs -o size={megabytes}m tmpfs "$0" && exec "$@" --data "$0""#);
-        let mut command = Command::new("unshare");
-        command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).arg(mount_point).args([
-            BINARY,
-            "up",
-            "--workers",
-            "1",
-            "--lease-seconds",
-            "2",
-            "--listen",
-            "127.0.0.1:0",
-        ]);
-        let up = Logged::start(&mut command);
-        up.address();
-        let pid = up.process.0.id();
-        let inside = mount_point.strip_prefix("/").unwrap();
-        let data = Path::new("/proc").join(pid.to_string()).join("root").join(inside);
-        SmallDisk { up, mount_point: mount_point.to_owned(), data }
-    }
-
-    /// Fills the disk but for so many bytes; the file holds the room until it is removed.
-    fn fill_but(&self, room: usize) {
-        let block = vec![0; 64 << 10];
-        let mut filler = File::create(self.data.join("filler")).unwrap();
-        while filler.write_all(&block).is_ok() {}
-        // The last block did not fit as a whole: one byte at a time does until nothing fits.
-        while filler.write_all(&block[..1]).is_ok() {}
-        let full = filler.metadata().unwrap().len();
-        filler.set_len(full.saturating_sub(room as u64)).unwrap();
-    }
-
-    fn check(&self) -> (u64, Vec<Value>) {
-        let mut command = Command::new("nsenter");
-        command.args(["--user", "--mount", "--preserve-credentials", "--target"]);
-        command.arg(self.up.process.0.id().to_string()).args([BINARY, "check", "--json", "--data"]);
-        checked(command.arg(&self.mount_point))
-    }
-
-    fn make_room(&self) {
-        std::fs::remove_file(self.data.join("filler")).unwrap();
-    }
-}
-
 #[test]
 fn full_disk_is_told_and_nothing_is_lost_by_it() {
-    let mount_point = tempfile::tempdir().unwrap();
-    let disk = SmallDisk::up(48, mount_point.path());
-    let address = disk.up.address();
+    let disk = SmallDisk::new(48);
+    // SQLite wants to see it under its own name.
+    let inside = |arguments: &[&str]| {
+        let mut command = disk.command_inside(BINARY);
+        command.args(arguments).arg("--data").arg(disk.mount_point());
+        command
+    };
+    let up = ["up", "--workers", "1", "--lease-seconds", "2", "--listen", "127.0.0.1:0"];
+    let up = Logged::start(&mut inside(&up));
+    let address = up.address();
     let first = submit(&address, &request(0.5, 2, 1));
     wait(&address, &first, completed);
     let before = bytes(&format!("{address}/v1/sweeps/{first}/table"));
@@ -598,8 +550,8 @@ fn full_disk_is_told_and_nothing_is_lost_by_it() {
     disk.make_room();
     assert_eq!(wait(&address, &sweep, completed)["counts"]["succeeded"], 1);
     assert_eq!(bytes(&format!("{address}/v1/sweeps/{first}/table")), before);
-    assert_eq!(disk.check(), (3, vec![]));
-    assert_eq!(half_written(&disk.data.join("blobs")), Vec::<PathBuf>::new());
+    assert_eq!(checked(&mut inside(&["check", "--json"])), (3, vec![]));
+    assert_eq!(half_written(&disk.path().join("blobs")), Vec::<PathBuf>::new());
 }
 
 #[test]

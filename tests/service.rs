@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 mod commands;
+mod disk;
 mod faults;
 mod hostile;
 mod migrate;

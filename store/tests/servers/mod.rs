@@ -8,6 +8,8 @@ pub(crate) mod postgres;
 mod process;
 pub(crate) mod proxy;
 pub(crate) mod seaweed;
+#[allow(dead_code, reason = "not all that use this module fill disks")]
+pub(crate) mod small_disk;
 
 use std::fs::File;
 use std::net::TcpListener;

@@ -1,5 +1,6 @@
 //! A PostgreSQL server of a test's own.
 
+use std::ffi::OsStr;
 use std::io::Write as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -7,6 +8,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+
+use super::small_disk::SmallDisk;
 
 /// Names the directory of PostgreSQL's programs where they are in none of the usual places.
 const PROGRAMS: &str = "DRILLSWEEP_POSTGRES_BIN";
@@ -29,6 +32,7 @@ const SETTINGS: &[&str] = &[
 /// A running server with an empty database; it ends with the value, and with the test's process.
 pub(crate) struct Server {
     directory: TempDir,
+    data: PathBuf,
     process: Option<Child>,
     port: u16,
     /// Beside those of all servers.
@@ -43,10 +47,44 @@ impl Server {
 
     /// The same with other settings, which have precedence.
     pub(crate) fn start_with(settings: &'static [&'static str]) -> Self {
+        let mut server = Self::make(settings);
+        server.resume();
+        server
+    }
+
+    /// A disk for a server.
+    #[allow(dead_code, reason = "not all that use this module fill disks")]
+    pub(crate) fn disk(megabytes: u32) -> SmallDisk {
+        SmallDisk::of(&as_server(Path::new("env")), megabytes)
+    }
+
+    /// Makes a server with its tables on a disk and its write-ahead log on another one, and starts it.
+    #[allow(dead_code, reason = "not all that use this module fill disks")]
+    pub(crate) fn start_on(tables: &SmallDisk, log: &SmallDisk) -> Self {
         let directory = TempDir::new().expect("a temporary directory");
+        let settings = &["max_wal_size=8MB", "min_wal_size=2MB"];
+        let mut server =
+            Self::make_in(directory, tables.path().join("data"), Some(&log.path().join("log")), settings);
+        server.resume();
+        server
+    }
+
+    fn make(settings: &'static [&'static str]) -> Self {
+        let directory = TempDir::new().expect("a temporary directory");
+        let data = directory.path().join("data");
+        Self::make_in(directory, data, None, settings)
+    }
+
+    /// Makes a server whose files are in a directory, but for its log where another one is given for that.
+    fn make_in(
+        directory: TempDir,
+        data: PathBuf,
+        log: Option<&Path>,
+        settings: &'static [&'static str],
+    ) -> Self {
         // The server's user is not the one that the directory belongs to.
         super::run(Command::new("chmod").arg("0777").arg(directory.path()));
-        let mut server = Self { directory, process: None, port: super::free_ports::<1>()[0], settings };
+        let server = Self { directory, data, process: None, port: super::free_ports::<1>()[0], settings };
         super::run(
             program("initdb")
                 .args([
@@ -56,16 +94,22 @@ impl Server {
                     "--no-locale",
                     "--no-sync",
                 ])
+                .args(log.into_iter().flat_map(|log| [OsStr::new("--waldir"), log.as_os_str()]))
                 .args(["--wal-segsize=1", "--pgdata"])
                 .arg(server.data()),
         );
-        server.resume();
         server
     }
 
     /// The directory of its files.
     pub(crate) fn data(&self) -> PathBuf {
-        self.directory.path().join("data")
+        self.data.clone()
+    }
+
+    /// What it has written into its own log.
+    #[allow(dead_code, reason = "not all that use this module read it")]
+    pub(crate) fn log(&self) -> String {
+        std::fs::read_to_string(self.directory.path().join("log")).unwrap_or_default()
     }
 
     /// Its address.
@@ -111,11 +155,17 @@ impl Server {
     /// What a statement gives, as `psql` prints it without its frame.
     #[allow(dead_code, reason = "not all that use this module ask it something")]
     pub(crate) fn query(&self, statement: &str) -> String {
+        self.try_query(statement).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// The same of a statement that may fail; then what `psql` says of it.
+    #[allow(dead_code, reason = "not all that use this module ask it something")]
+    pub(crate) fn try_query(&self, statement: &str) -> Result<String, String> {
         let mut client = program("psql");
         client.args(["--no-align", "--tuples-only", "--no-psqlrc", "--dbname"]).arg(self.url());
         let output = client.args(["--command", statement]).output().expect("psql");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+        let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
+        if output.status.success() { Ok(said(&output.stdout)) } else { Err(said(&output.stderr)) }
     }
 
     /// Runs a script of `psql` with variables.
@@ -136,8 +186,7 @@ impl Server {
     pub(crate) fn resume(&mut self) {
         let deadline = Instant::now() + PATIENCE;
         while !self.is_ready() {
-            let log = std::fs::read_to_string(self.directory.path().join("log")).unwrap_or_default();
-            assert!(Instant::now() < deadline, "PostgreSQL did not start:\n{log}");
+            assert!(Instant::now() < deadline, "PostgreSQL did not start:\n{}", self.log());
             std::thread::sleep(Duration::from_millis(20));
         }
     }
@@ -191,16 +240,22 @@ impl Drop for Server {
     }
 }
 
-/// One of PostgreSQL's programs. They refuse to run as root: then they run as the user of the package. What they start ends with the
-/// test's thread, however that ends.
+/// One of PostgreSQL's programs.
 fn program(name: &str) -> Command {
+    as_server(&programs().join(name))
+}
+
+/// A program as the server's user. PostgreSQL's refuse to run as root: then they run as the user of the package. What they start ends with
+/// the test's thread, however that ends.
+fn as_server(program: &Path) -> Command {
     let mut command = Command::new("setpriv");
     command.args(["--pdeathsig", "QUIT"]);
     // Safe to ask in a test: whose process this is does not change.
     if std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0) {
         command.args(["--reuid=postgres", "--regid=postgres", "--clear-groups"]);
     }
-    command.arg(programs().join(name)).current_dir("/");
+    // In the home of another user are certificates that it must not read.
+    command.arg(program).current_dir("/").env("HOME", "/");
     command
 }
 

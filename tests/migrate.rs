@@ -258,7 +258,7 @@ fn run_recipe(recipe: &str, directory: &Path, environment: &Command) {
 
 #[test]
 fn the_backups_of_the_documents_bring_a_whole_store_back() {
-    let [local_backup, local_restore, remote_backup, remote_restore] =
+    let [local_backup, local_restore, remote_backup, objects_backup, remote_restore] =
         recipes().try_into().expect("a backup and a restore of either engine");
     let (laptop, site, work) = (Laptop::new(), Site::new(), tempfile::tempdir().unwrap());
     report(&mut to_site(&site, laptop.path(), &site.postgres.url(), None));
@@ -279,14 +279,28 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     let (mut server, address) = site.serve();
     assert!(told(&address, &laptop.finished) == before);
     run_recipe(&remote_backup, work.path(), &site.command(&[]));
+    // Another place of the same service.
+    let elsewhere = |command: &mut Command, variable: &str| {
+        let objects = site.objects.location("", "elsewhere").to_string();
+        command.env(variable, objects);
+    };
+    let mut environment = site.command(&[]);
+    elsewhere(&mut environment, "BACKUP_OBJECTS");
+    // The second time nothing is copied but the rows.
+    for _ in 0..2 {
+        run_recipe(&objects_backup, work.path(), &environment);
+    }
     server.kill();
+    site.objects.files("team").iter().for_each(|file| site.objects.delete(&file.name));
     site.postgres.query("CREATE DATABASE restored");
     let url = site.postgres.url();
     let restored = url.strip_suffix("postgres").unwrap().to_owned() + "restored";
     let mut environment = site.command(&[]);
     environment.env("DRILLSWEEP_DATABASE", &restored);
+    elsewhere(&mut environment, "DRILLSWEEP_OBJECTS");
     run_recipe(&remote_restore, work.path(), &environment);
     let mut server = site.command(&["serve", "--listen", "127.0.0.1:0"]);
+    elsewhere(&mut server, "DRILLSWEEP_OBJECTS");
     let server = Logged::start(server.env("DRILLSWEEP_DATABASE", &restored));
     assert!(told(&server.address(), &laptop.finished) == before, "of the server");
 }

@@ -11,6 +11,7 @@ mod remote;
 #[path = "../store/tests/servers/mod.rs"]
 #[allow(dead_code, reason = "of the store's tests")]
 mod servers;
+mod tls;
 mod upgrade;
 
 use std::io::{BufRead, BufReader};

@@ -18,6 +18,12 @@ pub enum StoreError {
     /// The database failed or is busy beyond its patience.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    /// The database's server has a certificate of an authority that is not trusted, of another name, or out of date.
+    #[error(
+        "the certificate of the database's server is not accepted: {0}; its URL names a private authority by sslrootcert=FILE, or the environment \
+         by SSL_CERT_FILE"
+    )]
+    Untrusted(rustls::Error),
     /// The schema could not be brought up to date.
     #[error("database schema: {0}")]
     Migration(#[from] MigrateError),
@@ -168,10 +174,26 @@ fn is_passing(error: &sqlx::Error) -> bool {
             }
             EngineCode::None => false,
         },
-        // A connection that could not be made, or broke off.
-        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
+        // A connection that could not be made, or broke off, and not one that was refused.
+        sqlx::Error::Io(error) => refused_certificate(error).is_none(),
+        sqlx::Error::PoolTimedOut => true,
         _ => false,
     }
+}
+
+/// Why a server's certificate was not accepted, where that is what an error says.
+fn refused_certificate(error: &io::Error) -> Option<&rustls::Error> {
+    error.get_ref()?.downcast_ref()
+}
+
+/// What became of an attempt to connect.
+pub(crate) fn not_connected(error: sqlx::Error) -> StoreError {
+    if let sqlx::Error::Io(cause) = &error
+        && let Some(reason) = refused_certificate(cause)
+    {
+        return StoreError::Untrusted(reason.clone());
+    }
+    error.into()
 }
 
 /// An engine's own word for what went wrong.

@@ -14,7 +14,7 @@ use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Postgres};
 
 use crate::connection::Role;
 use crate::database::Database;
-use crate::error::Result;
+use crate::error::{Result, not_connected};
 use crate::migration;
 
 /// How long a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
@@ -88,7 +88,8 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
             })
         })
         .connect_with(options)
-        .await?;
+        .await
+        .map_err(not_connected)?;
     if !migration::is_current(&pool).await? {
         migration::postgres().run(&pool).await?;
     }
@@ -106,7 +107,8 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Databas
         .max_connections(1)
         .acquire_timeout(CONNECT_TIMEOUT)
         .connect_with(options)
-        .await?;
+        .await
+        .map_err(not_connected)?;
     Ok(Database::Postgres(pool))
 }
 

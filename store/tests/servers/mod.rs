@@ -4,6 +4,8 @@
 //! directory. `DRILLSWEEP_TEST_SERVERS` may name a directory that has the programs instead. A test that needs a server fails where
 //! there is none.
 
+#[allow(dead_code, reason = "not all that use this module have certificates")]
+pub(crate) mod certificate;
 pub(crate) mod postgres;
 mod process;
 pub(crate) mod proxy;

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use super::certificate::Certified;
 use super::small_disk::SmallDisk;
 
 /// Names the directory of PostgreSQL's programs where they are in none of the usual places.
@@ -48,6 +49,17 @@ impl Server {
     /// The same with other settings, which have precedence.
     pub(crate) fn start_with(settings: &'static [&'static str]) -> Self {
         let mut server = Self::make(settings);
+        server.resume();
+        server
+    }
+
+    /// Makes a server to which nobody connects but by TLS, and starts it.
+    #[allow(dead_code, reason = "not all that use this module have certificates")]
+    pub(crate) fn start_with_tls(certified: &Certified) -> Self {
+        let mut server = Self::make(&["ssl=on"]);
+        server.write("server.crt", &certified.certificate);
+        server.write("server.key", &certified.key);
+        server.write("pg_hba.conf", "hostssl all all 127.0.0.1/32 trust\n");
         server.resume();
         server
     }
@@ -99,6 +111,14 @@ impl Server {
                 .arg(server.data()),
         );
         server
+    }
+
+    /// Writes a file of its own that nobody else can read, as it wants its keys.
+    fn write(&self, name: &str, content: &str) {
+        let draft = self.directory.path().join("draft");
+        std::fs::write(&draft, content).expect("a file");
+        super::run(as_server(Path::new("install")).arg("--mode=600").arg(&draft).arg(self.data().join(name)));
+        std::fs::remove_file(draft).expect("the file");
     }
 
     /// The directory of its files.

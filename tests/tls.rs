@@ -1,0 +1,84 @@
+//! TLS between machines: servers and workers that reach database and object store by it alone, under a private authority.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use drillsweep_store::ObjectsLocation;
+
+use crate::faults::{Logged, checked, request, submit};
+use crate::servers::certificate::Authority;
+use crate::servers::postgres::Server as Postgres;
+use crate::servers::seaweed::Seaweed;
+use crate::{BINARY, completed, wait};
+
+/// A database and an object store, and the file of the authority that has certified both.
+struct Site {
+    postgres: Postgres,
+    objects: Seaweed,
+    directory: tempfile::TempDir,
+}
+
+impl Site {
+    fn new() -> Self {
+        let authority = Authority::new();
+        let certified = authority.certify(&["127.0.0.1"]);
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("authority.pem"), authority.certificate()).unwrap();
+        std::fs::write(directory.path().join("another.pem"), Authority::new().certificate()).unwrap();
+        Site {
+            postgres: Postgres::start_with_tls(&certified),
+            objects: Seaweed::start_with_tls(&certified),
+            directory,
+        }
+    }
+
+    fn authority(&self) -> PathBuf {
+        self.directory.path().join("authority.pem")
+    }
+
+    /// A command that reaches both by TLS, and trusts the authorities of a file.
+    fn command(&self, arguments: &[&str], trusted: &Path) -> Command {
+        let location = self.objects.location(&self.objects.address(), "team");
+        let ObjectsLocation::S3 { settings, .. } = &location else { panic!("a bucket") };
+        let mut command = Command::new(BINARY);
+        command.args(arguments).arg("--data").arg(self.directory.path().join("data"));
+        command
+            .env("DRILLSWEEP_DATABASE", format!("{}?sslmode=verify-full", self.postgres.url()))
+            .env("DRILLSWEEP_OBJECTS", location.to_string())
+            .env("AWS_ENDPOINT_URL", self.objects.https())
+            .env("AWS_REGION", &settings["region"])
+            .env("AWS_ACCESS_KEY_ID", &settings["access_key_id"])
+            .env("AWS_SECRET_ACCESS_KEY", &settings["secret_access_key"])
+            .env("SSL_CERT_FILE", trusted);
+        command
+    }
+}
+
+#[test]
+fn servers_and_workers_reach_database_and_bucket_under_a_private_authority() {
+    let site = Site::new();
+    let server = Logged::start(&mut site.command(&["serve", "--listen", "127.0.0.1:0"], &site.authority()));
+    let address = server.address();
+    let _worker = Logged::start(&mut site.command(&["worker", "--lease-seconds", "2"], &site.authority()));
+    let sweep = submit(&address, &request(0.5, 2, 1));
+    assert_eq!(wait(&address, &sweep, completed)["counts"]["succeeded"], 2);
+    assert_eq!(ureq::get(format!("{address}/readyz")).call().unwrap().status(), 200);
+    let plain = site.postgres.query(
+        "SELECT count(*) FROM pg_stat_ssl JOIN pg_stat_activity USING (pid) WHERE application_name = 'drillsweep' AND NOT ssl",
+    );
+    assert_eq!(plain, "0");
+    assert_eq!(checked(&mut site.command(&["check", "--json"], &site.authority())), (2, vec![]));
+
+    // An authority that neither has a certificate of: the database is refused at once, the object store where it is asked.
+    let another = site.directory.path().join("another.pem");
+    let output = site.command(&["check"], &another).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success(), "{said}");
+    assert!(said.contains("the certificate of the database's server is not accepted"), "{said}");
+    let mut only_objects = site.command(&["check"], &another);
+    let database =
+        format!("{}?sslmode=verify-full&sslrootcert={}", site.postgres.url(), site.authority().display());
+    let output = only_objects.env("DRILLSWEEP_DATABASE", database).output().unwrap();
+    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    assert!(!output.status.success() && said.contains("invalid peer certificate"), "{said}");
+}

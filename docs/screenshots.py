@@ -1,7 +1,7 @@
 """Pictures of every view of the web page in both themes, for the book: `python docs/screenshots.py SERVER SWEEP OTHER`.
 
-Both sweeps are complete, of the same parameters, with points that have histories and snapshots; the first one verifies some.
-Pictures go to `docs/page/`, or to the folder that is given, as WebP.
+Both sweeps are complete, of the same parameters, with points that have histories and snapshots; the first one verifies
+some. Pictures go to `docs/page/`, or to the folder that is given, as WebP.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ def test_progress_is_told_and_drawn(client: Client) -> None:
         bar.show(sweep)
 
     # Another density than that of the other tests, so that there is something to compute.
-    run = client.run("paper-200m", set={**SHORT, "mud.density": 1300}).wait(timeout=120.0, progress=show)
+    run = client.run("paper-200m", set={**SHORT, "mud.density": 1313}).wait(timeout=120.0, progress=show)
     bar.close()
     assert seen == sorted(seen)
     assert seen[-1] == 1.0

@@ -169,12 +169,12 @@ pub(crate) mod value {
         }
     }
 
-    /// A whole number of 1 or more.
+    /// A whole number of 1 or more, which the document's format `int32` has.
     pub(crate) fn count<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
         let text = String::deserialize(deserializer)?;
         match text.parse() {
-            Ok(number) if number > 0 => Ok(Some(number)),
-            _ => Err(D::Error::custom("must be a whole number of 1 or more")),
+            Ok(number) if (1..=i32::MAX as u32).contains(&number) => Ok(Some(number)),
+            _ => Err(D::Error::custom("must be a whole number of 1 or more, 2147483647 at most")),
         }
     }
 

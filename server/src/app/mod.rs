@@ -60,7 +60,7 @@ impl Default for Config {
             retention: Retaining::default(),
             connections: ConnectionLimits::default(),
             large_answers: std::thread::available_parallelism().map_or(2, std::num::NonZero::get),
-            large_answer_bytes: 64 << 20,
+            large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
         }
     }

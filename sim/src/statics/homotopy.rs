@@ -1,8 +1,8 @@
 //! Homotopy: the path from a string that a spring holds in the middle of a smooth wall to the scene.
 //!
 //! Loads, friction and the momentum of the flows grow by a share s, while the spring fades and the wall becomes sharp. At s = 0 there is one
-//! equilibrium, the centre line. Before the end everything is smooth, so that the path of equilibria that begins there neither ends nor
-//! branches (but by coincidence: Chow, Mallet-Paret and Yorke 1978): it comes back, goes to infinity, or leads to an equilibrium of
+//! equilibrium, the centre line. Before the end everything is smooth but the drag, which has kinks at the centre line and at the wall. Where all is
+//! smooth, the path of equilibria that begins there neither ends nor branches (but by coincidence: Chow, Mallet-Paret and Yorke 1978): it comes back, goes to infinity, or leads to an equilibrium of
 //! the scene. A wall stiff enough to hold the string shuts out the first two. The drag of the mud is that of where the string lies all along.
 
 use super::contact_at;

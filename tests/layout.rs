@@ -87,7 +87,7 @@ fn simulation_knows_no_clock_files_threads_network_or_async() {
     let sim = metadata.packages.iter().find(|package| package.name.as_str() == "drillsweep-sim").unwrap();
     for dependency in dependencies(sim) {
         assert!(
-            !["tokio", "rayon", "tracing", "ureq", "rustix"].contains(&dependency),
+            !["tokio", "rayon", "tracing", "reqwest", "ureq", "rustix"].contains(&dependency),
             "sim uses {dependency}"
         );
     }

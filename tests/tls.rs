@@ -1,15 +1,21 @@
 //! TLS between machines: servers and workers that reach database and object store by it alone, under a private authority.
 
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 
 use drillsweep_store::ObjectsLocation;
 
 use crate::faults::{Logged, checked, request, submit};
-use crate::servers::certificate::Authority;
+use crate::servers::certificate::{Authority, Certified};
 use crate::servers::postgres::Server as Postgres;
 use crate::servers::seaweed::Seaweed;
 use crate::{BINARY, completed, wait};
+use rustls::pki_types::pem::PemObject as _;
+use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use rustls::{ServerConfig, ServerConnection, StreamOwned};
 
 /// A database and an object store, and the file of the authority that has certified both.
 struct Site {
@@ -81,4 +87,61 @@ fn servers_and_workers_reach_database_and_bucket_under_a_private_authority() {
     let output = only_objects.env("DRILLSWEEP_DATABASE", database).output().unwrap();
     let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
     assert!(!output.status.success() && said.contains("invalid peer certificate"), "{said}");
+}
+
+#[test]
+fn commands_reach_a_server_behind_tls_under_a_private_authority() {
+    let authority = Authority::new();
+    let address = ready_behind_tls(&authority.certify(&["127.0.0.1"]));
+    let directory = tempfile::tempdir().unwrap();
+    let health = |trusted: &Authority| {
+        let file = directory.path().join("trusted.pem");
+        std::fs::write(&file, trusted.certificate()).unwrap();
+        let mut command = Command::new(BINARY);
+        let output =
+            command.args(["health", "--server", &format!("https://{address}")]).env("SSL_CERT_FILE", file);
+        let output = output.output().unwrap();
+        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(health(&authority), (true, String::new()));
+    let (is_trusted, said) = health(&Authority::new());
+    assert!(!is_trusted && said.contains("invalid peer certificate"), "{said}");
+}
+
+/// The address of what a reverse proxy is to a command: it answers all requests over TLS as a server that is ready.
+fn ready_behind_tls(certified: &Certified) -> SocketAddr {
+    const BODY: &str = r#"{"status":"ok"}"#;
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let certificate = CertificateDer::from_pem_slice(certified.certificate.as_bytes()).unwrap();
+    let key = PrivateKeyDer::from_pem_slice(certified.key.as_bytes()).unwrap();
+    let config = ServerConfig::builder().with_no_client_auth().with_single_cert(vec![certificate], key);
+    let config = Arc::new(config.unwrap());
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    std::thread::spawn(move || {
+        for stream in listener.incoming() {
+            let mut stream =
+                StreamOwned::new(ServerConnection::new(config.clone()).unwrap(), stream.unwrap());
+            // What a client without trust sends is no request.
+            let Ok(true) = read_head(&mut stream) else { continue };
+            let head = format!(
+                "HTTP/1.1 200 OK\r\ncontent-type: application/json\r\ncontent-length: {}\r\n",
+                BODY.len()
+            );
+            write!(stream, "{head}connection: close\r\n\r\n{BODY}").unwrap();
+            stream.conn.send_close_notify();
+            stream.flush().unwrap();
+        }
+    });
+    address
+}
+
+/// Reads a request's head; false where the connection ends before.
+fn read_head(stream: &mut impl std::io::Read) -> std::io::Result<bool> {
+    for line in BufReader::new(stream).lines() {
+        if line?.is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }

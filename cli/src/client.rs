@@ -6,10 +6,11 @@ use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails, Sweep, SweepList};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use reqwest::header::{AUTHORIZATION, CONTENT_TYPE, HeaderMap, RETRY_AFTER};
+use reqwest::{Method, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use ureq::http::{HeaderMap, Response};
-use ureq::{Body, RequestBuilder};
+use tokio::runtime::Runtime;
 
 /// The environment variable with the token; an argument would show in the list of processes.
 const TOKEN: &str = "DRILLSWEEP_TOKEN";
@@ -34,18 +35,32 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// How long it waits between two tries.
 const RETRY_PAUSE: Duration = Duration::from_secs(1);
 
-/// A client of one server.
+/// A client of one server. Its calls block.
 pub(crate) struct Client {
-    agent: ureq::Agent,
+    http: reqwest::Client,
+    runtime: Runtime,
     server: String,
     token: Option<String>,
 }
 
+/// What a server answered.
+struct Answer {
+    status: StatusCode,
+    headers: HeaderMap,
+    body: Vec<u8>,
+}
+
 impl Client {
-    pub(crate) fn new(arguments: &ServerArguments) -> Self {
-        let config = ureq::Agent::config_builder().http_status_as_error(false).build();
+    pub(crate) fn new(arguments: &ServerArguments) -> anyhow::Result<Self> {
+        // An error says that there is one already, which will do.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         let token = std::env::var(TOKEN).ok().filter(|token| !token.is_empty());
-        Self { agent: config.into(), server: address(&arguments.server), token }
+        Ok(Self {
+            http: reqwest::Client::builder().build()?,
+            runtime: tokio::runtime::Builder::new_current_thread().enable_all().build()?,
+            server: address(&arguments.server),
+            token,
+        })
     }
 
     /// The server's address as a URL, without a slash at its end.
@@ -65,30 +80,22 @@ impl Client {
         body: &impl Serialize,
         headers: &[(&str, &str)],
     ) -> anyhow::Result<T> {
-        let url = format!("{}{path}", self.server);
-        let mut request = self.authorized(self.agent.post(&url));
-        for (name, value) in headers {
-            request = request.header(*name, *value);
-        }
-        let response = request.send_json(body).with_context(|| no_answer(&url))?;
-        json(response)
+        self.send(Method::POST, path, Some(serde_json::to_vec(body)?), headers)?.json()
     }
 
     /// Changes what JSON names, and reads JSON.
     pub(crate) fn patch<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> anyhow::Result<T> {
-        let url = format!("{}{path}", self.server);
-        json(self.authorized(self.agent.patch(&url)).send_json(body).with_context(|| no_answer(&url))?)
+        self.send(Method::PATCH, path, Some(serde_json::to_vec(body)?), &[])?.json()
     }
 
     /// Deletes, and reads JSON.
     pub(crate) fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
-        let url = format!("{}{path}", self.server);
-        json(self.authorized(self.agent.delete(&url)).call().with_context(|| no_answer(&url))?)
+        self.send(Method::DELETE, path, None, &[])?.json()
     }
 
     /// Reads JSON.
     pub(crate) fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
-        json(self.request(path)?)
+        self.request(path)?.json()
     }
 
     /// Reads JSON, and tries again for a while where the server does not answer or is not available.
@@ -97,15 +104,14 @@ impl Client {
         loop {
             let answer = self.request(path);
             let is_worth_another_try = match &answer {
-                Ok(response) => matches!(response.status().as_u16(), 429 | 502..=504),
+                Ok(answer) => matches!(answer.status.as_u16(), 429 | 502..=504),
                 Err(_) => true,
             };
             if !is_worth_another_try || Instant::now() >= deadline {
-                return json(answer?);
+                return answer?.json();
             }
-            std::thread::sleep(
-                answer.as_ref().ok().and_then(|r| retry_after(r.headers())).unwrap_or(RETRY_PAUSE),
-            );
+            let asked = answer.as_ref().ok().and_then(|answer| retry_after(&answer.headers));
+            std::thread::sleep(asked.unwrap_or(RETRY_PAUSE));
         }
     }
 
@@ -171,25 +177,61 @@ impl Client {
     /// Reads a file, or the problem that the server answers with in its place. What keeps all files back is an error: no server, or
     /// no right to read.
     pub(crate) fn file(&self, path: &str) -> anyhow::Result<Result<Vec<u8>, String>> {
-        let mut response = self.request(path)?;
-        if matches!(response.status().as_u16(), 401 | 403 | 429) {
-            bail!("{path}: {}", problem(&mut response));
+        let answer = self.request(path)?;
+        if matches!(answer.status.as_u16(), 401 | 403 | 429) {
+            bail!("{path}: {}", answer.problem());
         }
-        if !response.status().is_success() {
-            return Ok(Err(problem(&mut response)));
+        if !answer.status.is_success() {
+            return Ok(Err(answer.problem()));
         }
-        Ok(Ok(response.body_mut().with_config().limit(u64::MAX).read_to_vec()?))
+        Ok(Ok(answer.body))
     }
 
-    fn request(&self, path: &str) -> anyhow::Result<Response<Body>> {
+    fn request(&self, path: &str) -> anyhow::Result<Answer> {
+        self.send(Method::GET, path, None, &[])
+    }
+
+    fn send(
+        &self,
+        method: Method,
+        path: &str,
+        json: Option<Vec<u8>>,
+        headers: &[(&str, &str)],
+    ) -> anyhow::Result<Answer> {
         let url = format!("{}{path}", self.server);
-        self.authorized(self.agent.get(&url)).call().with_context(|| no_answer(&url))
+        let mut request = self.http.request(method, &url);
+        if let Some(token) = &self.token {
+            request = request.header(AUTHORIZATION, format!("Bearer {token}"));
+        }
+        if let Some(json) = json {
+            request = request.header(CONTENT_TYPE, "application/json").body(json);
+        }
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let answer = self.runtime.block_on(async {
+            let response = request.send().await?;
+            let (status, headers) = (response.status(), response.headers().clone());
+            Ok::<_, reqwest::Error>(Answer { status, headers, body: response.bytes().await?.into() })
+        });
+        // The error names the address too.
+        answer.map_err(reqwest::Error::without_url).with_context(|| no_answer(&url))
+    }
+}
+
+impl Answer {
+    fn json<T: DeserializeOwned>(&self) -> anyhow::Result<T> {
+        if !self.status.is_success() {
+            bail!("{}", self.problem());
+        }
+        Ok(serde_json::from_slice(&self.body)?)
     }
 
-    fn authorized<B>(&self, request: RequestBuilder<B>) -> RequestBuilder<B> {
-        match &self.token {
-            Some(token) => request.header("authorization", format!("Bearer {token}")),
-            None => request,
+    /// A problem document in lines for people.
+    fn problem(&self) -> String {
+        match serde_json::from_slice::<ProblemDetails>(&self.body) {
+            Ok(problem) => format!("{}: {problem}", self.status),
+            Err(_) => format!("the server answered {}", self.status),
         }
     }
 }
@@ -204,26 +246,10 @@ fn no_answer(url: &str) -> String {
     format!("no answer from {url}; is the server up?")
 }
 
-fn json<T: DeserializeOwned>(mut response: Response<Body>) -> anyhow::Result<T> {
-    if !response.status().is_success() {
-        bail!("{}", problem(&mut response));
-    }
-    Ok(response.body_mut().with_config().limit(u64::MAX).read_json()?)
-}
-
 /// Seconds that the server asks to wait for, at most a minute.
 fn retry_after(headers: &HeaderMap) -> Option<Duration> {
-    let seconds: u64 = headers.get("retry-after")?.to_str().ok()?.parse().ok()?;
+    let seconds: u64 = headers.get(RETRY_AFTER)?.to_str().ok()?.parse().ok()?;
     Some(Duration::from_secs(seconds.min(60)))
-}
-
-/// A problem document in lines for people.
-fn problem(response: &mut Response<Body>) -> String {
-    let status = response.status();
-    match response.body_mut().read_json::<ProblemDetails>() {
-        Ok(problem) => format!("{status}: {problem}"),
-        Err(_) => format!("the server answered {status}"),
-    }
 }
 
 /// What does not stand for itself in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.

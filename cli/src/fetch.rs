@@ -69,7 +69,7 @@ impl Format {
 /// does not keep the others back: `missing.json` tells what is not there and why, and the command fails. Files of points that have
 /// not changed since they were fetched are left as they are, so that a fetch that was interrupted goes on.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = &path_segment(&client.sweep_id(&arguments.sweep)?);
     let sweep: Sweep = client.get(&format!("/v1/sweeps/{id}"))?;
     let format = arguments.format.name();

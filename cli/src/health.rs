@@ -28,7 +28,7 @@ pub(crate) struct HealthArguments {
 /// Fails unless the server is ready, or a worker of this machine has sent a heartbeat.
 pub(crate) fn health(arguments: &HealthArguments) -> anyhow::Result<()> {
     if !arguments.worker {
-        let _: Health = Client::new(&arguments.server).get("/readyz")?;
+        let _: Health = Client::new(&arguments.server)?.get("/readyz")?;
         print("the server is ready");
         return Ok(());
     }

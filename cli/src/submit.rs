@@ -134,7 +134,7 @@ impl DesignArguments {
 
 /// Adds points to a sweep; prints how it stands then.
 pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
     let path = format!("/v1/sweeps/{}/points", path_segment(&id));
     let sweep = client.post(&path, &arguments.design.request())?;
@@ -169,7 +169,7 @@ impl SubmitArguments {
 
 /// Submits a sweep; watches it unless detached; prints its identifier.
 pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let request = arguments.request()?;
     if arguments.dry_run {
         let dry_run = format!("/v1/sweeps?dry_run=true&cache={}", arguments.cache);

@@ -102,7 +102,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
         ("tag", &arguments.tag),
     ];
     let path = with_filters(format!("/v1/sweeps?limit={}", arguments.limit), &filters);
-    let page: SweepList = Client::new(&arguments.server).get(&path)?;
+    let page: SweepList = Client::new(&arguments.server)?.get(&path)?;
     if arguments.json {
         return print_json(&page);
     }
@@ -132,7 +132,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
 pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
     let filters = [("owner", &arguments.owner), ("class", &arguments.class)];
     let path = with_filters(format!("/v1/failures?limit={}", arguments.limit), &filters);
-    let page: FailureList = Client::new(&arguments.server).get(&path)?;
+    let page: FailureList = Client::new(&arguments.server)?.get(&path)?;
     if arguments.json {
         return print_json(&page);
     }
@@ -161,7 +161,7 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
 
 /// Prints a sweep with a line a point, or one point with its results.
 pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
     let path = format!("/v1/sweeps/{}", path_segment(&id));
     if let Some(number) = arguments.point {
@@ -225,7 +225,7 @@ pub(crate) fn resume(arguments: &SweepArguments) -> anyhow::Result<()> {
 }
 
 fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
     let sweep: Sweep = client.post(&format!("/v1/sweeps/{}/{verb}", path_segment(&id)), &json!({}))?;
     print_sweep(&sweep, arguments.json)
@@ -247,7 +247,7 @@ pub(crate) struct DeleteArguments {
 
 /// Deletes a sweep whose points are final, unless it is pinned.
 pub(crate) fn delete(arguments: &DeleteArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
     let path = format!("/v1/sweeps/{}?dry_run={}", path_segment(&id), arguments.dry_run);
     let deletion: SweepDeletion = client.delete(&path)?;
@@ -319,7 +319,7 @@ pub(crate) fn change(arguments: &ChangeArguments) -> anyhow::Result<()> {
         pinned: (*pin || *unpin).then_some(*pin),
         expires,
     };
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
     let sweep: Sweep = client.patch(&format!("/v1/sweeps/{}", path_segment(&id)), &patch)?;
     print_sweep(&sweep, arguments.json)
@@ -336,7 +336,7 @@ pub(crate) fn print_sweep(sweep: &Sweep, as_json: bool) -> anyhow::Result<()> {
 
 /// Prints the workers and the depth of the queue.
 pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let queue: Queue = client.get("/v1/queue")?;
     let WorkerList { workers } = client.get("/v1/workers")?;
     if arguments.json {

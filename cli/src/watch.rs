@@ -22,7 +22,7 @@ pub(crate) struct WatchArguments {
 
 /// Watches a sweep until every point is final, and the reference runs that verify some; fails if points have no result.
 pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
-    let client = Client::new(&arguments.server);
+    let client = Client::new(&arguments.server)?;
     let sweep = follow(&client, &client.sweep_id(&arguments.sweep)?)?;
     warn_of_bias(&sweep);
     if arguments.json {

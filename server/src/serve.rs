@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_store::{Store, StoreError, TokensPresent};
+use futures::future::BoxFuture;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
@@ -53,11 +54,21 @@ pub enum ServeError {
 /// # Errors
 /// When a listener fails, when others could reach the service though no valid token exists, or when requests do not
 /// end within [`Config::drain_timeout`].
-pub async fn serve(
+pub fn serve(
     listeners: Listeners,
     store: Store,
     config: Config,
     shutdown: impl Future<Output = ()> + Send + 'static,
+) -> BoxFuture<'static, Result<(), ServeError>> {
+    // Boxed, as its argument is, so that what it calls is compiled with this crate, and not again in each that calls it.
+    Box::pin(serve_until_drained(listeners, store, config, Box::pin(shutdown)))
+}
+
+async fn serve_until_drained(
+    listeners: Listeners,
+    store: Store,
+    config: Config,
+    shutdown: BoxFuture<'static, ()>,
 ) -> Result<(), ServeError> {
     let address = listeners.api.local_addr().map_err(ServeError::Listener)?;
     if !address.ip().is_loopback() && store.tokens_present().await? != TokensPresent::Valid {

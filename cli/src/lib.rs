@@ -1,0 +1,223 @@
+//! The drillsweep command: server, worker and client in one binary.
+//!
+//! A library, so that cargo compiles it while it still generates the code of the crates below; the binary only links.
+
+mod check;
+mod client;
+mod cost;
+mod data;
+mod fetch;
+mod gc;
+mod health;
+mod migrate;
+mod modes;
+mod plan;
+#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+mod processor;
+mod scenario;
+mod service;
+mod simulate;
+mod soak;
+mod submit;
+mod sweeps;
+#[cfg(feature = "opentelemetry")]
+mod telemetry;
+mod text;
+mod token;
+mod watch;
+
+use std::io::{IsTerminal as _, Write as _};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+use text::visible;
+use tracing_subscriber::Layer as _;
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+
+/// Parametric sweeps of nonlinear drillstring dynamics.
+#[derive(Parser)]
+#[command(name = "drillsweep", version, about, propagate_version = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Start the server and its workers on one machine: an embedded database and a local directory.
+    Up(service::UpArguments),
+    /// Start the server alone.
+    Serve(service::ServeArguments),
+    /// Start a worker that claims points and simulates them.
+    Worker(service::WorkerArguments),
+    /// Submit a sweep to a server.
+    Submit(Box<submit::SubmitArguments>),
+    /// Watch a sweep until it is complete.
+    Watch(watch::WatchArguments),
+    /// List the newest sweeps.
+    List(sweeps::ListArguments),
+    /// Show a sweep with its points, or one point with its results.
+    Show(sweeps::ShowArguments),
+    /// Cancel a sweep: queued points at once, running ones within a heartbeat.
+    Cancel(sweeps::SweepArguments),
+    /// Queue a sweep's failed and cancelled points again.
+    Retry(sweeps::SweepArguments),
+    /// Pause a sweep: its queued points are not started; running ones continue.
+    Pause(sweeps::SweepArguments),
+    /// Resume a paused sweep: its queued points may be started again.
+    Resume(sweeps::SweepArguments),
+    /// Change name, tags, priority, pin or expiry of a sweep.
+    Change(sweeps::ChangeArguments),
+    /// Delete a sweep whose points are final, and the results that no other sweep has.
+    Delete(sweeps::DeleteArguments),
+    /// Add points to a sweep, over its own parameters; those that it has are skipped.
+    Append(submit::AppendArguments),
+    /// List the failed points of all sweeps, the latest first.
+    Failures(sweeps::FailuresArguments),
+    /// Show the queue and the workers.
+    Status(sweeps::StatusArguments),
+    /// Download a sweep's table and files.
+    Fetch(fetch::FetchArguments),
+    /// Simulate one point here, without a server, and print a summary.
+    Simulate(simulate::SimulateArguments),
+    /// Print what a scenario will take, without running it: effects and why, steps and time at each accuracy.
+    Plan(plan::PlanArguments),
+    /// Measure what accuracy costs: methods, steps and meshes against a converged run.
+    Cost(cost::CostArguments),
+    /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
+    Modes(modes::ModesArguments),
+    /// Run scenes drawn at random over wide ranges and report how each ends.
+    Soak(soak::SoakArguments),
+    /// List the scenarios that ship with the program, or print one.
+    Scenario {
+        /// The scenario to print, as TOML.
+        name: Option<String>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Delete expired data, and blobs that nothing refers to.
+    Gc(gc::GcArguments),
+    /// Make, list and revoke tokens.
+    #[command(subcommand)]
+    Token(token::TokenCommand),
+    /// Verify a data directory in full and report what is wrong with it, if anything.
+    Check(check::CheckArguments),
+    /// Carry a store over to another database and object store: from one machine to PostgreSQL and S3, or back.
+    Migrate(migrate::MigrateArguments),
+    /// Report by the exit status whether the server, or a worker on this machine, is ready; for supervisors.
+    Health(health::HealthArguments),
+    /// Print the OpenAPI document of the service.
+    Openapi,
+    /// Print the completion script of a shell, for its start-up file.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+}
+
+#[cfg(feature = "opentelemetry")]
+impl Command {
+    /// Under which name its traces appear; none of commands that only run for a moment.
+    fn service(&self) -> Option<&'static str> {
+        match self {
+            Command::Up(_) | Command::Serve(_) => Some("drillsweep-server"),
+            Command::Worker(_) => Some("drillsweep-worker"),
+            _ => None,
+        }
+    }
+}
+
+/// Does what the command line asks for, and reports errors to standard error.
+pub fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Without the backtrace that anyhow's own way of printing adds where RUST_BACKTRACE is set: what ends here is a
+            // message to the user; panics have theirs.
+            let _ = writeln!(std::io::stderr().lock(), "Error: {}", visible(&format!("{error:#}")));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What `DRILLSWEEP_LOG` lets through: levels, of all targets or by target (`warn,drillsweep_server=debug`); `info` where it says
+/// nothing that can be read.
+fn log_filter() -> Targets {
+    let text = std::env::var("DRILLSWEEP_LOG").unwrap_or_default();
+    let directives: Vec<&str> = text.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
+    let parsed = if directives.is_empty() { None } else { directives.join(",").parse().ok() };
+    parsed.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
+}
+
+fn run() -> anyhow::Result<()> {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+    processor::check().map_err(anyhow::Error::msg)?;
+    let arguments = Arguments::parse();
+    let has_colours =
+        std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let log = tracing_subscriber::fmt::layer()
+        .with_writer(std::io::stderr)
+        .with_ansi(has_colours)
+        .with_filter(log_filter());
+    let registry = tracing_subscriber::registry().with(log);
+    #[cfg(feature = "opentelemetry")]
+    let telemetry = telemetry::Telemetry::new(arguments.command.service())?;
+    #[cfg(feature = "opentelemetry")]
+    let registry = registry.with(telemetry.layer());
+    registry.init();
+    match arguments.command {
+        Command::Up(arguments) => service::up(&arguments),
+        Command::Serve(arguments) => service::serve(&arguments),
+        Command::Worker(arguments) => service::worker(&arguments),
+        Command::Submit(arguments) => submit::submit(&arguments),
+        Command::Watch(arguments) => watch::watch(&arguments),
+        Command::List(arguments) => sweeps::list(&arguments),
+        Command::Show(arguments) => sweeps::show(&arguments),
+        Command::Cancel(arguments) => sweeps::cancel(&arguments),
+        Command::Retry(arguments) => sweeps::retry(&arguments),
+        Command::Pause(arguments) => sweeps::pause(&arguments),
+        Command::Resume(arguments) => sweeps::resume(&arguments),
+        Command::Change(arguments) => sweeps::change(&arguments),
+        Command::Delete(arguments) => sweeps::delete(&arguments),
+        Command::Append(arguments) => submit::append(&arguments),
+        Command::Failures(arguments) => sweeps::failures(&arguments),
+        Command::Status(arguments) => sweeps::status(&arguments),
+        Command::Fetch(arguments) => fetch::fetch(&arguments),
+        Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Plan(arguments) => plan::plan(&arguments),
+        Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Modes(arguments) => modes::show(&arguments),
+        Command::Soak(arguments) => soak::soak(&arguments),
+        Command::Gc(arguments) => gc::gc(&arguments),
+        Command::Token(command) => token::token(&command),
+        Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Migrate(arguments) => migrate::migrate(&arguments),
+        Command::Health(arguments) => health::health(&arguments),
+        Command::Openapi => {
+            print(drillsweep_server::openapi_json());
+            Ok(())
+        }
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Arguments::command(), "drillsweep", &mut std::io::stdout());
+            Ok(())
+        }
+    }
+}
+
+/// The command's own output; everything else goes to standard error.
+fn print(text: &str) {
+    match writeln!(std::io::stdout().lock(), "{}", visible(text)) {
+        Ok(()) => {}
+        // The reader has what it wanted, as `head` has.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) => {
+            tracing::error!(%error, "the output cannot be written");
+            std::process::exit(1);
+        }
+    }
+}

@@ -33,9 +33,21 @@ pub struct Place {
     pub low_side: Option<f64>,
 }
 
-/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, the
-/// rotation speed and the torque of the lowest node stand below. The legend says of each line where its node lies and which way the motion goes, for
-/// nodes that are among the `places`.
+/// The lowest node of a string, and what snapshots tell of its rotation.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bit {
+    /// Number of the node.
+    pub node: u32,
+    /// Measured depth \[m\].
+    pub measured_depth: f64,
+    /// `time`, `rotation_speed` and `torque` of this node alone, out of the snapshots; none where there are no snapshots of torsion.
+    pub snapshots: Option<Table>,
+}
+
+/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, rotation
+/// speed and torque at the `bit` stand below: of its history, or else of the snapshots. Where neither has the bit, or none is given, they are
+/// those of the lowest node that has them; in place of the bit, the picture says so. The legend says of each line where its node lies
+/// and which way the motion goes, for nodes that are among the `places`.
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them.
@@ -43,28 +55,33 @@ pub fn history(
     table: &Table,
     fields: Option<&[String]>,
     places: &[Place],
+    bit: Option<&Bit>,
     title: &str,
 ) -> Result<Drawing, Box<ProblemDetails>> {
     let names = lines_of_history(table, fields);
     let shown = Shown::of(table, &names)?;
     let y_label = shown.label();
-    let mut drawing = over_time(table, shown, &y_label, places, [title, &node_of(table)])?;
-    if fields.is_some() {
-        return Ok(drawing);
-    }
-    for quantity in ROTATION {
-        let Some(name) = lowest(table, quantity).filter(|name| varies(table, name)) else { continue };
+    let rotation = match fields {
+        Some(_) => Rotation::default(),
+        None => Rotation::of(table, places, bit),
+    };
+    let own = node_of(table);
+    let subtitle = if rotation.panels.is_empty() && own.is_empty() { &rotation.remark } else { &own };
+    let line_name = |name: &str| at_place(name, places);
+    let mut drawing = over_time(table, shown, &y_label, &line_name, [title, subtitle])?;
+    for (number, Panel { quantity, table, column, line }) in rotation.panels.iter().enumerate() {
         // Drillers read rotation speeds in rpm.
         let unit = match quantity.units {
             Some(units) if *units == units::ANGULAR_SPEED => Some(units.field),
-            _ => shown_in(name),
+            _ => shown_in(column),
         };
-        let shown = Shown::within(table, &[name], unit)?;
+        let shown = Shown::within(table, &[column], unit)?;
         let y_label = match unit {
             Some(unit) => format!("{} [{}]", quantity.label, unit.symbol),
             None => quantity.label.to_owned(),
         };
-        drawing = drawing.above(over_time(table, shown, &y_label, places, ["", ""])?);
+        let remark = if number == 0 { &rotation.remark } else { "" };
+        drawing = drawing.above(over_time(table, shown, &y_label, &|_| line.clone(), ["", remark])?);
     }
     Ok(drawing)
 }
@@ -72,16 +89,72 @@ pub fn history(
 /// What stands below the lateral motion of a string that twists.
 const ROTATION: [&Quantity; 2] = [&ROTATION_SPEED, &TORQUE];
 
+/// Rotation speed and torque of one node, as far as they vary.
+#[derive(Default)]
+struct Rotation<'t> {
+    panels: Vec<Panel<'t>>,
+    /// Where this is not what one would take it for.
+    remark: String,
+}
+
+/// One of them over time.
+struct Panel<'t> {
+    quantity: &'static Quantity,
+    table: &'t Table,
+    column: &'t str,
+    /// What the line is.
+    line: String,
+}
+
+impl<'t> Rotation<'t> {
+    /// That at the bit, or else that of the lowest node of the history.
+    fn of(history: &'t Table, places: &[Place], bit: Option<&'t Bit>) -> Self {
+        let lowest = ROTATION.map(|quantity| lowest(history, quantity));
+        let node = lowest.into_iter().flatten().find_map(|name| Name::parse(name)?.node);
+        let at_node = |_: &Quantity, name: &str| at_place(name, places);
+        let Some(bit) = bit else { return Self::from_columns(history, lowest, at_node) };
+        let depth = grouped(bit.measured_depth);
+        let at_bit = |quantity: &Quantity, _: &str| format!("{} at the bit, {depth} m MD", quantity.label);
+        match (&bit.snapshots, node) {
+            (_, Some(node)) if node == bit.node as usize => Self::from_columns(history, lowest, at_bit),
+            (Some(snapshots), _) => {
+                Self::from_columns(snapshots, ROTATION.map(|quantity| Some(quantity.name)), at_bit)
+            }
+            (None, Some(_)) => {
+                let remark =
+                    format!("Rotation at the bit, at {depth} m MD, was not recorded (recording.snapshots).");
+                Rotation { remark, ..Self::from_columns(history, lowest, at_node) }
+            }
+            (None, None) => Rotation::default(),
+        }
+    }
+
+    fn from_columns(
+        table: &'t Table,
+        columns: [Option<&'t str>; 2],
+        line: impl Fn(&Quantity, &str) -> String,
+    ) -> Self {
+        let panel = |(quantity, column): (&'static Quantity, Option<&'t str>)| {
+            let column = column.filter(|name| varies(table, name))?;
+            Some(Panel { quantity, table, column, line: line(quantity, column) })
+        };
+        Rotation {
+            panels: ROTATION.into_iter().zip(columns).filter_map(panel).collect(),
+            remark: String::new(),
+        }
+    }
+}
+
 fn over_time(
     table: &Table,
     shown: Shown,
     y_label: &str,
-    places: &[Place],
+    line_name: &dyn Fn(&str) -> String,
     [title, subtitle]: [&str; 2],
 ) -> Result<Drawing, Box<ProblemDetails>> {
     let time = numbers(table, TIME.name)?;
     let line = |(name, values): (&str, Vec<f64>)| Line {
-        name: at_place(name, places),
+        name: line_name(name),
         points: time.iter().zip(values).map(|(time, value)| [*time, value]).collect(),
         is_marked: false,
     };
@@ -198,37 +271,74 @@ mod tests {
         assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
     }
 
+    /// A history of node 10, which turns as the drive does, and of node 49.
+    fn twisting(speed: f64, torque: f64) -> Table {
+        Table::default()
+            .with("time", column(&[0.0, 1.0]))
+            .with("u_10", column(&[0.0, 1e-3]))
+            .with("rotation_speed_10", column(&[12.0, 12.0]))
+            .with("torque_10", column(&[5.0, 6.0]))
+            .with("rotation_speed_49", column(&[0.0, speed]))
+            .with("torque_49", column(&[-1e3, torque]))
+    }
+
+    /// Once around a second is 60 rpm.
+    const ONCE_A_SECOND: f64 = std::f64::consts::TAU;
+
     #[test]
     fn a_history_of_a_string_that_twists_shows_rotation_speed_and_torque_of_its_lowest_node() {
-        let table = |speed: f64, torque: f64| {
-            Table::default()
-                .with("time", column(&[0.0, 1.0]))
-                .with("u_10", column(&[0.0, 1e-3]))
-                .with("rotation_speed_10", column(&[12.0, 12.0]))
-                .with("torque_10", column(&[5.0, 6.0]))
-                .with("rotation_speed_49", column(&[0.0, speed]))
-                .with("torque_49", column(&[-1e3, torque]))
-        };
         let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
-        let picture = |table: &Table| history(table, None, &places, "").unwrap();
-        let still = picture(&table(0.0, -1e3));
-        let torque_alone = picture(&table(0.0, -4e3));
-        let twisting = picture(&table(60.0 * std::f64::consts::TAU / 60.0, -4e3));
+        let picture = |table: &Table| history(table, None, &places, None, "").unwrap();
+        let still = picture(&twisting(0.0, -1e3));
+        let torque_alone = picture(&twisting(0.0, -4e3));
+        let twisted = picture(&twisting(ONCE_A_SECOND, -4e3));
         assert!(!still.svg().contains("torque") && !still.svg().contains("speed"));
         assert!(torque_alone.svg().contains(">torque [kN m]<") && !torque_alone.svg().contains("speed"));
-        assert!(torque_alone.height() > 1.8 * still.height() && twisting.height() > 2.7 * still.height());
-        let svg = twisting.svg();
+        assert!(torque_alone.height() > 1.8 * still.height() && twisted.height() > 2.7 * still.height());
+        let svg = twisted.svg();
         assert!(
             svg.contains("rotation speed at 200.0 m MD") && svg.contains(">rotation speed [rpm]<"),
             "{svg}"
         );
-        // Once around a second is 60 rpm.
-        assert!(svg.contains(">60<") && svg.contains(">−4<") && twisting.png(400).is_ok(), "{svg}");
-        let layout = table(1.0, 1.0);
+        assert!(svg.contains(">60<") && svg.contains(">−4<") && twisted.png(400).is_ok(), "{svg}");
+        let layout = twisting(1.0, 1.0);
         let shown = shown_of_history(&layout, None).unwrap();
         let names: Vec<_> = shown.columns.keys().map(String::as_str).collect();
         assert_eq!(names, ["u_10", "rotation_speed_49", "torque_49", "time"]);
-        let chosen = history(&layout, Some(&["u_10".to_owned()]), &places, "").unwrap();
+        let chosen = history(&layout, Some(&["u_10".to_owned()]), &places, None, "").unwrap();
         assert!(!chosen.svg().contains("torque"));
+    }
+
+    #[test]
+    fn rotation_is_shown_at_the_bit_or_it_is_told_that_it_is_not() {
+        let picture = |node, snapshots, table: &Table| {
+            let bit = Bit { node, measured_depth: 201.5, snapshots };
+            history(table, None, &[], Some(&bit), "").unwrap()
+        };
+        let table = twisting(ONCE_A_SECOND, -4e3);
+        // Twice around a second, under other torques.
+        let snapshots = Table::default()
+            .with("time", column(&[0.0, 0.5, 1.0]))
+            .with("rotation_speed", column(&[0.0, 2.0 * ONCE_A_SECOND, 0.0]))
+            .with("torque", column(&[-7e3, -9e3, -7e3]));
+        let (of_history, of_snapshots) = ([">60<", ">−4<"], [">100<", ">−9.0<"]);
+        let at_bit = "rotation speed at the bit, 201.5 m MD";
+        let untold = "Rotation at the bit, at 201.5 m MD, was not recorded";
+        for (drawing, shown, others, says, says_not) in [
+            (picture(49, None, &table), of_history, of_snapshots, at_bit, untold),
+            (picture(49, Some(snapshots.clone()), &table), of_history, of_snapshots, at_bit, untold),
+            (picture(297, Some(snapshots.clone()), &table), of_snapshots, of_history, at_bit, untold),
+            (picture(297, None, &table), of_history, of_snapshots, untold, at_bit),
+        ] {
+            let svg = drawing.svg();
+            assert!(shown.iter().all(|tick| svg.contains(tick)), "{shown:?} in {svg}");
+            assert!(!others.iter().all(|tick| svg.contains(tick)), "{others:?} in {svg}");
+            assert!(svg.contains(says) && !svg.contains(says_not), "{svg}");
+        }
+        // A node that is held tells nothing of the bit, and a string that does not twist has nothing to tell.
+        let held = picture(297, None, &twisting(0.0, -1e3)).svg();
+        assert!(held.contains(untold) && !held.contains("rpm"), "{held}");
+        let lateral = Table::default().with("time", column(&[0.0, 1.0])).with("u_10", column(&[0.0, 1e-3]));
+        assert!(!picture(297, None, &lateral).svg().contains("bit"));
     }
 }

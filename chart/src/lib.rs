@@ -14,7 +14,7 @@ mod spectrum;
 mod sweep;
 
 pub use cost::work_precision;
-pub use history::{Place, history, shown_of_history};
+pub use history::{Bit, Place, history, shown_of_history};
 pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};
 pub use profile::profile;

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars
 import pytest
+from matplotlib.axes import Axes
 
-from drillsweep import Client, InvalidRequest, Sweep, plot
+from drillsweep import Client, InvalidRequest, Point, Sweep, plot
 from service import SHORT
 
 
@@ -153,6 +156,55 @@ def test_orbit_is_drawn_low_side_down_in_the_holes_circle(sweep: Sweep) -> None:
     assert y.mean() < 0.0
     assert abs(x.mean()) < abs(y.mean())
     np.testing.assert_allclose(np.hypot(x, y), 1e3 * point.orbit(node=49)["radius"])
+
+
+def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sweep) -> None:
+    changes = SHORT | {"recording.nodes": [{"node": 296}, {"node": 297}]}
+    recorded = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]})
+    changes = SHORT | {"recording.snapshots": {"rate_hz": 50}}
+    snapped = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]})
+    point = recorded.wait(timeout=120.0).point(1)
+    lateral, speed, torque = plot.history(point)
+    assert len(lateral.lines) == 4
+    table = point.history()
+    # 120 rpm are imposed at the top.
+    rpm = 120.0 + np.asarray(table["theta_z_rate_297"]) * 30.0 / np.pi
+    assert np.ptp(rpm) > 1.0
+    np.testing.assert_allclose(drawn(speed), rpm, atol=1e-4)
+    assert (speed.get_title(), speed.get_ylabel()) == ("Rotation at the bit", "rotation speed [rpm]")
+    # From that of the equilibrium on by the twist between the ends of the lowest element, of 0.5 m, on G I_p.
+    shear_modulus, polar = 2.03e11 / 2.6, np.pi / 32 * (0.159**4 - 0.071**4)
+    twist = np.asarray(table["theta_z_297"]) - np.asarray(table["theta_z_296"])
+    expected = 1e-3 * (point.profile()["torque"][-1] + shear_modulus * polar * (twist - twist[0]) / 0.5)
+    assert np.ptp(expected) > 0.05
+    assert torque.get_ylabel() == "torque [kN m]"
+    np.testing.assert_allclose(drawn(torque), expected, atol=0.01)
+
+    point = snapped.wait(timeout=120.0).point(1)
+    _, speed_of_snapshots, torque_of_snapshots = plot.history(point)
+    assert speed_of_snapshots.get_title() == "Rotation at the bit"
+    np.testing.assert_allclose(drawn(speed_of_snapshots), drawn(speed)[::20], rtol=1e-9)
+    np.testing.assert_allclose(drawn(torque_of_snapshots), drawn(torque)[::20], rtol=1e-9)
+
+    point = sweep.point(1)
+    _, speed, _ = plot.history(point)
+    assert speed.get_title() == "Rotation of node 282: at the bit, at 200.0 m, it was not recorded"
+    assert plot.history(point, node=49)[1].get_title() == "Rotation of node 49"
+    assert "Rotation at the bit, at 200.0 m MD, was not recorded" in svg(point)
+    assert "rotation speed at the bit, 200.0 m MD" in svg(snapped.point(1))
+    assert "rotation speed at the bit, 200.0 m MD" in svg(recorded.point(1))
+
+
+def drawn(axes: Axes) -> np.ndarray[Any, Any]:
+    """The values of the only line."""
+    (line,) = axes.lines
+    return np.asarray(line.get_ydata())
+
+
+def svg(point: Point) -> str:
+    """The picture of its history by the service."""
+    with tempfile.TemporaryDirectory() as directory:
+        return point.save("history", Path(directory) / "history.svg").read_text()
 
 
 def test_frequencies_that_the_step_does_not_resolve_are_marked(sweep: Sweep) -> None:

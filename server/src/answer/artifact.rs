@@ -29,6 +29,13 @@ async fn stored_of(store: &Store, key: &WorkKey, name: &str) -> Result<Stored> {
     Stored::new(store, key, find(store, key, name).await?)
 }
 
+/// One table of a point's result where there is such a table.
+pub(crate) async fn stored_if_any(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Option<Stored>> {
+    let key = result_key(store, sweep, n).await?;
+    let artifact = store.artifacts(&key).await?.into_iter().find(|artifact| artifact.name == name);
+    artifact.map(|artifact| Stored::new(store, &key, artifact)).transpose()
+}
+
 /// Where a table of a result is, or was until it expired.
 pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Artifact> {
     let mut artifacts = store.artifacts(key).await?;
@@ -285,6 +292,18 @@ impl Recording {
     /// The recorded nodes, by the columns of the history.
     pub(crate) fn nodes(&self, layout: &Table) -> Result<Vec<Recorded>> {
         nodes_among(&self.statics, node::recorded(layout.columns.keys().map(String::as_str)))
+    }
+
+    /// Number and measured depth \[m\] of the lowest node of the string; none of a string without nodes.
+    pub(crate) fn lowest_node(&self) -> Result<Option<(u32, f64)>> {
+        let statics = self.statics.read(Some(&[NODE.name, MEASURED_DEPTH.name]))?;
+        let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
+            (statics.columns.get(NODE.name), statics.columns.get(MEASURED_DEPTH.name))
+        else {
+            return Err(Error::internal("a table of statics without nodes and their depths"));
+        };
+        let node = nodes.last().copied().flatten().and_then(|node| u32::try_from(node).ok());
+        Ok(node.zip(depths.last().copied()))
     }
 
     /// Where the recorded nodes lie.

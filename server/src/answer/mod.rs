@@ -8,6 +8,7 @@ pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod records;
+pub(crate) mod snapshots;
 pub(crate) mod stored;
 pub(crate) mod tag;
 pub(crate) mod vocabulary;

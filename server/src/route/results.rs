@@ -8,6 +8,7 @@ use drillsweep_api::view::{node, orbit, spectrum};
 use drillsweep_chart as chart;
 use drillsweep_store::Store;
 use drillsweep_table::parquet::Cut;
+use drillsweep_table::quantity::columns::{ROTATION_SPEED, TORQUE};
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
@@ -20,6 +21,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
 use crate::answer::records;
+use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
 
@@ -253,8 +255,9 @@ impl HistoryQuery {
 /// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...; where torsion is solved for
 /// also `rotation_speed_N`, the rotation imposed at the top and the rate of twist together \[rad/s\], and `torque_N`, the torque in the
 /// element above the node, at the first node below it \[N m\], negative where it opposes clockwise rotation. A picture shows u and v,
-/// where the string twists also rotation speed \[rpm\] and torque of the lowest node, or the `fields`; the legend says at which depth
-/// and to which side. It shows 2,000,000 values at most.
+/// and where the string twists rotation speed \[rpm\] and torque at the bit, of the history or else of the snapshots; where neither has the
+/// bit, it says so and shows those of the lowest recorded node. Of a chosen node it shows what belongs to that node, and of `fields` these
+/// alone. The legend says at which depth and to which side. It shows 2,000,000 values at most.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/history",
@@ -281,12 +284,26 @@ pub(crate) async fn history(
         return whole_file(&app, recording.history, &file_name).await;
     }
     let title = caption(&app.store, &id, n, "History").await?;
+    let shows_bit = format.is_picture() && choice.is_none() && query.fields.is_none();
+    let snapshots = match shows_bit {
+        true => artifact::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
+        false => None,
+    };
+    let snapshots = snapshots.map(|stored| Snapshots::new(stored, &recording.statics)).transpose()?;
+    let reading_snapshots = match &snapshots {
+        Some(snapshots) => {
+            let shown = snapshots.count().min(MOST_SNAPSHOTS_SHOWN) * COLUMNS_OF_BIT;
+            snapshots.stored().memory().await? + shown as u64 * MEMORY_OF_SHOWN
+        }
+        None => 0,
+    };
     let drawing = if format.is_picture() { MOST_SHOWN as u64 * MEMORY_OF_SHOWN } else { 0 };
     let kept = match query.decimation {
         Decimation::Stride => 0,
         Decimation::Minmax => memory_of_rows(&recording.history, query.max_points),
     };
-    let place = app.view(format.memory(recording.history.memory().await? + drawing + kept)).await?;
+    let reading = recording.history.memory().await? + reading_snapshots;
+    let place = app.view(format.memory(reading + drawing + kept)).await?;
     place
         .answer(move || {
             let history = recording.history.open()?;
@@ -325,10 +342,29 @@ pub(crate) async fn history(
             };
             let table = table.widened();
             let places = recording.places(&table)?;
-            let draw = |table: &Table| chart::history(table, query.fields.as_deref(), &places, &title);
+            let bit = match shows_bit {
+                true => bit(&recording, snapshots.as_ref(), [query.from, query.to], most)?,
+                false => None,
+            };
+            let draw =
+                |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
             Answer::of_table_or_picture(table, None, format, &file_name, draw)
         })
         .await
+}
+
+/// The lowest node of a recorded string, with what `snapshots` tell of its rotation in a window, of at most so many of them.
+fn bit(
+    recording: &Recording,
+    snapshots: Option<&Snapshots>,
+    window: [Option<f64>; 2],
+    most: Option<usize>,
+) -> Result<Option<chart::Bit>> {
+    let Some((node, measured_depth)) = recording.lowest_node()? else { return Ok(None) };
+    let most = most.unwrap_or(MOST_SNAPSHOTS_SHOWN).min(MOST_SNAPSHOTS_SHOWN);
+    let columns = [ROTATION_SPEED.name, TORQUE.name];
+    let rotation = snapshots.map(|snapshots| snapshots.of_lowest_node(&columns, window, most)).transpose()?;
+    Ok(Some(chart::Bit { node, measured_depth, snapshots: rotation.flatten() }))
 }
 
 /// The rows of a part of a history that have the extremes of its columns.
@@ -354,7 +390,13 @@ fn memory_of_rows(history: &Stored, most: Option<u32>) -> u64 {
 /// Values that a picture of a history shows at most.
 const MOST_SHOWN: usize = 2_000_000;
 
-/// Bytes of memory that drawing one of them takes.
+/// Columns that a picture takes from the snapshots of the bit: time, rotation speed and torque.
+const COLUMNS_OF_BIT: usize = 3;
+
+/// Snapshots that it takes them from at most.
+const MOST_SNAPSHOTS_SHOWN: usize = MOST_SHOWN / COLUMNS_OF_BIT;
+
+/// Bytes of memory that drawing one of the values takes.
 const MEMORY_OF_SHOWN: u64 = 64;
 
 /// Refuses a picture in which nobody could make out anything.

@@ -1,15 +1,10 @@
 //! Snapshots of the whole string.
 
-use std::ops::Range;
-
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::history;
-use drillsweep_api::view::snapshots::SnapshotTimes;
-use drillsweep_table::parquet::StoredTable;
-use drillsweep_table::quantity::columns::TIME;
-use drillsweep_table::{Column, quantity::tables};
+use drillsweep_table::quantity::tables;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -18,7 +13,7 @@ use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, TableFormat};
-use crate::answer::stored::{Stored, StoredFile};
+use crate::answer::snapshots::Snapshots;
 use crate::app::App;
 use crate::route::results::{PointPath, check_window, file_name, whole_file};
 
@@ -33,6 +28,10 @@ pub(crate) struct SnapshotsQuery {
     /// End of the window \[s\], not included.
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
+    /// Only this node, 1 at the top; absent means all.
+    #[serde(default, deserialize_with = "value::count")]
+    #[param(minimum = 1)]
+    node: Option<u32>,
     /// At most so many snapshots: every k-th one stays, with all its nodes. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
     #[param(minimum = 1)]
@@ -48,14 +47,18 @@ pub(crate) struct SnapshotsQuery {
 
 impl SnapshotsQuery {
     fn is_whole(&self) -> bool {
-        self.from.is_none() && self.to.is_none() && self.max_frames.is_none() && self.fields.is_none()
+        self.node.is_none()
+            && self.from.is_none()
+            && self.to.is_none()
+            && self.max_frames.is_none()
+            && self.fields.is_none()
     }
 }
 
 /// Snapshots of the whole string in motion
 ///
 /// A row a node, from the top, snapshot after snapshot; kept where the scenario asks for them (`recording.snapshots`). There are no
-/// columns of motions that were not solved for. Attributes: `nodes`, the rows of a snapshot; `snapshots`, the number of them in
+/// columns of motions that were not solved for. Attributes: `nodes`, the rows of a snapshot, 1 of one `node`; `snapshots`, the number of them in
 /// the window before `max_frames` thins them; `first`, the time of the first, and `interval`, from one that is served to the next \[s\].
 #[utoipa::path(
     get,
@@ -78,41 +81,30 @@ pub(crate) async fn show(
     if format == Format::Parquet && query.is_whole() {
         return whole_file(&app, stored, &file_name).await;
     }
-    let nodes = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?.rows();
-    let nodes = usize::try_from(nodes).map_err(|_| Error::internal("a string of too many nodes"))?;
-    let place = app.view(format.memory(stored.memory().await?)).await?;
+    let statics = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?;
+    let snapshots = Snapshots::new(stored, &statics)?;
+    let node = query.node.map(|node| node as usize);
+    if let Some(node) = node.filter(|node| *node > snapshots.nodes()) {
+        let detail = format!("the string has the nodes 1 to {}", snapshots.nodes());
+        return Err(Error::parameter("node", Some(&node.to_string()), detail));
+    }
+    let place = app.view(format.memory(snapshots.stored().memory().await?)).await?;
     place
         .answer(move || {
-            let table = stored.open()?;
-            let times = times(&stored, &table, nodes)?;
+            let table = snapshots.stored().open()?;
+            let times = snapshots.times(&table)?;
             let frames = times.window(query.from, query.to);
             let stride = history::stride(frames.len(), query.max_frames.map(|frames| frames as usize));
             let layout = table.layout().clone();
             let layout = layout
                 .attribute("snapshots", frames.len())
-                .attribute("nodes", nodes)
+                .attribute("nodes", if node.is_some() { 1 } else { snapshots.nodes() })
                 .attribute("first", times.time(frames.start))
                 .attribute("interval", times.interval() * stride as f64);
             let layout = format::select(layout, query.fields.as_deref())?;
-            let rows: Range<usize> = frames.start * nodes..frames.end * nodes;
-            let part = table.cut_runs(layout, rows, nodes, stride)?;
-            Ok(Answer::of_part(stored, part, format, &file_name, &(nodes, &query)))
+            let part = snapshots.part(table, layout, &frames, (node, stride))?;
+            let nodes = snapshots.nodes();
+            Ok(Answer::of_part(snapshots.into_stored(), part, format, &file_name, &(nodes, &query)))
         })
         .await
-}
-
-/// When the snapshots of a table were taken, each of which has as many rows as the string has nodes.
-fn times(stored: &Stored, table: &StoredTable<StoredFile>, nodes: usize) -> Result<SnapshotTimes> {
-    let rows = table.rows();
-    if nodes == 0 || !rows.is_multiple_of(nodes) {
-        return Err(Error::internal(&format!("{rows} rows are no snapshots of {nodes} nodes")));
-    }
-    let time = |row: usize| {
-        let read = table.read(&[TIME.name], row..row + 1).map_err(|error| stored.problem(error))?;
-        match read.columns.get(TIME.name) {
-            Some(Column::Number(times)) => Ok(times.first().copied().unwrap_or(0.0)),
-            _ => Err(Error::internal("a table of snapshots without times")),
-        }
-    };
-    Ok(SnapshotTimes { first: time(0)?, last: time(rows.saturating_sub(1))?, count: rows / nodes })
 }

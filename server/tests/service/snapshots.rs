@@ -1,5 +1,7 @@
 //! Snapshots of the whole string.
 
+use std::f64::consts::TAU;
+
 use drillsweep_table::{Column, Table, parquet};
 use serde_json::{Value, json};
 
@@ -18,17 +20,19 @@ fn snapshots() -> Table {
         .with("normal_force", Column::Single(rows().map(value).collect()))
 }
 
+fn statics() -> Table {
+    Table::default()
+        .with("node", Column::Integer((1..=NODES as i64).map(Some).collect()))
+        .with("measured_depth", Column::Number(vec![0.0, 1.5, 3.0]))
+}
+
 /// A point with snapshots, and one without; the path of their sweep.
 async fn finished() -> (Bench, String) {
     let bench = Bench::new().await;
     let set = json!({"recording.snapshots": {"rate_hz": 25.0, "window": {"from": 10.0, "to": 12.0}}});
     let body = json!({"preset": "paper-200m", "set": set, "axes": {"mud_density": {"values": [1200, 1500]}}});
     let id = bench.submit(body).await;
-    let depths = Column::Number(vec![0.0, 1.5, 3.0]);
-    let statics = Table::default()
-        .with("node", Column::Integer((1..=NODES as i64).map(Some).collect()))
-        .with("measured_depth", depths);
-    bench.succeed_with_tables(1e-9, &[("snapshots", &snapshots()), ("statics", &statics)]).await;
+    bench.succeed_with_tables(1e-9, &[("snapshots", &snapshots()), ("statics", &statics())]).await;
     bench.succeed().await;
     (bench, format!("/v1/sweeps/{id}/points"))
 }
@@ -62,6 +66,11 @@ async fn snapshots_are_served_whole_by_window_and_thinned_by_whole_snapshots() {
     assert_eq!(numbers(&thinned, "normal_force"), expected);
     assert_eq!(numbers(&thinned, "node"), [1.0, 2.0, 3.0].repeat(7));
     assert_eq!(numbers(&get("?from=20").await, "time"), [0.0; 0]);
+    let middle = get("?node=2&from=10.2&to=11&max_frames=7").await;
+    assert_eq!(middle["attributes"]["nodes"], 1);
+    let expected: Vec<f64> = (5..25).step_by(3).map(|frame| f64::from(10 * frame + 1)).collect();
+    assert_eq!(numbers(&middle, "normal_force"), expected);
+    assert_eq!(numbers(&middle, "node"), [2.0; 7]);
 
     let csv = bench.get(&format!("{path}/1/snapshots?from=11.96&format=csv")).await;
     assert_eq!(csv.text().lines().next(), Some("time,node,u,normal_force"));
@@ -79,10 +88,91 @@ async fn what_cannot_be_had_of_snapshots_is_told() {
     let detail = problem["detail"].as_str().unwrap();
     assert!(detail.contains("`recording.snapshots`") && detail.contains("history"), "{detail}");
     for (query, parameter) in
-        [("max_frames=0", "max_frames"), ("from=11&to=11", "to"), ("fields=v", "fields")]
+        [("max_frames=0", "max_frames"), ("node=4", "node"), ("from=11&to=11", "to"), ("fields=v", "fields")]
     {
         let problem =
             bench.get(&format!("{path}/1/snapshots?{query}")).await.problem(400, "invalid-parameter");
         assert_eq!(problem["errors"][0]["parameter"], parameter, "{problem}");
     }
+}
+
+/// Over 10 s at 10 Hz node 2 turns at 60 rpm and 20 rpm about it, under -2 to -4 kN m.
+fn history_of_node_2() -> Table {
+    let of_time =
+        |f: fn(f64) -> f64| Column::Single((0..100).map(|k| f(f64::from(k) / 10.0) as f32).collect());
+    Table::default()
+        .with("time", Column::Number((0..100).map(|k| f64::from(k) / 10.0).collect()))
+        .with("u_2", of_time(|t| 1e-3 * t.sin()))
+        .with("v_2", of_time(|t| 1e-3 * t.cos()))
+        .with("rotation_speed_2", of_time(|t| (60.0 + 20.0 * t.sin()) * TAU / 60.0))
+        .with("torque_2", of_time(|t| -3e3 - 1e3 * t.sin()))
+}
+
+/// The bit, node 3, at 25 Hz from 5 s on: it turns at 60 rpm and 120 rpm about it, the others stand still.
+fn snapshots_of_torsion() -> Table {
+    let rows =
+        || (0..125).flat_map(|frame| (0..NODES).map(move |node| (5.0 + f64::from(frame) / 25.0, node)));
+    let of_bit = |f: fn(f64) -> f64| {
+        let value = |(time, node)| if node + 1 == NODES { f(time) as f32 } else { 0.0 };
+        Column::Single(rows().map(value).collect())
+    };
+    Table::default()
+        .with("time", Column::Number(rows().map(|(time, _)| time).collect()))
+        .with("node", Column::Integer(rows().map(|(_, node)| Some(node as i64 + 1)).collect()))
+        .with("u", of_bit(|_| 0.0))
+        .with("rotation_speed", of_bit(|t| (60.0 + 120.0 * t.sin()) * TAU / 60.0))
+        .with("torque", of_bit(|t| -7e3 - 2e3 * t.sin()))
+}
+
+/// The least and the largest number at the ticks of the vertical axis that bears this name.
+fn ticks(svg: &str, axis: &str) -> [f64; 2] {
+    let panel = svg.split("<g class=\"axes\">").find(|panel| panel.contains(&format!(">{axis}<"))).unwrap();
+    let numbers = panel.lines().filter(|line| line.contains("text-anchor=\"end\""));
+    let numbers = numbers.filter_map(|line| line.split(['>', '<']).nth(2)?.replace('−', "-").parse().ok());
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, largest]: [f64; 2], number: f64| {
+        [least.min(number), largest.max(number)]
+    })
+}
+
+#[tokio::test]
+async fn a_picture_of_a_history_shows_the_rotation_of_the_bit_out_of_the_snapshots() {
+    let bench = Bench::new().await;
+    let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
+    let id = bench.submit(body).await;
+    let (history, statics, snapshots) = (history_of_node_2(), statics(), snapshots_of_torsion());
+    let tables = [("history", &history), ("statics", &statics), ("snapshots", &snapshots)];
+    bench.succeed_with_tables(1e-9, &tables).await;
+    bench.succeed_with_tables(1e-9, &tables[..2]).await;
+    let picture = async |point: u32, query: &str| {
+        let path = format!("/v1/sweeps/{id}/points/{point}/history?format=svg{query}");
+        bench.get(&path).await.text().to_owned()
+    };
+    let (speed, torque) = ("rotation speed [rpm]", "torque [kN m]");
+    let shows = |svg: &str, expected: [[f64; 2]; 2], spacing: [f64; 2]| {
+        for ((axis, [least, largest]), spacing) in [speed, torque].into_iter().zip(expected).zip(spacing) {
+            let found = ticks(svg, axis);
+            assert!(
+                (found[0] - least).abs() <= spacing && (found[1] - largest).abs() <= spacing,
+                "{axis}: {found:?}"
+            );
+        }
+    };
+    // Least and largest of what stands above.
+    let (of_bit, of_node_2) = ([[-60.0, 180.0], [-9.0, -5.0]], [[40.0, 80.0], [-4.0, -2.0]]);
+    let whole = picture(1, "").await;
+    assert!(whole.contains("rotation speed at the bit, 3.0 m MD"), "{whole}");
+    shows(&whole, of_bit, [50.0, 1.0]);
+    // From 7 to 9 s the sine is above 0.4 and below 1.
+    let window = picture(1, "&from=7&to=9").await;
+    shows(&window, [[110.0, 180.0], [-9.0, -7.8]], [10.0, 0.25]);
+
+    let nowhere = picture(2, "").await;
+    assert!(nowhere.contains("Rotation at the bit, at 3.0 m MD, was not recorded"), "{nowhere}");
+    assert!(nowhere.contains("rotation speed at 1.5 m MD"), "{nowhere}");
+    shows(&nowhere, of_node_2, [10.0, 0.5]);
+    for query in ["&node=2", "&fields=rotation_speed_2"] {
+        let asked = picture(1, query).await;
+        assert!(!asked.contains("bit"), "{asked}");
+    }
+    shows(&picture(1, "&node=2").await, of_node_2, [10.0, 0.5]);
 }

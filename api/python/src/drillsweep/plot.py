@@ -1,6 +1,6 @@
 """Pictures of results with matplotlib: `pip install 'drillsweep[plot]'`.
 
-Every function draws into `axes`, or into new ones, and returns them.
+Every function draws into `axes`, or into new ones, and returns them; a history has panels of its own.
 """
 
 from __future__ import annotations
@@ -51,6 +51,55 @@ def orbit(
     axes.set_xlabel(f"across the hole [{shown.symbol}]")
     axes.set_ylabel(f"from the low side up [{shown.symbol}]")
     axes.set_title(f"Orbit of node {number} at {table.attributes['measured_depth']:.2f} m")
+    return axes
+
+
+def history(
+    point: Point,
+    *,
+    node: int | None = None,
+    depth: float | None = None,
+    nearest: bool = False,
+    time: TimeWindow = (None, None),
+) -> list[Axes]:
+    """The motion of the recorded nodes, or of one, over time, and below it the rotation at the bit; one axes a panel.
+
+    u and v are in the first panel. Where the string twists, rotation speed and torque follow: those of the bit, out of
+    the history or else the snapshots; where neither has the bit, those of the lowest recorded node under a title that
+    says so. Of a node that is asked for they are its own.
+    """
+    table = point.history(node=node, depth=depth, nearest=nearest, time=time)
+    is_one = node is not None or depth is not None or nearest
+    lowest = max((int(name.rsplit("_", 1)[1]) for name in table if name.startswith("rotation_speed_")), default=None)
+    bit = int(point.statics()["node"][-1])
+    bit_depth = float(point.statics()["measured_depth"][-1])
+    rotation, title = table, "Rotation at the bit"
+    columns = {name: f"{name}_{lowest}" for name in ("rotation_speed", "torque") if lowest is not None}
+    if is_one:
+        title = f"Rotation of node {lowest}"
+    elif lowest != bit and "snapshots" in point.tables:
+        rotation = point.snapshots(node=bit, time=time)
+        columns = {name: name for name in ("rotation_speed", "torque") if name in rotation}
+    elif lowest != bit:
+        title = f"Rotation of node {lowest}: at the bit, at {bit_depth:.1f} m, it was not recorded"
+    panels = require("matplotlib.pyplot", "plot").subplots(
+        1 + len(columns), squeeze=False, layout="constrained", figsize=(8.0, 3.0 + 2.2 * len(columns))
+    )[1]
+    axes: list[Axes] = list(panels[:, 0])
+    shown = _shown("radius")
+    for name in (name for name in table if name.startswith(("u_", "v_")) and "rate" not in name):
+        axes[0].plot(table["time"], shown.of(table[name]), linewidth=0.6, label=name.replace("_", " "))
+    axes[0].set_ylabel(f"displacement [{shown.symbol}]")
+    axes[0].legend(fontsize="small")
+    for panel, (name, column) in zip(axes[1:], columns.items(), strict=True):
+        known = quantity(name)
+        # Drillers read rotation speeds in rpm.
+        unit = known.field if known and name == "rotation_speed" else _shown(name)
+        panel.plot(rotation["time"], unit.of(rotation[column]), linewidth=0.8)
+        panel.set_ylabel(f"{name.replace('_', ' ')} [{unit.symbol}]")
+    if len(axes) > 1:
+        axes[1].set_title(title)
+    axes[-1].set_xlabel("time [s]")
     return axes
 
 

@@ -240,6 +240,7 @@ class Point:
     def snapshots(
         self,
         *,
+        node: int | None = None,
         time: TimeWindow = (None, None),
         max_frames: int | None = None,
         fields: Sequence[str] | None = None,
@@ -251,12 +252,14 @@ class Point:
         snapshots by nodes: `table["u"].reshape(-1, table.attributes["nodes"])`.
 
         Args:
+            node: Only this node, 1 at the top.
             time: Window [s].
             max_frames: At most so many snapshots; every k-th stays.
             fields: Only these columns.
         """
         names = ",".join(fields) if fields is not None else None
-        return self.view("snapshots", **{"from": time[0], "to": time[1]}, max_frames=max_frames, fields=names)
+        query = {"node": node, "max_frames": max_frames, "fields": names}
+        return self.view("snapshots", **{"from": time[0], "to": time[1]}, **query)
 
     def contacts(self) -> Table:
         """Contacts of every node with the hole over the run."""

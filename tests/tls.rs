@@ -75,18 +75,29 @@ fn servers_and_workers_reach_database_and_bucket_under_a_private_authority() {
     assert_eq!(plain, "0");
     assert_eq!(checked(&mut site.command(&["check", "--json"], &site.authority())), (2, vec![]));
 
-    // An authority that neither has a certificate of: the database is refused at once, the object store where it is asked.
+    // An authority that neither has a certificate of: both are refused at once.
     let another = site.directory.path().join("another.pem");
     let output = site.command(&["check"], &another).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success(), "{said}");
     assert!(said.contains("the certificate of the database's server is not accepted"), "{said}");
-    let mut only_objects = site.command(&["check"], &another);
     let database =
         format!("{}?sslmode=verify-full&sslrootcert={}", site.postgres.url(), site.authority().display());
-    let output = only_objects.env("DRILLSWEEP_DATABASE", database).output().unwrap();
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-    assert!(!output.status.success() && said.contains("invalid peer certificate"), "{said}");
+    for arguments in [&["check"][..], &["worker"], &["serve", "--listen", "127.0.0.1:0"]] {
+        let mut command = site.command(arguments, &another);
+        command.env("DRILLSWEEP_DATABASE", &database).env("DRILLSWEEP_LOG", "info");
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert!(!output.status.success(), "{arguments:?}: {said}");
+        for words in [
+            "the certificate of the object store is not accepted",
+            "invalid peer certificate",
+            "SSL_CERT_FILE",
+        ] {
+            assert!(said.contains(words), "{arguments:?}: {said}");
+        }
+        assert!(!said.contains("backing off"), "{arguments:?} tried again: {said}");
+    }
 }
 
 #[test]

@@ -261,6 +261,7 @@ async fn serve_until(
 ) -> anyhow::Result<()> {
     let config = data.store(Role::Server)?;
     let store = patiently(|| Store::open(&config)).await?;
+    store.check_certificate().await?;
     if let Some(path) = &arguments.admin_token_file {
         token::register(&store, path).await?;
     }

@@ -1,6 +1,7 @@
 //! Arrays, by the hash of their bytes.
 
 mod backend;
+mod certificate;
 mod location;
 
 use std::fs::File;
@@ -17,6 +18,7 @@ use object_store::path::Path as ObjectPath;
 use object_store::{MultipartUpload, ObjectMeta, ObjectStoreExt, PutMode, PutOptions, PutPayload};
 
 use self::backend::Backend;
+pub(crate) use self::certificate::untrusted_certificate;
 pub use self::location::{LocationError, ObjectsLocation};
 use crate::error::{Result, StoreError};
 use crate::hash_tree::{self, HashTree, HashTreeBuilder, HashTrees};
@@ -35,7 +37,8 @@ pub struct BlobId(blake3::Hash);
 /// same bytes again changes nothing, unless they were damaged meanwhile: then it mends them.
 ///
 /// A service that does not answer is tried again: for 10 s by what reads, for 60 s by [`put`](Self::put) and
-/// [`put_file`](Self::put_file). Then the error [says so](StoreError::is_unavailable).
+/// [`put_file`](Self::put_file). Then the error [says so](StoreError::is_unavailable). A certificate that is not accepted is an error at
+/// once.
 #[derive(Debug, Clone)]
 pub struct BlobStore {
     backend: Backend,
@@ -361,6 +364,18 @@ impl BlobStore {
     /// them.
     pub(crate) async fn unfinished_uploads(&self, cutoff: i64) -> Result<Vec<StoredObject>> {
         self.backend.unfinished_uploads(cutoff).await
+    }
+
+    /// Asks a bucket's service once for an object that there is not.
+    ///
+    /// # Errors
+    /// When its certificate is not accepted. What else it says, and whether it answers, is no matter.
+    pub(crate) async fn check_certificate(&self) -> Result<()> {
+        let Some(once) = &self.backend.once else { return Ok(()) };
+        match once.head(&ObjectPath::from(SCRATCH)).await.map_err(StoreError::from) {
+            Err(error @ StoreError::UntrustedObjects(_)) => Err(error),
+            _ => Ok(()),
+        }
     }
 
     /// Writes, reads and deletes a scratch object: a full or read-only disk shows here.

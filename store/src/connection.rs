@@ -107,6 +107,15 @@ impl Store {
         &self.blobs
     }
 
+    /// Asks an object store that is reached by TLS whether it has a certificate that is accepted. One that does not answer is no
+    /// matter: it is asked again where it is needed.
+    ///
+    /// # Errors
+    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) where it has not.
+    pub async fn check_certificate(&self) -> Result<()> {
+        self.blobs.check_certificate().await
+    }
+
     /// Closes all connections; a write-ahead log is folded in.
     pub async fn close(&self) {
         self.listening.stop().await;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use object_store::client::HttpError;
 use sqlx::migrate::MigrateError;
 
-use crate::blob::BlobId;
+use crate::blob::{BlobId, untrusted_certificate};
 
 /// The store's results.
 pub type Result<T> = std::result::Result<T, StoreError>;
@@ -29,7 +29,12 @@ pub enum StoreError {
     Migration(#[from] MigrateError),
     /// The object store failed.
     #[error("object store: {0}")]
-    Blob(#[from] object_store::Error),
+    Blob(object_store::Error),
+    /// The object store has a certificate of an authority that is not trusted, of another name, or out of date.
+    #[error(
+        "the certificate of the object store is not accepted: {0}; the environment names the file of a private authority by SSL_CERT_FILE"
+    )]
+    UntrustedObjects(rustls::Error),
     /// A result names a blob that is not there, or not any more: it must be written again.
     #[error("the blob {0} of a result is not there")]
     BlobMissing(String),
@@ -102,11 +107,14 @@ impl StoreError {
     }
 
     /// True where the object store did not answer, broke off, or said that it cannot now: the same call may succeed later.
-    /// A blob that was asked for is not lost.
+    /// A blob that was asked for is not lost. A certificate that is not accepted is such a case: it may be renewed.
     pub fn is_unavailable(&self) -> bool {
         /// Errors of the service, and too many requests: in the status or in the body of a success.
         const UNABLE: [&str; 4] =
             ["status code: 5", "status code: 429", "status code: 408", "returned error response: "];
+        if let StoreError::UntrustedObjects(_) = self {
+            return true;
+        }
         matches!(self, StoreError::Blob(_))
             && !self.is_full()
             && (self.cause(|_: &HttpError| true) || self.answer_has(&UNABLE))
@@ -161,6 +169,15 @@ impl StoreError {
     }
 }
 
+impl From<object_store::Error> for StoreError {
+    fn from(error: object_store::Error) -> Self {
+        match untrusted_certificate(&error) {
+            Some(refused) => StoreError::UntrustedObjects(refused.clone()),
+            None => StoreError::Blob(error),
+        }
+    }
+}
+
 /// Whether a database may do a moment later what it did not now.
 fn is_passing(error: &sqlx::Error) -> bool {
     match error {
@@ -181,7 +198,7 @@ fn is_passing(error: &sqlx::Error) -> bool {
     }
 }
 
-/// Why a server's certificate was not accepted, where that is what an error says.
+/// Why a database's server was not believed, where that is what an error says.
 fn refused_certificate(error: &io::Error) -> Option<&rustls::Error> {
     error.get_ref()?.downcast_ref()
 }

@@ -141,6 +141,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
     };
     let id = format!("worker-{}", uuid::Uuid::now_v7().simple());
     let store = patiently(|| Store::open(&config.store)).await?;
+    store.check_certificate().await?;
     let record = WorkerRecord {
         id: id.clone(),
         host: host_name(),
@@ -394,8 +395,8 @@ async fn write_end(
                     };
                     store.finish_done(lease, &result).await
                 }
-                // The database, by which blobs are reserved: the whole is tried again.
-                Err(error @ StoreError::Database(_)) => Err(error),
+                // The database, by which blobs are reserved, or a certificate, which is not waited for: the whole is tried again.
+                Err(error @ (StoreError::Database(_) | StoreError::UntrustedObjects(_))) => Err(error),
                 Err(error) => {
                     tracing::warn!(%error, "artifacts cannot be written");
                     let error = PointError::new(FailureClass::Infrastructure, error.to_string());

@@ -14,6 +14,7 @@ use object_store::prefix::PrefixStore;
 use object_store::{BackoffConfig, ObjectStore, RetryConfig};
 
 use super::StoredObject;
+use super::certificate::Connector;
 use super::location::ObjectsLocation;
 use crate::error::{Result, StoreError};
 
@@ -45,13 +46,18 @@ const SHORT: Patience =
 const LONG: Patience =
     Patience { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
 
-/// What the objects lie on, with as much of it as differs. Both stores are the same one but for their patience.
+/// Of those who only want to know who answers.
+const ONCE: Patience = Patience { retry: Duration::ZERO, pause: Duration::ZERO, silence: "5s" };
+
+/// What the objects lie on, with as much of it as differs. The stores are the same one but for their patience.
 #[derive(Debug, Clone)]
 pub(super) struct Backend {
     /// For what somebody waits for.
     pub(super) objects: Arc<dyn ObjectStore>,
     /// For writing what was computed.
     pub(super) uploads: Arc<dyn ObjectStore>,
+    /// For one try; none of a directory.
+    pub(super) once: Option<Arc<dyn ObjectStore>>,
     /// Bytes that are read at once where an object is read from its beginning to its end.
     pub(super) stretch: u64,
     /// None of a bucket.
@@ -76,6 +82,7 @@ impl Backend {
         Ok(Self {
             uploads: objects.clone(),
             objects,
+            once: None,
             stretch: DIRECTORY_STRETCH,
             directory: Some(directory.to_owned()),
         })
@@ -87,7 +94,13 @@ impl Backend {
         let open = |patience: &Patience| -> Result<Arc<dyn ObjectStore>> {
             Ok(Arc::new(PrefixStore::new(s3(bucket, settings, patience)?, prefix)))
         };
-        Ok(Self { objects: open(&SHORT)?, uploads: open(&LONG)?, stretch: S3_STRETCH, directory: None })
+        Ok(Self {
+            objects: open(&SHORT)?,
+            uploads: open(&LONG)?,
+            once: Some(open(&ONCE)?),
+            stretch: S3_STRETCH,
+            directory: None,
+        })
     }
 
     /// Parts of uploads that were begun before a time \[ms since the epoch\] and not finished, as a killed worker leaves them in a
@@ -133,6 +146,7 @@ fn s3(bucket: &str, settings: &BTreeMap<String, String>, patience: &Patience) ->
         .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::Timeout), NO_TIMEOUT)
         .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::ReadTimeout), patience.silence)
         .with_retry(retry)
+        .with_http_connector(Connector)
         .with_conditional_put(S3ConditionalPut::ETagMatch)
         // Objects are deleted one at a time, which every service knows how to do.
         .with_disable_bulk_delete(true)

@@ -61,7 +61,7 @@ fn main() {
     }
     let Plan { engine, points, workers, compute, .. } = &plan;
     println!("{engine}: {points} points, {workers} workers that have a point for {compute:?}");
-    runtime.block_on(run(&plan, &config));
+    runtime.block_on(run(&plan, &config, server.as_ref()));
     let bytes = match &server {
         Some(server) => {
             server.query("CHECKPOINT");
@@ -76,15 +76,17 @@ fn main() {
     runtime.shutdown_background();
 }
 
-async fn run(plan: &Plan, config: &StoreConfig) {
+async fn run(plan: &Plan, config: &StoreConfig, server: Option<&servers::postgres::Server>) {
     let store = Store::open(config).await.expect("a store");
     let is_over = Arc::new(AtomicBool::new(false));
 
     let large = sweep(SWEEP, "anne", plan.points);
     let others = tokio::spawn(submit_beside(store.clone(), is_over.clone()));
     let began = Instant::now();
+    let spent = Spent::now(server);
     store.submit_sweep(&large).await.expect("submitted");
     println!("submit: {:.1} s", began.elapsed().as_secs_f64());
+    spent.report("a submitted point", plan.points as f64, began.elapsed(), server);
     is_over.store(true, Ordering::Relaxed);
     report("another owner's submit meanwhile", others.await.expect("it ends"));
 
@@ -98,8 +100,11 @@ async fn run(plan: &Plan, config: &StoreConfig) {
         workers.push(tokio::spawn(work(store, number, plan.compute, is_over.clone(), finished.clone())));
     }
     let began = Instant::now();
+    let spent = Spent::now(server);
     tokio::time::sleep(Duration::from_secs(plan.seconds)).await;
     is_over.store(true, Ordering::Relaxed);
+    let done = finished.load(Ordering::Relaxed) as f64;
+    spent.report("a point", done, began.elapsed(), server);
     let mut claims = Vec::new();
     for worker in workers {
         claims.extend(worker.await.expect("it ends"));
@@ -112,6 +117,55 @@ async fn run(plan: &Plan, config: &StoreConfig) {
     report("a page of 100 points", readings.pages);
     report("500 rows of the table", readings.tables);
     report("a sweep's version", readings.versions);
+}
+
+/// Processor time up to a moment, of the database's server and of this process, in which all clients are.
+struct Spent {
+    server: Duration,
+    clients: Duration,
+}
+
+impl Spent {
+    fn now(server: Option<&servers::postgres::Server>) -> Self {
+        Self {
+            server: server.map_or(Duration::ZERO, |server| family_time(server.process())),
+            clients: own_time(std::process::id()).map_or(Duration::ZERO, |(_, time)| time),
+        }
+    }
+
+    /// What was spent since, for each of so many points, and which share of the machine's cores that took.
+    fn report(&self, what: &str, points: f64, elapsed: Duration, server: Option<&servers::postgres::Server>) {
+        let now = Self::now(server);
+        let of_server = (now.server - self.server).as_secs_f64();
+        let of_clients = (now.clients - self.clients).as_secs_f64();
+        let cores = std::thread::available_parallelism().map_or(1, usize::from) as f64;
+        println!(
+            "processor time for {what}: {:.3} ms of the server and {:.3} ms of the clients; {:.0} % of {cores} cores",
+            of_server * 1e3 / points,
+            of_clients * 1e3 / points,
+            (of_server + of_clients) / elapsed.as_secs_f64() / cores * 100.0
+        );
+    }
+}
+
+/// Processor time of a process and of its children, those that have ended too.
+fn family_time(parent: u32) -> Duration {
+    let processes = std::fs::read_dir("/proc").into_iter().flatten().filter_map(Result::ok);
+    let numbers = processes.filter_map(|process| process.file_name().to_str()?.parse().ok());
+    let of_family =
+        |number: u32| own_time(number).filter(|(its_parent, _)| number == parent || *its_parent == parent);
+    numbers.filter_map(of_family).map(|(_, time)| time).sum()
+}
+
+/// Parent of a process, and its processor time with that of the children that it has waited for; none of one that has ended.
+fn own_time(process: u32) -> Option<(u32, Duration)> {
+    /// What Linux counts times in, on all machines that this runs on.
+    const TICK: Duration = Duration::from_millis(10);
+    let line = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    // After the name, which may have any signs in it.
+    let fields: Vec<&str> = line.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks: u32 = fields.get(11..15)?.iter().filter_map(|ticks| ticks.parse::<u32>().ok()).sum();
+    Some((fields.get(1)?.parse().ok()?, TICK * ticks))
 }
 
 /// Another owner's sweeps of one point, one after the other.

@@ -138,6 +138,12 @@ impl Server {
         format!("127.0.0.1:{}", self.port)
     }
 
+    /// The number of its process, whose children serve the connections.
+    #[allow(dead_code, reason = "not all that use this module measure it")]
+    pub(crate) fn process(&self) -> u32 {
+        self.process.as_ref().expect("it runs").id()
+    }
+
     /// The URL of its database.
     pub(crate) fn url(&self) -> String {
         format!("postgres://drillsweep@127.0.0.1:{}/postgres", self.port)

@@ -45,7 +45,7 @@ pub use failure::{FailureFilter, FailurePlace, FailureRecord};
 pub use notification::Changes;
 pub use patience::patiently;
 pub use point::{Artifact, PointRecord, ScenarioText, TableRecord};
-pub use queue::{Claim, Lease, NewArtifact, NewResult, QueueDepths, Renewal};
+pub use queue::{Claim, Finished, Lease, NewArtifact, NewResult, QueueDepths, Renewal};
 pub use repair::{Repair, RepairReport};
 pub use retention::{Collection, Garbage, RetentionPolicy};
 pub use session::SessionRecord;

@@ -111,6 +111,15 @@ pub struct QueueDepths {
     pub leased: i64,
 }
 
+/// What became of a result whose worker wanted to go on with the next work item.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finished {
+    /// Whether the result is stored; not if the lease was lost.
+    pub is_stored: bool,
+    /// The next work item, if the result is stored and one was ready at once.
+    pub next: Option<Claim>,
+}
+
 /// A result to store.
 #[derive(Debug, Clone, Copy)]
 pub struct NewResult<'a> {
@@ -217,21 +226,53 @@ impl Store {
     /// # Errors
     /// When the database fails, or a blob is not there.
     pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
-        let key = lease.key.as_slice();
-        let finish = query(sql::queue::FINISH_AT_ONCE)
-            .bind(key)
-            .bind(lease.fencing_token)
-            .bind(&lease.worker)
-            .bind(result.summary_json)
-            .bind(result.provenance_json)
-            .bind(artifacts_json(result.artifacts));
-        if let Some((outcome,)) = finish.rows_of_change::<(String,)>(&self.database).await?.into_iter().next()
-        {
-            return match outcome.strip_prefix("missing ") {
-                Some(blob) => Err(StoreError::BlobMissing(blob.to_owned())),
-                None => Ok(outcome == "done"),
-            };
+        let finish = with_result(query(sql::queue::FINISH_AT_ONCE), lease, result);
+        match finish.rows_of_change::<(String,)>(&self.database).await?.into_iter().next() {
+            Some((outcome,)) => is_done(&outcome),
+            None => self.replace_result(lease, result).await,
         }
+    }
+
+    /// Stores a result, as [`finish_done`](Self::finish_done), and hands the same worker its next work item of a physics version, as
+    /// [`claim`](Self::claim): on PostgreSQL by one message and in one transaction. Where nothing is ready it does not look for leases that
+    /// have run out: `claim` does.
+    ///
+    /// # Errors
+    /// When the database fails, or a blob is not there.
+    pub async fn finish_and_claim(
+        &self,
+        lease: &Lease,
+        result: &NewResult<'_>,
+        physics_version: i64,
+        lease_ms: i64,
+    ) -> Result<Finished> {
+        if self.reaping.is_due() {
+            self.reap().await?;
+        }
+        let finish = with_result(query(sql::queue::FINISH_AND_CLAIM), lease, result);
+        let rows = finish.bind(lease_ms).bind(physics_version).rows::<FinishedRow>(&self.database).await?;
+        let Some((outcome, key, fencing_token, base_json, changes_json, checkpoint)) =
+            rows.into_iter().next().filter(|(outcome, ..)| outcome != "earlier")
+        else {
+            if !self.replace_result(lease, result).await? {
+                return Ok(Finished { is_stored: false, next: None });
+            }
+            // The result stays stored whatever becomes of this.
+            let next = self.claim(&lease.worker, physics_version, lease_ms).await.unwrap_or_else(|error| {
+                tracing::warn!(%error, "no work can be claimed after a result");
+                None
+            });
+            return Ok(Finished { is_stored: true, next });
+        };
+        let is_stored = is_done(&outcome)?;
+        let row = key.zip(fencing_token).zip(base_json.zip(changes_json));
+        let row = row.map(|((key, token), (base, changes))| (key, token, base, changes, checkpoint));
+        Ok(Finished { is_stored, next: claimed(row.into_iter().collect(), &lease.worker)? })
+    }
+
+    /// Stores a result where there is an earlier one, or where statements are no messages, step by step. False if the lease was lost.
+    async fn replace_result(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
+        let key = lease.key.as_slice();
         let mut tx = self.write_one().await?;
         let finished: Vec<i64> = query(sql::queue::FINISH)
             .bind(key)
@@ -490,12 +531,34 @@ fn artifacts_json(artifacts: &[NewArtifact]) -> String {
     Value::Array(artifacts.collect()).to_string()
 }
 
+/// The parameters of a statement that stores a result: lease, summary, provenance, artifacts.
+fn with_result(statement: Query, lease: &Lease, result: &NewResult<'_>) -> Query {
+    statement
+        .bind(lease.key.as_slice())
+        .bind(lease.fencing_token)
+        .bind(&lease.worker)
+        .bind(result.summary_json)
+        .bind(result.provenance_json)
+        .bind(artifacts_json(result.artifacts))
+}
+
+/// Whether a result was stored, by the word of the database.
+fn is_done(outcome: &str) -> Result<bool> {
+    match outcome.strip_prefix("missing ") {
+        Some(blob) => Err(StoreError::BlobMissing(blob.to_owned())),
+        None => Ok(outcome == "done"),
+    }
+}
+
 fn claiming(worker: &str, physics_version: i64, lease_ms: i64) -> Query {
     query(sql::queue::CLAIM).bind(worker).bind(lease_ms).bind(physics_version)
 }
 
 /// Key, fencing token, base, changes, checkpoint.
 type ClaimedRow = (Vec<u8>, i64, String, String, Option<String>);
+
+/// What became of a result, and the same of the next work item where there is one.
+type FinishedRow = (String, Option<Vec<u8>>, Option<i64>, Option<String>, Option<String>, Option<String>);
 
 fn claimed(rows: Vec<ClaimedRow>, worker: &str) -> Result<Option<Claim>> {
     let Some((key, fencing_token, base_json, changes_json, checkpoint)) = rows.into_iter().next() else {

@@ -107,6 +107,7 @@ statements! {
         END_OUTDATED = "end_outdated",
         FAIL = "fail",
         FINISH = "finish",
+        FINISH_AND_CLAIM = "finish_and_claim",
         FINISH_AT_ONCE = "finish_at_once",
         INSERT_ARTIFACT = "insert_artifact",
         INSERT_RESULT = "insert_result",

@@ -11,8 +11,8 @@ use drillsweep_sim::control::Control;
 use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
-    BlobId, Claim, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError, WorkerRecord,
-    patiently,
+    BlobId, Claim, Finished, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError,
+    WorkerRecord, patiently,
 };
 use jiff::Timestamp;
 use serde_json::{Value, json};
@@ -157,19 +157,22 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
     let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease)?;
     let mut changes = store.work_changes().await;
     tracing::info!(worker = %id, "worker ready");
+    let worker = Worker { config: &config, store: &store, heartbeat: &heartbeat, record: &record };
     while !*stop.borrow() {
-        let lease_ms = config.lease.as_millis() as i64;
         let asked = Instant::now();
-        match store.claim(&id, record.physics_version, lease_ms).await {
+        match store.claim(&id, record.physics_version, worker.lease_ms()).await {
             Ok(Some(claim)) => {
-                let key = hex(&claim.lease.key);
-                let span =
-                    tracing::info_span!("point", key = &key[..12], fencing_token = claim.lease.fencing_token);
-                let claim_ms = asked.elapsed().as_secs_f64() * 1e3;
-                span.in_scope(|| tracing::info!(claim_ms, "point claimed"));
-                let worker =
-                    Worker { config: &config, store: &store, heartbeat: &heartbeat, record: &record };
-                worker.work_on(claim, &mut stop).instrument(span).await;
+                let mut claim_ms = Some(asked.elapsed().as_secs_f64() * 1e3);
+                let mut next = Some(claim);
+                while let Some(claim) = next {
+                    let key = hex(&claim.lease.key);
+                    let token = claim.lease.fencing_token;
+                    let span = tracing::info_span!("point", key = &key[..12], fencing_token = token);
+                    span.in_scope(|| tracing::info!(claim_ms, "point claimed"));
+                    next = worker.work_on(claim, &mut stop).instrument(span).await;
+                    // It came with the answer to the result before it.
+                    claim_ms = None;
+                }
             }
             Ok(None) if config.drain => break,
             Ok(None) => tokio::select! {
@@ -227,7 +230,13 @@ struct Worker<'a> {
 }
 
 impl Worker<'_> {
-    async fn work_on(&self, claim: Claim, stop: &mut watch::Receiver<bool>) {
+    /// How long a lease is \[ms\].
+    fn lease_ms(&self) -> i64 {
+        self.config.lease.as_millis() as i64
+    }
+
+    /// Computes a point and stores what came of it. Gives the next point, where it was claimed with the result.
+    async fn work_on(&self, claim: Claim, stop: &mut watch::Receiver<bool>) -> Option<Claim> {
         let Self { config, store, heartbeat, record } = self;
         let lease = claim.lease;
         let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
@@ -235,13 +244,12 @@ impl Worker<'_> {
             Err(problem) => {
                 let error = ComputeError::Invalid(problem.to_string());
                 let ended = Ended::Computed(Err(error));
-                end(store, &lease, config.lease, ended, StopReason::None, Halt::No).await;
-                return;
+                return self.end(&lease, ended, StopReason::None, Halt::No, stop).await;
             }
         };
         if let Some(error) = too_large(&scenario) {
-            end(store, &lease, config.lease, Ended::Computed(Err(error)), StopReason::None, Halt::No).await;
-            return;
+            let ended = Ended::Computed(Err(error));
+            return self.end(&lease, ended, StopReason::None, Halt::No, stop).await;
         }
         let control = Arc::new(config.pace.map_or_else(Control::new, paced));
         let verdict = Arc::new(Verdict::default());
@@ -298,10 +306,103 @@ impl Worker<'_> {
             Ok(result) => Ended::Computed(result),
             Err(error) => Ended::Panicked(panic_text(error)),
         };
-        end(store, &lease, config.lease, ended, verdict.get(), halt)
-            .instrument(tracing::info_span!("store"))
-            .await;
+        let next =
+            self.end(&lease, ended, verdict.get(), halt, stop).instrument(tracing::info_span!("store")).await;
         heartbeat.watch(None);
+        next
+    }
+
+    /// Writes how a point ended. The store being out of reach is tried again for as long as the lease was renewed at the latest: after
+    /// that the point is somebody else's. Gives the next point, where it was claimed with the result.
+    async fn end(
+        &self,
+        lease: &Lease,
+        mut ended: Ended,
+        reason: StopReason,
+        halt: Halt,
+        stop: &watch::Receiver<bool>,
+    ) -> Option<Claim> {
+        /// The longest wait between two tries.
+        const LONGEST: Duration = Duration::from_secs(4);
+        let deadline = Instant::now() + self.config.lease;
+        let mut pause = Duration::from_millis(250);
+        loop {
+            let goes_on = !*stop.borrow();
+            match self.write_end(lease, &mut ended, reason, halt, goes_on).await {
+                Ok(Finished { is_stored, next }) => {
+                    if !is_stored {
+                        tracing::warn!("lease lost, result dropped");
+                    }
+                    return next;
+                }
+                Err(error) => tracing::warn!(%error, "the end of a point cannot be stored"),
+            }
+            if Instant::now() + pause > deadline {
+                // The lease runs out by itself, and the point is taken over.
+                return None;
+            }
+            tokio::time::sleep(pause).await;
+            pause = LONGEST.min(2 * pause);
+        }
+    }
+
+    /// Writes it once; a result together with the claim of the next point, if the worker goes on.
+    async fn write_end(
+        &self,
+        lease: &Lease,
+        ended: &mut Ended,
+        reason: StopReason,
+        halt: Halt,
+        goes_on: bool,
+    ) -> drillsweep_store::Result<Finished> {
+        let Self { store, record, .. } = self;
+        let is_stored = match ended {
+            Ended::Computed(Ok(Computation::Finished(computed))) => {
+                match upload(store, &computed.artifacts).await {
+                    Ok(artifacts) => {
+                        let summary = Value::Object(computed.summary_row()).to_string();
+                        let provenance = json!(computed.provenance).to_string();
+                        let result = NewResult {
+                            summary_json: &summary,
+                            provenance_json: &provenance,
+                            artifacts: &artifacts,
+                            // A study of what accuracy costs measures times.
+                            is_repeatable: computed.study.is_none(),
+                        };
+                        if goes_on {
+                            let version = record.physics_version;
+                            return store.finish_and_claim(lease, &result, version, self.lease_ms()).await;
+                        }
+                        store.finish_done(lease, &result).await
+                    }
+                    // The database, by which blobs are reserved, or a certificate, which is not waited for: the whole is tried again.
+                    Err(error @ (StoreError::Database(_) | StoreError::UntrustedObjects(_))) => Err(error),
+                    Err(error) => {
+                        tracing::warn!(%error, "artifacts cannot be written");
+                        let error = PointError::new(FailureClass::Infrastructure, error.to_string());
+                        store.retry_later(lease, &text_of(&error)).await
+                    }
+                }
+            }
+            Ended::Computed(Ok(Computation::Suspended(suspended))) => {
+                halted(store, lease, Some(suspended), reason, halt).await
+            }
+            Ended::Computed(Err(error)) if error.is_of_this_worker() => {
+                tracing::error!(%error, "this worker cannot compute the point");
+                store.retry_later(lease, &text_of(&error.to_point_error())).await
+            }
+            Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
+            Ended::Computed(Err(error)) => {
+                tracing::warn!(%error, "point failed");
+                store.finish_failed(lease, &text_of(&error.to_point_error())).await
+            }
+            Ended::Panicked(text) => {
+                tracing::error!(text, "the simulation panicked");
+                let reason = format!("the simulation panicked: {text}");
+                store.crashed(lease, &text_of(&PointError::new(FailureClass::Crash, reason))).await
+            }
+        };
+        Ok(Finished { is_stored: is_stored?, next: None })
     }
 }
 
@@ -339,89 +440,6 @@ async fn read_suspended(store: &Store, blob: Option<BlobId>, scratch: &Path) -> 
             |error| tracing::warn!(%error, "a suspended run cannot be used; the point starts from its beginning"),
         )
         .ok()
-}
-
-/// Writes how a point ended. The store being out of reach is tried again for as long as the lease was renewed at the latest: after that
-/// the point is somebody else's.
-async fn end(
-    store: &Store,
-    lease: &Lease,
-    length: Duration,
-    mut ended: Ended,
-    reason: StopReason,
-    halt: Halt,
-) {
-    /// The longest wait between two tries.
-    const LONGEST: Duration = Duration::from_secs(4);
-    let deadline = Instant::now() + length;
-    let mut pause = Duration::from_millis(250);
-    loop {
-        match write_end(store, lease, &mut ended, reason, halt).await {
-            Ok(true) => return,
-            Ok(false) => {
-                tracing::warn!("lease lost, result dropped");
-                return;
-            }
-            Err(error) => tracing::warn!(%error, "the end of a point cannot be stored"),
-        }
-        if Instant::now() + pause > deadline {
-            // The lease runs out by itself, and the point is taken over.
-            return;
-        }
-        tokio::time::sleep(pause).await;
-        pause = LONGEST.min(2 * pause);
-    }
-}
-
-async fn write_end(
-    store: &Store,
-    lease: &Lease,
-    ended: &mut Ended,
-    reason: StopReason,
-    halt: Halt,
-) -> drillsweep_store::Result<bool> {
-    match ended {
-        Ended::Computed(Ok(Computation::Finished(computed))) => {
-            match upload(store, &computed.artifacts).await {
-                Ok(artifacts) => {
-                    let summary = Value::Object(computed.summary_row()).to_string();
-                    let provenance = json!(computed.provenance).to_string();
-                    let result = NewResult {
-                        summary_json: &summary,
-                        provenance_json: &provenance,
-                        artifacts: &artifacts,
-                        // A study of what accuracy costs measures times.
-                        is_repeatable: computed.study.is_none(),
-                    };
-                    store.finish_done(lease, &result).await
-                }
-                // The database, by which blobs are reserved, or a certificate, which is not waited for: the whole is tried again.
-                Err(error @ (StoreError::Database(_) | StoreError::UntrustedObjects(_))) => Err(error),
-                Err(error) => {
-                    tracing::warn!(%error, "artifacts cannot be written");
-                    let error = PointError::new(FailureClass::Infrastructure, error.to_string());
-                    store.retry_later(lease, &text_of(&error)).await
-                }
-            }
-        }
-        Ended::Computed(Ok(Computation::Suspended(suspended))) => {
-            halted(store, lease, Some(suspended), reason, halt).await
-        }
-        Ended::Computed(Err(error)) if error.is_of_this_worker() => {
-            tracing::error!(%error, "this worker cannot compute the point");
-            store.retry_later(lease, &text_of(&error.to_point_error())).await
-        }
-        Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
-        Ended::Computed(Err(error)) => {
-            tracing::warn!(%error, "point failed");
-            store.finish_failed(lease, &text_of(&error.to_point_error())).await
-        }
-        Ended::Panicked(text) => {
-            tracing::error!(text, "the simulation panicked");
-            let reason = format!("the simulation panicked: {text}");
-            store.crashed(lease, &text_of(&PointError::new(FailureClass::Crash, reason))).await
-        }
-    }
 }
 
 /// A failure as it is stored.

@@ -1,8 +1,8 @@
 //! What an engine must give the tests, and what they have in common.
 
 use drillsweep_store::{
-    Addition, CachePolicy, Claim, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, PointRecord,
-    Role, ScenarioText, Store, StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
+    Addition, CachePolicy, Claim, Finished, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification,
+    PointRecord, Role, ScenarioText, Store, StoreConfig, SubmitOutcome, SweepRecord, WorkKey, WorkState,
 };
 
 use crate::place::Object;
@@ -145,21 +145,35 @@ pub(crate) async fn claim_or_none(store: &Store, worker: &str) -> Option<Claim> 
 }
 
 pub(crate) async fn finish(store: &Store, claim: &Claim) -> bool {
-    let artifact = NewArtifact {
+    let artifacts = [artifact(store, claim).await];
+    let summary = summary(claim);
+    store.finish_done(&claim.lease, &result(&summary, &artifacts)).await.unwrap()
+}
+
+/// The same, and the next work item for the same worker.
+pub(crate) async fn finish_and_claim(store: &Store, claim: &Claim) -> Finished {
+    let artifacts = [artifact(store, claim).await];
+    let summary = summary(claim);
+    let result = result(&summary, &artifacts);
+    store.finish_and_claim(&claim.lease, &result, PHYSICS, LEASE_MS).await.unwrap()
+}
+
+async fn artifact(store: &Store, claim: &Claim) -> NewArtifact {
+    NewArtifact {
         name: "history".to_owned(),
         media_type: "application/vnd.apache.parquet".to_owned(),
         blob: store.put_blob(claim.lease.key.to_vec()).await.unwrap(),
         bytes: 32,
         row_count: 7,
-    };
-    let summary = format!(r#"{{"by":"{}"}}"#, claim.lease.worker);
-    let result = NewResult {
-        summary_json: &summary,
-        provenance_json: r#"{"version":"test"}"#,
-        artifacts: &[artifact],
-        is_repeatable: true,
-    };
-    store.finish_done(&claim.lease, &result).await.unwrap()
+    }
+}
+
+fn summary(claim: &Claim) -> String {
+    format!(r#"{{"by":"{}"}}"#, claim.lease.worker)
+}
+
+pub(crate) fn result<'a>(summary_json: &'a str, artifacts: &'a [NewArtifact]) -> NewResult<'a> {
+    NewResult { summary_json, provenance_json: r#"{"version":"test"}"#, artifacts, is_repeatable: true }
 }
 
 pub(crate) async fn sweep_record(store: &Store, id: &str) -> SweepRecord {

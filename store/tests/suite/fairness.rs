@@ -2,7 +2,7 @@
 
 use drillsweep_store::{NewSweep, Store, WorkKey};
 
-use crate::bench::{Engine, claim, finish, key, submit, sweep};
+use crate::bench::{Engine, claim, finish, finish_and_claim, key, submit, sweep};
 
 /// How far apart start-time fair queueing lets two owners of equal weight get, who both have work all the time: the
 /// cost of one piece of work of each (Goyal, Vin and Cheng 1996, theorem 1).
@@ -66,6 +66,21 @@ pub(crate) async fn an_owner_cannot_jump_the_queue_with_many_small_sweeps<E: Eng
     }
     let served = serve(&store, 100).await;
     assert_even(&served, 0..100, 1_000..1_100);
+}
+
+pub(crate) async fn who_goes_on_by_its_results_takes_turns_as_well<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit_of(&store, "anne", "large", 0..200).await;
+    submit_of(&store, "bert", "other", 1_000..1_200).await;
+    let mut served = Vec::new();
+    let mut next = Some(claim(&store, "w").await);
+    for _ in 0..100 {
+        let claim = next.expect("both have work");
+        served.push(claim.lease.key);
+        next = finish_and_claim(&store, &claim).await.next;
+        assert_even(&served, 0..200, 1_000..1_200);
+    }
 }
 
 pub(crate) async fn idle_time_is_not_saved_up<E: Engine>() {

@@ -1,10 +1,12 @@
 //! Leases: who holds a point, until when, and what becomes of it when its worker falls silent.
 
-use drillsweep_store::{NewSweep, Renewal, StateCounts, WorkState, WorkerRecord};
+use drillsweep_store::{
+    CachePolicy, Finished, NewArtifact, NewSweep, Renewal, StateCounts, StoreError, WorkState, WorkerRecord,
+};
 
 use crate::bench::{
-    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, json, key, point_record, states, submit, sweep,
-    sweep_record,
+    Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, finish_and_claim, json, key, point_record,
+    result, scenario, states, submit, sweep, sweep_record,
 };
 
 fn worker(id: &str) -> WorkerRecord {
@@ -90,6 +92,69 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"prompt"}"#));
     // The result is stored once, even by the one that holds the lease.
     assert!(!finish(&later, &prompt).await);
+}
+
+pub(crate) async fn a_result_brings_its_worker_the_next_point<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let first = claim(&store, "w").await;
+    let finished = finish_and_claim(&store, &first).await;
+    assert!(finished.is_stored);
+    let second = finished.next.expect("another one is ready");
+    assert_eq!((second.lease.key, second.lease.fencing_token), (key(2), 1));
+    assert_eq!(second.lease.worker, "w");
+    assert_eq!(second.scenario, scenario("s", 2));
+    assert_eq!(states(&store, "s").await, [WorkState::Done, WorkState::Leased]);
+    assert_eq!(store.renew(&second.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+    let shortly_before = engine.after(LEASE_MS - 5_000).await;
+    assert_eq!(claim_or_none(&shortly_before, "other").await, None, "its lease is as long as any");
+
+    let finished = finish_and_claim(&store, &second).await;
+    assert_eq!(finished, Finished { is_stored: true, next: None });
+    let record = sweep_record(&store, "s").await;
+    assert_eq!((record.counts.done, record.finished.is_some()), (2, true));
+    let events = store.events("s", 0, 10).await.unwrap();
+    let told: Vec<_> = events.iter().map(|event| (event.work_key, event.state)).collect();
+    let (one, two) = (key(1), key(2));
+    let expected =
+        [(one, WorkState::Leased), (one, WorkState::Done), (two, WorkState::Leased), (two, WorkState::Done)];
+    assert_eq!(told, expected);
+
+    // A result in place of an earlier one brings the next point as well.
+    let again = NewSweep { cache: CachePolicy::Refresh, ..sweep("again", [1, 2]) };
+    submit(&store, &again).await;
+    let first = claim(&store, "w").await;
+    let finished = finish_and_claim(&store, &first).await;
+    assert_eq!((finished.is_stored, finished.next.map(|next| next.lease.key)), (true, Some(two)));
+    assert_eq!(states(&store, "again").await, [WorkState::Done, WorkState::Leased]);
+}
+
+pub(crate) async fn a_result_that_is_refused_brings_no_point<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let late = claim(&store, "late").await;
+    let later = engine.after(LEASE_MS + 1).await;
+    let heir = claim(&later, "heir").await;
+    assert_eq!(heir.lease.key, late.lease.key);
+    assert_eq!(finish_and_claim(&later, &late).await, Finished { is_stored: false, next: None });
+    assert_eq!(states(&later, "s").await, [WorkState::Leased, WorkState::Queued]);
+
+    // Nor does one whose table is not there, which can be stored once it is.
+    let artifact = NewArtifact {
+        name: "history".to_owned(),
+        media_type: "application/vnd.apache.parquet".to_owned(),
+        blob: blake3::hash(b"not written").into(),
+        bytes: 11,
+        row_count: 1,
+    };
+    let refused =
+        later.finish_and_claim(&heir.lease, &result("{}", &[artifact]), PHYSICS, LEASE_MS).await.unwrap_err();
+    assert!(matches!(refused, StoreError::BlobMissing(_)), "{refused}");
+    assert_eq!(states(&later, "s").await, [WorkState::Leased, WorkState::Queued]);
+    let finished = finish_and_claim(&later, &heir).await;
+    assert_eq!((finished.is_stored, finished.next.map(|next| next.lease.key)), (true, Some(key(2))));
 }
 
 pub(crate) async fn the_same_worker_cannot_write_under_its_earlier_claim<E: Engine>() {

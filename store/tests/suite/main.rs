@@ -61,6 +61,7 @@ macro_rules! conformance {
                 ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among,
                 an_owner_cannot_jump_the_queue_with_many_small_sweeps,
                 idle_time_is_not_saved_up,
+                who_goes_on_by_its_results_takes_turns_as_well,
                 urgency_counts_within_an_owner_only,
                 retried_points_do_not_go_before_everybody_else,
             }
@@ -73,6 +74,8 @@ macro_rules! conformance {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
                 a_buried_workers_points_are_free_at_once_and_nobody_elses,
                 a_late_writer_changes_nothing,
+                a_result_brings_its_worker_the_next_point,
+                a_result_that_is_refused_brings_no_point,
                 the_same_worker_cannot_write_under_its_earlier_claim,
                 a_renewal_extends_the_lease_and_carries_the_progress,
                 a_point_whose_workers_die_three_times_is_dead,

@@ -148,6 +148,18 @@ impl Transaction {
         })
     }
 
+    /// The same, without waiting for the disk where the engine does that by itself: a crash of the database may forget it. Once a later
+    /// transaction is durable, it is too.
+    pub(crate) fn commit_for_now(self) -> BoxFuture<'static, Result<()>> {
+        Box::pin(async move {
+            match self {
+                Transaction::Sqlite { transaction, .. } => transaction.commit().await?,
+                Transaction::Postgres(transaction) => transaction.commit_for_now().await?,
+            }
+            Ok(())
+        })
+    }
+
     pub(crate) fn rollback(self) -> BoxFuture<'static, Result<()>> {
         Box::pin(async move {
             match self {

@@ -223,7 +223,8 @@ impl Store {
         let mut is_first = true;
         for (role, base_json, rows) in points.chain(runs) {
             if !is_first {
-                tx.commit().await?;
+                // What a crash forgets of a hidden sweep nobody was told of. Showing it makes all of it durable.
+                tx.commit_for_now().await?;
                 tx = self.write().await?;
                 still_hidden(&mut tx, sql::submit::KEEP_HIDDEN, &sweep.id).await?;
             }
@@ -240,7 +241,7 @@ impl Store {
         }
         if sweep.points.len() >= ANALYZED_FROM {
             // Before it is seen, so that it is read by plans for its size, and while others may write. It can be read without.
-            tx.commit().await?;
+            tx.commit_for_now().await?;
             if let Err(error) = query(sql::submit::ANALYZE).execute(&self.database).await {
                 tracing::warn!(%error, "the planner's statistics are left as they were");
             }

@@ -173,6 +173,11 @@ impl PostgresTransaction {
         self.end("COMMIT".to_owned()).await
     }
 
+    /// The same, without waiting for the disk. The log is written in its order, so that it is durable with any later commit that is.
+    pub(crate) async fn commit_for_now(self) -> Result<()> {
+        self.end("SET LOCAL synchronous_commit = off; COMMIT".to_owned()).await
+    }
+
     pub(crate) async fn rollback(self) -> Result<()> {
         self.end("ROLLBACK".to_owned()).await
     }

@@ -24,6 +24,7 @@ const POSTGRES: &[File] = &[
     (4, "transitions", include_str!("../../migrations/postgres/0004_transitions.sql")),
     (5, "references", include_str!("../../migrations/postgres/0005_references.sql")),
     (6, "finish and claim", include_str!("../../migrations/postgres/0006_finish_and_claim.sql")),
+    (7, "looks", include_str!("../../migrations/postgres/0007_looks.sql")),
 ];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A

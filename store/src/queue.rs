@@ -176,10 +176,7 @@ impl Store {
     /// When the database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
         let claim = || claiming(worker, physics_version, lease_ms).rows_of_change(&self.database);
-        let has_looked = self.reaping.is_due();
-        if has_looked {
-            self.reap().await?;
-        }
+        let has_looked = self.reap_now_and_then().await?;
         let mut rows = claim().await?;
         if rows.is_empty() && !has_looked && self.reap().await?.is_some() {
             rows = claim().await?;
@@ -246,9 +243,7 @@ impl Store {
         physics_version: i64,
         lease_ms: i64,
     ) -> Result<Finished> {
-        if self.reaping.is_due() {
-            self.reap().await?;
-        }
+        self.reap_now_and_then().await?;
         let finish = with_result(query(sql::queue::FINISH_AND_CLAIM), lease, result);
         let rows = finish.bind(lease_ms).bind(physics_version).rows::<FinishedRow>(&self.database).await?;
         let Some((outcome, key, fencing_token, base_json, changes_json, checkpoint)) =
@@ -435,7 +430,20 @@ impl Store {
         Ok(self.reap().await?.unwrap_or(0))
     }
 
-    /// The same; none if nothing was due.
+    /// The same if nobody has looked lately, neither this process nor another one of the same server. Tells whether it has looked.
+    async fn reap_now_and_then(&self) -> Result<bool> {
+        let is_due = self.reaping.is_due()
+            && query(sql::queue::BEGIN_TO_LOOK)
+                .bind(LOOK_EVERY.as_millis() as i64)
+                .scalar(&self.database)
+                .await?;
+        if is_due {
+            self.reap().await?;
+        }
+        Ok(is_due)
+    }
+
+    /// Looks for what is due, and takes it back; none if nothing was.
     async fn reap(&self) -> Result<Option<u64>> {
         // Most of the time there is nothing: look before taking the write lock.
         let is_due: bool =

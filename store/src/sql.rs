@@ -96,6 +96,7 @@ statements! {
         INSERT_WORK = "insert_work",
     }
     queue {
+        BEGIN_TO_LOOK = "begin_to_look",
         CANCEL = "cancel",
         CLAIM = "claim",
         CRASH = "crash",

@@ -407,6 +407,40 @@ async fn a_store_of_the_first_four_migrations_goes_on_where_it_was() {
 }
 
 #[tokio::test]
+async fn of_many_processes_one_looks_for_leases_that_have_run_out() {
+    let engine = <Postgres>::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", 0..8)).await;
+    let database = engine.database().await;
+    let begin = async || -> bool {
+        // Nothing takes an hour here.
+        sqlx::query_scalar("SELECT begin_to_look(3600000)").fetch_one(&database).await.unwrap()
+    };
+    let set_back = async |hours: i64| {
+        let change = "UPDATE expiry_look SET at = at - $1 * 3600000";
+        assert_eq!(sqlx::query(change).bind(hours).execute(&database).await.unwrap().rows_affected(), 1);
+    };
+    let lost = claim(&store, "lost").await;
+    assert!(!begin().await, "who claims has looked");
+    set_back(2).await;
+    assert!(begin().await);
+    assert!(!begin().await);
+    // The clock is set back.
+    set_back(-2).await;
+    assert!(begin().await);
+    // While somebody begins to, nobody waits for it.
+    set_back(2).await;
+    let mut beginning = database.begin_with("BEGIN").await.unwrap();
+    let begun: bool =
+        sqlx::query_scalar("SELECT begin_to_look(3600000)").fetch_one(&mut *beginning).await.unwrap();
+    assert!(begun && !begin().await);
+    beginning.commit().await.unwrap();
+
+    let later = engine.after(LEASE_MS + 1).await;
+    assert_eq!(claim(&later, "w").await.lease.key, lost.lease.key, "somebody looks when it is time");
+}
+
+#[tokio::test]
 async fn what_a_row_names_is_there_and_stays() {
     let engine = <Postgres>::new();
     let store = engine.open().await;
@@ -449,8 +483,9 @@ async fn what_a_row_names_is_there_and_stays() {
     assert!(store.check().await.unwrap().problems.is_empty());
 }
 
-/// Tables that only PostgreSQL needs, with their indexes: SQLite does at once what follows from a change, and leaves nothing of it in an index.
-const OF_POSTGRES: &str = "('queue_start', 'transition', 'transitions_applied')";
+/// Tables that only PostgreSQL needs, with their indexes: SQLite does at once what follows from a change, and leaves nothing of it in an index;
+/// and few processes share it.
+const OF_POSTGRES: &str = "('expiry_look', 'queue_start', 'transition', 'transitions_applied')";
 
 /// Indexes that only one of them needs: on PostgreSQL each costs with every claim, and the same rows are found by others.
 const INDEXES_OF_SQLITE: &str = "('work_by_base', 'work_open', 'work_open_by_version')";

@@ -19,3 +19,10 @@ pub struct PointEvent {
     /// When it happened.
     pub at: Timestamp,
 }
+
+/// The data of an event `deleted`: a sweep is no longer there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct DeletedSweep {
+    /// The sweep.
+    pub id: String,
+}

@@ -25,7 +25,7 @@ pub mod view;
 
 pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
-pub use event::PointEvent;
+pub use event::{DeletedSweep, PointEvent};
 pub use expand::{Expansion, PointKey, SweepPoint, check_patch, compose, expand, expand_added, key_text};
 pub use point::{
     ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureClass, FailureList, MissingFile,

@@ -19,8 +19,8 @@ use crate::answer::vocabulary;
 use crate::app::{App, Config};
 use crate::guard::middleware;
 use crate::route::{
-    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
-    spectrogram, statistics, status, sweeps, verification, web,
+    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
+    snapshots, spectrogram, statistics, status, sweeps, verification, web,
 };
 
 /// The service without the network. `stopping` ends long polls when it turns true.
@@ -50,6 +50,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::columns))
         .routes(routes!(verification::show))
         .routes(routes!(events::follow))
+        .routes(routes!(all_events::follow))
         .routes(routes!(export::export))
         .routes(routes!(sweeps::create_run))
         .routes(routes!(points::list, sweeps::append))

@@ -1,15 +1,19 @@
 // The list of sweeps, with the queue, the workers and what failed lately.
 
-import { address, follow, get, isFinal } from "./api.js";
+import { address, followAll, get, isFinal } from "./api.js";
 import { debounced, choice, fill, h } from "./dom.js";
 import { lines, shell } from "./lines.js";
 import { go, keep, link } from "./router.js";
 import { duration } from "./units.js";
 
 const PAGE = 100;
+/** How often the list is asked for while no stream tells of changes. */
 const POLL_MS = 4000;
-/** Streams at once: a browser has six connections to a server for all its tabs together. */
-const STREAMS = 2;
+/** The least time between two looks at the queue, the workers and the failures while sweeps change, and the longest while none does. */
+const SERVICE_MS = 4000;
+const QUIET_MS = 30_000;
+/** How long sweeps that are new to the page are collected before the list is asked which of them pass its filters. */
+const COLLECT_MS = 300;
 
 /** @type {import("./main.js").View} */
 export async function show(main, route, signal) {
@@ -64,7 +68,6 @@ export async function show(main, route, signal) {
     fill(body);
     next = page.next ?? null;
     add(page.sweeps);
-    watch();
   }
 
   async function more() {
@@ -109,30 +112,42 @@ export async function show(main, route, signal) {
     drawRow(entry.row, sweep, entry.pace);
   }
 
+  let isStreaming = false;
+  /** Of sweeps that the list does not show: what was told of each when the list was asked for last. @type {Map<string, string>} */
+  const elsewhere = new Map();
   /** @type {Set<string>} */
-  const streams = new Set();
+  const unknown = new Set();
+  const askForNew = debounced(() => {
+    const isAsked = [...unknown].some((id) => !known.has(id));
+    unknown.clear();
+    if (isAsked) void poll().catch(() => {});
+  }, COLLECT_MS);
 
-  /** Follows the newest sweeps that run. */
-  function watch() {
-    for (const { sweep } of known.values()) {
-      if (streams.size >= STREAMS) return;
-      if (sweep.state !== "running" || streams.has(sweep.id)) continue;
-      streams.add(sweep.id);
-      follow(sweep.id, { sweep: (changed) => {
-        if (isFinal(changed)) streams.delete(changed.id);
-        update(changed);
-      } }, signal);
-    }
+  /** Takes what the stream tells of a sweep. @param {any} sweep */
+  function hear(sweep) {
+    serviceChanged();
+    if (known.has(sweep.id)) return update(sweep);
+    const told = `${sweep.revision} ${sweep.state}`;
+    if (elsewhere.get(sweep.id) === told) return;
+    elsewhere.set(sweep.id, told);
+    unknown.add(sweep.id);
+    askForNew();
   }
 
-  /** Looks for new sweeps, and for the progress of those that no stream tells of. */
+  /** @param {string} id */
+  function forget(id) {
+    known.get(id)?.row.remove();
+    known.delete(id);
+    add([]);
+  }
+
+  /** Reads the first page of the list again. */
   async function poll() {
-    if (document.hidden) return;
     const mine = generation;
-    const [page] = await Promise.all([get("/v1/sweeps", { ...filters(), limit: PAGE }, signal), drawService()]);
+    const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
     if (mine !== generation) return;
     const fresh = page.sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id));
-    for (const sweep of page.sweeps) if (!streams.has(sweep.id)) update(sweep);
+    for (const sweep of page.sweeps) update(sweep);
     for (const sweep of fresh.reverse()) {
       const entry = { sweep, row: h("tr", {}), pace: new Pace() };
       entry.pace.note(sweep.progress);
@@ -141,10 +156,22 @@ export async function show(main, route, signal) {
       body.prepend(entry.row);
     }
     if (fresh.length) add([]);
-    watch();
+  }
+
+  let serviceAt = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let serviceWaits;
+
+  /** Looks at the service once more, not too often. */
+  function serviceChanged() {
+    serviceWaits ??= setTimeout(() => {
+      serviceWaits = undefined;
+      if (!document.hidden) void drawService().catch(() => {});
+    }, Math.max(0, serviceAt + SERVICE_MS - Date.now()));
   }
 
   async function drawService() {
+    serviceAt = Date.now();
     const [queue, { workers }, failed] = await Promise.all([get("/v1/queue", {}, signal), get("/v1/workers", {}, signal), get("/v1/failures", { limit: 5 }, signal)]);
     fill(service, ...servicePart(queue, workers));
     fill(failures, ...failuresPart(failed.failures));
@@ -178,8 +205,15 @@ export async function show(main, route, signal) {
   const observer = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && more().catch(() => {}), { rootMargin: "800px" });
   observer.observe(end);
   signal.addEventListener("abort", () => observer.disconnect());
-  const timer = setInterval(() => void poll().catch(() => {}), POLL_MS);
-  signal.addEventListener("abort", () => clearInterval(timer));
+  const timer = setInterval(() => {
+    if (document.hidden) return;
+    if (!isStreaming) void poll().catch(() => {});
+    if (!isStreaming || Date.now() - serviceAt >= QUIET_MS) serviceChanged();
+  }, POLL_MS);
+  signal.addEventListener("abort", () => {
+    clearInterval(timer);
+    clearTimeout(serviceWaits);
+  });
 
   const taken = lines(() => {
     const list = address("/v1/sweeps", filters());
@@ -204,6 +238,16 @@ export async function show(main, route, signal) {
     ),
   );
   await Promise.all([load(), drawService()]);
+  followAll({
+    sweep: hear,
+    deleted: forget,
+    opened: () => {
+      isStreaming = true;
+      // What has changed between the list and the stream, or while there was none, it may not tell.
+      void poll().catch(() => {});
+    },
+    broken: () => (isStreaming = false),
+  }, signal);
   return "Sweeps";
 }
 

@@ -40,7 +40,7 @@ pub use check::CheckReport;
 pub use connection::{Role, Store, StoreConfig};
 pub use database::DatabaseLocation;
 pub use error::{Result, StoreError};
-pub use event::Event;
+pub use event::{Event, SweepMark};
 pub use failure::{FailureFilter, FailurePlace, FailureRecord};
 pub use notification::Changes;
 pub use patience::patiently;

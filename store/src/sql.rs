@@ -75,6 +75,9 @@ statements! {
     event {
         LIST = "list",
         MAKE_DURABLE = "make_durable",
+        MARKS = "marks",
+        SINCE = "since",
+        SWEEPS = "sweeps",
     }
     failure {
         LIST = "list",
@@ -284,6 +287,8 @@ mod tests {
         ("check/references", "pragma_foreign_key_check"),
         ("check/results", "result"),
         ("check/without_result", "work"),
+        ("event/marks", "sweep"),
+        ("event/since", "sweep"),
         ("retention/artifact_names", "artifact"),
         ("retention/blobs_in_use", "artifact"),
         ("retention/blobs_in_use", "upload"),

@@ -19,7 +19,7 @@ pub struct SweepRecord {
     pub name: Option<String>,
     /// Whose share of the workers it counts against.
     pub owner: String,
-    /// The request as JSON.
+    /// The request as JSON; empty where sweeps are read [without](Store::listed_sweeps) it.
     pub request_json: String,
     /// Higher goes first.
     pub priority: i64,
@@ -375,7 +375,7 @@ async fn hold_back(tx: &mut Transaction, id: &str) -> Result<()> {
 }
 
 impl SweepRecord {
-    fn read(row: &Row) -> Result<Self> {
+    pub(crate) fn read(row: &Row) -> Result<Self> {
         let counts = StateCounts {
             total: row.get("points")?,
             queued: row.get("points_queued")?,

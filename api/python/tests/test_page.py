@@ -13,7 +13,7 @@ from urllib.parse import parse_qs
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, Request, expect, sync_playwright
 
 from drillsweep import Client, Range, Sweep
 from service import SHORT, Service
@@ -464,6 +464,59 @@ def test_keys_move_search_and_open(opened: Opens, named: Sweep, sweep: Sweep) ->
     page.wait_for_url(re.compile(f"#/sweeps/{sweep.id}"))
 
 
+def lists_asked_for(page: Page) -> list[str]:
+    """Requests for the list of sweeps from now on, as they come."""
+    asked: list[str] = []
+
+    def note(request: Request) -> None:
+        if re.search(r"/v1/sweeps(\?|$)", request.url):
+            asked.append(request.url)
+
+    page.on("request", note)
+    return asked
+
+
+def submit_slow(client: Client, name: str) -> Sweep:
+    """A sweep of one point that takes some seconds, also if it was computed before."""
+    changes = {"duration": 200, "accuracy": "draft", "recording.spectrum_windows": [], "recording.orbit_window": None}
+    return client.run("paper-200m", set=changes, name=name, outputs="summary", cache="refresh")
+
+
+def test_progress_arrives_by_a_stream_and_not_by_asking(opened: Opens, client: Client) -> None:
+    page = opened("#/nowhere")
+    asked = lists_asked_for(page)
+    page.goto(page.url.replace("#/nowhere", "#/sweeps"))
+    # Once the stream has begun, the list is read again: something may have changed between both.
+    until(page, lambda: len(asked) == 2)
+    followed = submit_slow(client, "followed")
+    row = page.get_by_role("row").filter(has=page.get_by_role("link", name="followed", exact=True))
+    expect(row).to_be_visible()
+    asked.clear()
+    expect(row.get_by_text("1 running")).to_be_visible()
+    expect(row.get_by_text("1 of 1 succeeded")).to_be_visible(timeout=60_000)
+    expect(row.get_by_text("completed")).to_be_visible()
+    followed.delete()
+    expect(row).not_to_be_visible()
+    assert asked == []
+
+
+def test_without_a_stream_the_page_asks(opened: Opens, client: Client, troubles: list[str]) -> None:
+    page = opened("#/nowhere")
+    page.route("**/v1/events", lambda route: route.fulfill(status=503, body="{}"))
+    page.goto(page.url.replace("#/nowhere", "#/sweeps"))
+    expect(page.get_by_role("heading", level=1)).to_have_text("Sweeps")
+    asked = lists_asked_for(page)
+    submit_slow(client, "asked for")
+    row = page.get_by_role("row").filter(has=page.get_by_role("link", name="asked for", exact=True))
+    expect(row.get_by_text("1 of 1 succeeded")).to_be_visible(timeout=60_000)
+    assert asked != []
+    # Once the service gives it one, it asks no more.
+    page.unroute("**/v1/events")
+    with page.expect_response("**/v1/events", timeout=20_000):
+        pass
+    troubles[:] = [text for text in troubles if "status of 503" not in text]
+
+
 def test_the_page_recovers_when_the_server_comes_back(opened: Opens, troubles: list[str], tmp_path: Path) -> None:
     service = Service("up", "--workers", "1", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
     address = service.server
@@ -475,7 +528,15 @@ def test_the_page_recovers_when_the_server_comes_back(opened: Opens, troubles: l
     try:
         expect(page.get_by_text("The server does not answer.")).not_to_be_visible(timeout=40_000)
         expect(page.get_by_text("There are no sweeps yet.")).to_be_visible()
+        with Client(address) as client:
+            submit_slow(client, "after all")
+        row = page.get_by_role("row").filter(has=page.get_by_role("link", name="after all", exact=True))
+        expect(row).to_be_visible()
+        asked = lists_asked_for(page)
+        expect(row.get_by_text("1 of 1 succeeded")).to_be_visible(timeout=60_000)
+        assert asked == []
     finally:
+        page.close()
         service.stop()
     troubles[:] = [text for text in troubles if not GONE.search(text)]
 

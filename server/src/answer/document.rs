@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use axum::http::header;
 use drillsweep_api::{
-    ExportManifest, PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails, SelectedPointList,
+    DeletedSweep, ExportManifest, PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails,
+    SelectedPointList,
 };
 use drillsweep_table::Table;
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
@@ -26,7 +27,9 @@ use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
-    components(schemas(ProblemDetails, Table, ExportManifest, PointEvent, PointList, SelectedPointList)),
+    components(schemas(
+        ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
+    )),
     modifiers(&TokenSecurity),
     security(("token" = []), ()),
     tags(

@@ -1,5 +1,6 @@
 //! What the handlers share, and how the service is set up.
 
+pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
@@ -17,6 +18,7 @@ use crate::answer::body::MEMORY_OF_BODY;
 use crate::answer::error::Result;
 use crate::answer::extract::BodyPatience;
 use crate::answer::stored::MEMORY_OF_FILE;
+use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::Metrics;
@@ -78,6 +80,8 @@ pub(crate) struct App {
     pub(crate) readiness: Arc<Readiness>,
     /// Places for event streams.
     pub(crate) streams: Arc<Semaphore>,
+    /// What has changed among all sweeps, for those event streams that tell of all.
+    pub(crate) feed: Arc<Feed>,
     /// Memory for views of results, which read and write out tables \[KiB\].
     views: Arc<Lane>,
     /// Memory for files that are sent as they are stored \[KiB\].
@@ -96,6 +100,7 @@ impl App {
             metrics: Arc::new(Metrics::new()),
             readiness: Arc::default(),
             streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
+            feed: Arc::default(),
             views: lane(config.large_answer_bytes / KIB),
             files: lane(config.large_answer_bytes / 2 / KIB),
             plans: lane(config.large_answers),

@@ -28,7 +28,7 @@ const LAST_EVENT_ID: &str = "last-event-id";
 const PAGE: i64 = 500;
 
 /// How long a client waits before it connects again.
-const RETRY: Duration = Duration::from_secs(2);
+pub(crate) const RETRY: Duration = Duration::from_secs(2);
 
 /// Where a stream begins.
 #[derive(Deserialize, IntoParams)]
@@ -69,18 +69,9 @@ pub(crate) async fn follow(
     Query(query): Query<EventsQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let after = match headers.get(LAST_EVENT_ID) {
-        None => query.after,
-        Some(value) => {
-            let text = value.to_str().unwrap_or_default();
-            let number = text.parse().map_err(|_| {
-                Error::parameter("Last-Event-ID", Some(text), "must be the `id` of an event: a whole number")
-            })?;
-            Some(number)
-        }
-    };
+    let after = last_seen(&headers, query.after)?;
     let Some(version) = app.store.sweep_version(&id).await? else { return Err(records::no_such_sweep(&id)) };
-    let sequence = after.map_or(version, |after| i64::try_from(after).unwrap_or(i64::MAX));
+    let sequence = after.unwrap_or(version);
     // A finished sweep's version is above its last event: who has seen only that one is told of the end.
     if sequence >= version
         && after.is_some()
@@ -89,9 +80,7 @@ pub(crate) async fn follow(
     {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let Ok(permit) = app.streams.clone().try_acquire_owned() else {
-        return Err(Error::unavailable("all event streams are in use"));
-    };
+    let permit = place_for_a_stream(&app)?;
     let changes = app.store.sweep_changes().await;
     let follower = Follower {
         app,
@@ -106,6 +95,26 @@ pub(crate) async fn follow(
     };
     let stream = futures::stream::unfold(follower, Follower::next);
     Ok(Sse::new(stream).keep_alive(KeepAlive::default()).into_response())
+}
+
+/// The `id` of the last event that a client has seen, by the header or else by the query.
+pub(crate) fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Option<i64>> {
+    let after = match headers.get(LAST_EVENT_ID) {
+        None => after,
+        Some(value) => {
+            let text = value.to_str().unwrap_or_default();
+            let number = text.parse().map_err(|_| {
+                Error::parameter("Last-Event-ID", Some(text), "must be the `id` of an event: a whole number")
+            })?;
+            Some(number)
+        }
+    };
+    Ok(after.map(|after: u64| i64::try_from(after).unwrap_or(i64::MAX)))
+}
+
+/// One of the places for event streams.
+pub(crate) fn place_for_a_stream(app: &App) -> Result<OwnedSemaphorePermit> {
+    app.streams.clone().try_acquire_owned().map_err(|_| Error::unavailable("all event streams are in use"))
 }
 
 /// One client's place in the events of a sweep. It holds nothing of the store between two looks, and is only asked for

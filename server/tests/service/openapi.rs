@@ -58,6 +58,7 @@ fn every_route_is_documented() {
         "get /v1/sweeps/{id}/table/columns",
         "get /v1/sweeps/{id}/verification",
         "get /v1/sweeps/{id}/events",
+        "get /v1/events",
         "get /v1/sweeps/{id}/export",
         "post /v1/runs",
         "get /v1/scenarios",

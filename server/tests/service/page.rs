@@ -268,17 +268,19 @@ async fn every_server_of_a_store_knows_a_session() {
     let another =
         drillsweep_server::router(bench.store.clone(), drillsweep_server::Config::default(), stopping);
     // As a browser's EventSource asks, which can send nothing but cookies.
-    let path = format!("/v1/sweeps/{}/events", run["sweep"].as_str().or(run["id"].as_str()).unwrap());
-    let ask = |cookie: Option<&str>| {
-        let request = Request::get(&path).header(header::ACCEPT, "text/event-stream");
+    let of_sweep = format!("/v1/sweeps/{}/events", run["sweep"].as_str().or(run["id"].as_str()).unwrap());
+    let ask = |path: &str, cookie: Option<&str>| {
+        let request = Request::get(path).header(header::ACCEPT, "text/event-stream");
         let request = match cookie {
             Some(cookie) => request.header(header::COOKIE, cookie),
             None => request,
         };
         another.clone().oneshot(request.body(Body::empty()).unwrap())
     };
-    assert_eq!(ask(None).await.unwrap().status(), StatusCode::UNAUTHORIZED);
-    let stream = ask(Some(&cookie)).await.unwrap();
-    assert_eq!(stream.status(), StatusCode::OK);
-    assert_eq!(stream.headers()[header::CONTENT_TYPE], "text/event-stream");
+    for path in [&of_sweep, "/v1/events"] {
+        assert_eq!(ask(path, None).await.unwrap().status(), StatusCode::UNAUTHORIZED);
+        let stream = ask(path, Some(&cookie)).await.unwrap();
+        assert_eq!(stream.status(), StatusCode::OK);
+        assert_eq!(stream.headers()[header::CONTENT_TYPE], "text/event-stream");
+    }
 }

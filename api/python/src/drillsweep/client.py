@@ -164,6 +164,14 @@ class Client:
         for data in self.pages("/v1/failures", "failures", {"owner": owner, "class": kind}):
             yield Point(self, data)
 
+    def watch(self, *, owner: str | None = None, tag: str | None = None) -> Iterator[tuple[str, dict[str, Any]]]:
+        """What happens to all sweeps from now on, as it happens; to those of one owner, or with a tag. It does not end.
+
+        Pairs of a name and data: `sweep` with a sweep in its present state, which begins with those that are not final
+        and comes at most once a second of each, and `deleted` with the `id` of one that is gone.
+        """
+        return self.events("/v1/events", {"owner": owner, "tag": tag})
+
     def scenarios(self) -> dict[str, str]:
         """Names and descriptions of the preset scenarios."""
         entries = self.get_json("/v1/scenarios")["scenarios"]
@@ -256,17 +264,18 @@ class Client:
             part.unlink(missing_ok=True)
         return file
 
-    def events(self, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    def events(self, path: str, query: Mapping[str, Any] | None = None) -> Iterator[tuple[str, dict[str, Any]]]:
         """Names and data of a stream of server-sent events, until the server has no further events.
 
         A stream that breaks off, as when the server is started anew, is taken up after the last event that came.
         """
         last: str | None = None
+        parameters = {name: value for name, value in (query or {}).items() if value is not None}
         deadline = time.monotonic() + self.patience
         while True:
             headers = {"accept": "text/event-stream", **({} if last is None else {"last-event-id": last})}
             try:
-                with self._http.stream("GET", path, headers=headers) as response:
+                with self._http.stream("GET", path, params=parameters, headers=headers) as response:
                     if response.status_code == 204:
                         return
                     if not response.is_success:

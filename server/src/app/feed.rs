@@ -1,0 +1,63 @@
+//! What has changed among all sweeps, found once and told to every event stream.
+
+use std::sync::Arc;
+
+use tokio::sync::{Mutex, MutexGuard, broadcast};
+
+/// Batches that a stream may be behind before it is given up; its client resumes.
+const BACKLOG: usize = 64;
+
+/// What was found at one look at the store.
+#[derive(Debug, Default)]
+pub(crate) struct News {
+    /// The store's time before the look \[ms since the epoch\]: what changed before it was found by then.
+    pub(crate) at: i64,
+    /// Sweeps as they are now.
+    pub(crate) changed: Vec<Told>,
+    /// Sweeps that are no longer there.
+    pub(crate) deleted: Vec<String>,
+}
+
+/// A sweep as streams tell of it, and what they choose by.
+#[derive(Debug, Clone)]
+pub(crate) struct Told {
+    pub(crate) id: String,
+    pub(crate) version: i64,
+    pub(crate) owner: String,
+    pub(crate) tags: Vec<String>,
+    /// A `Sweep`, as JSON.
+    pub(crate) json: String,
+}
+
+/// Where news come in and go out; nobody looks for any before a stream is open.
+#[derive(Debug, Default)]
+pub(crate) struct Feed(Mutex<Option<broadcast::Sender<Arc<News>>>>);
+
+impl Feed {
+    /// The place of who looks for news; it is held while that begins or ends.
+    pub(crate) async fn place(&self) -> Place<'_> {
+        Place(self.0.lock().await)
+    }
+}
+
+/// The place of who looks for news.
+pub(crate) struct Place<'a>(MutexGuard<'a, Option<broadcast::Sender<Arc<News>>>>);
+
+impl Place<'_> {
+    /// The news from now on, if somebody looks for them.
+    pub(crate) fn join(&self) -> Option<broadcast::Receiver<Arc<News>>> {
+        self.0.as_ref().map(broadcast::Sender::subscribe)
+    }
+
+    /// Begins: where news go in, and where the first stream gets them.
+    pub(crate) fn begin(&mut self) -> (broadcast::Sender<Arc<News>>, broadcast::Receiver<Arc<News>>) {
+        let (sender, receiver) = broadcast::channel(BACKLOG);
+        *self.0 = Some(sender.clone());
+        (sender, receiver)
+    }
+
+    /// Ends; streams that are still open end as well, once the looker's own sender is gone.
+    pub(crate) fn end(&mut self) {
+        *self.0 = None;
+    }
+}

@@ -62,7 +62,7 @@ export async function show(main, route, signal) {
     h("button", { type: "submit", disabled: keys.length >= MOST }, keys.length >= MOST ? `At most ${MOST}` : "Add"),
   );
 
-  const place = canvas(VIEWS.find(([name]) => name === view)?.[1] ?? "", "tall");
+  const place = canvas(VIEWS.find(([name]) => name === view)?.[1] ?? "", view, "tall");
   const controls = h("div", { class: "controls" });
   const wrong = h("p", { class: "wrong", role: "alert" });
   const ticks = quantityTicks(query.get("profiles") ?? "friction_coefficient,eccentricity,effective_tension,largest_normal_force", (names) => {
@@ -123,7 +123,7 @@ export async function show(main, route, signal) {
           const seen = seenDownhole(columns.u, columns.v, statics.columns.low_side_angle[Math.max(0, statics.columns.node.indexOf(attributes.node))]);
           return overTime(points[order], columns.time, shown("radius", direction === "radius" ? columns.radius : direction === "across" ? seen.across : seen.up));
         });
-        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: `displacement [${unit("radius").symbol}]` } }, signal);
+        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, signal);
       } else if (view === "rotation") {
         const quantity = query.get("quantity") === "torque" ? "torque" : "rotation_speed";
         const traces = await Promise.all(points.map(async (point) => {
@@ -131,7 +131,7 @@ export async function show(main, route, signal) {
           const { columns } = await table(point, "history", { ...asks, fields: `time,${name}`, max_points: SHOWN, decimation: "minmax" });
           return overTime(point, columns.time, shown(name, columns[name]));
         }));
-        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: title(quantity) } }, signal);
+        await draw(place, traces, { xaxis: { title: "time [s]" }, yaxis: { title: title(quantity), quantity } }, signal);
       } else if (view === "well") {
         const found = await Promise.all(points.map(async (point) => (await table(point, "statics")).columns));
         const traces = found.map((statics, order) => {
@@ -146,7 +146,7 @@ export async function show(main, route, signal) {
         const accounts = [...new Set(found.flatMap((one) => one.accounts))];
         const { symbol } = unit("kinetic");
         const traces = found.map((one, order) => ({ type: "bar", name: points[order].name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: points[order].colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
-        await draw(place, traces, { barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]` } }, signal);
+        await draw(place, traces, { barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, signal);
       } else {
         const found = await Promise.all(points.map((point) => table(point, "spectrum", { ...asks, window: "hann" })));
         const layout = spectrumLayout(null, query.get("amplitude") === "log");

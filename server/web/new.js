@@ -63,7 +63,7 @@ export async function show(main, route, signal) {
   const drawnPart = h("div", { class: "controls" });
   const general = h("p", { class: "wrong", role: "alert" });
   const planned = h("div", {});
-  const preview = canvas("Preview of the points");
+  const preview = canvas("Preview of the points", "preview");
   const submit = h("button", { class: "main", type: "submit", disabled: true }, "Submit");
   const paths = h("datalist", { id: "paths" }, ["flow_rate", "mud_density", ...pathNames()].map((entry) => h("option", { value: entry }, label(entry))));
 
@@ -209,7 +209,7 @@ export async function show(main, route, signal) {
     if (!names.length) return;
     const [x, y] = names;
     const values = (/** @type {string} */ of) => shown(of, points.map((point) => point.parameters[of]));
-    await draw(preview, [{ type: points.length > 3000 ? "scattergl" : "scatter", mode: "markers", x: values(x), y: y ? values(y) : points.map(() => 0), marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 }, hoverinfo: y ? "x+y" : "x" }], { xaxis: { title: title(x) }, yaxis: y ? { title: title(y) } : { visible: false } }, signal);
+    await draw(preview, [{ type: points.length > 3000 ? "scattergl" : "scatter", mode: "markers", x: values(x), y: y ? values(y) : points.map(() => 0), marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 }, hoverinfo: y ? "x+y" : "x" }], { xaxis: { title: title(x), quantity: x }, yaxis: y ? { title: title(y), quantity: y } : { visible: false } }, signal);
   }
 
   const taken = lines(() => {

@@ -61,8 +61,8 @@ export function orbitLayout(isZoomed, traces, clearance) {
     y = [(up[0] + up[1]) / 2 - half, (up[0] + up[1]) / 2 + half];
   }
   return {
-    xaxis: { title: `across the hole [${symbol}]`, range: x, scaleanchor: "y", constrain: "domain", zeroline: !isZoomed },
-    yaxis: { title: `from the low side up [${symbol}]`, range: y, constrain: "domain", zeroline: !isZoomed },
+    xaxis: { title: `across the hole [${symbol}]`, quantity: "radius", range: x, scaleanchor: "y", constrain: "domain", zeroline: !isZoomed },
+    yaxis: { title: `from the low side up [${symbol}]`, quantity: "radius", range: y, constrain: "domain", zeroline: !isZoomed },
   };
 }
 
@@ -104,7 +104,7 @@ export function spectrumLayout(table, isLog) {
   const beyond = resolved && resolved < last ? [[resolved, last], [-last, -resolved]] : [];
   return {
     xaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
-    yaxis: { title: title("amplitude"), type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
+    yaxis: { title: title("amplitude"), quantity: "amplitude", type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
     shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
     annotations: table
       ? readable(namedLines(table), last).map((peak) => {

@@ -2,6 +2,7 @@
 
 import { h } from "./dom.js";
 import { settings, theme } from "./settings.js";
+import { forgetZoom, keepZoom, wholeOf, zoomed } from "./zoom.js";
 
 /** Lines that differ, for colour-blind readers too (after Okabe and Ito); lighter on the dark theme. */
 const PALETTES = {
@@ -45,19 +46,29 @@ export function inks() {
 /**
  * A place for a picture. It is a figure and no image to screen readers: it has buttons.
  * @param {string} name what screen readers say and files are called
+ * @param {string} key what the link calls it, where it holds how the picture is zoomed
  * @param {string} [size] `low` or `tall`
  */
-export function canvas(name, size = "") {
+export function canvas(name, key, size = "") {
   // While the data come.
   plotly().catch(() => {});
-  return h("div", { class: `plot ${size}`, role: "figure", "aria-label": name });
+  return h("div", { class: `plot ${size}`, role: "figure", "aria-label": name, "data-zoom": key });
 }
 
 /**
- * Draws, or redraws, a picture.
+ * What is known of a picture that is drawn: its layout, what its axes are, and how it is when it is not zoomed.
+ * @type {WeakMap<HTMLElement, {layout: any, axes: string, whole: Record<string, any>}>}
+ */
+const drawn = new WeakMap();
+/** Pictures whose layout the page changes itself. @type {WeakSet<HTMLElement>} */
+const adjusted = new WeakSet();
+
+/**
+ * Draws, or redraws, a picture; zoomed as the link says, unless its axes are others than when it was drawn last.
  * @param {HTMLElement} place made by `canvas`
  * @param {any[]} traces
- * @param {any} layout what differs from the common layout
+ * @param {any} layout what differs from the common layout; the `quantity` of an axis is what it shows, where that has a unit, and
+ *   `shows` is what a change of takes the zoom back, beside that of the axes
  * @param {AbortSignal} signal of the view: the picture is taken down with it
  * @returns {Promise<any>} the picture, which has plotly's events
  */
@@ -66,8 +77,14 @@ export async function draw(place, traces, layout, signal) {
   await laidOut(place, signal);
   if (signal.aborted) return place;
   const isFirst = !place.classList.contains("js-plotly-plot");
-  await Plotly.react(place, traces, merged(common(), layout), config(Plotly, place));
+  await Plotly.react(place, traces, merged(common(), layout), config(Plotly, place, layout));
+  await zoom(Plotly, place, layout);
   if (isFirst) {
+    /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
+      const known = drawn.get(place);
+      if (!known || adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
+      keepZoom(keyOf(place), /** @type {any} */ (place)._fullLayout, known.layout, known.whole);
+    });
     const observer = new ResizeObserver(() => place.isConnected && place.clientWidth > 0 && Plotly.Plots.resize(place));
     observer.observe(place);
     signal.addEventListener("abort", () => {
@@ -77,6 +94,27 @@ export async function draw(place, traces, layout, signal) {
     }, { once: true });
   }
   return place;
+}
+
+/**
+ * Zooms a picture that has just been drawn as a whole.
+ * @param {any} Plotly
+ * @param {HTMLElement} place
+ * @param {any} layout
+ */
+async function zoom(Plotly, place, layout) {
+  const full = /** @type {any} */ (place)._fullLayout;
+  const axes = JSON.stringify([layout.shows, ...Object.keys(layout).filter((name) => /^[xy]axis/.test(name)).map((name) => layout[name].quantity ?? layout[name].title)]);
+  const before = drawn.get(place);
+  drawn.set(place, { layout, axes, whole: wholeOf(full, layout) });
+  if (before && before.axes !== axes) return forgetZoom(keyOf(place));
+  const changes = zoomed(keyOf(place), layout);
+  if (Object.keys(changes).length) await adjust(place, changes);
+}
+
+/** @param {HTMLElement} place */
+function keyOf(place) {
+  return place.dataset.zoom ?? "";
 }
 
 /**
@@ -98,7 +136,11 @@ function laidOut(place, signal) {
  * @param {any} changes by path, as plotly's `relayout` takes them
  */
 export async function adjust(place, changes) {
-  if (place.classList.contains("js-plotly-plot")) await (await plotly()).relayout(place, changes);
+  if (!place.classList.contains("js-plotly-plot")) return;
+  const Plotly = await plotly();
+  adjusted.add(place);
+  await Plotly.relayout(place, changes);
+  adjusted.delete(place);
 }
 
 function common() {
@@ -124,17 +166,18 @@ function common() {
  * @param {any} own
  */
 function merged(base, own) {
-  const result = { ...base, ...own };
-  for (const name of new Set(["xaxis", "yaxis", ...Object.keys(own).filter((key) => /^[xy]axis\d*$/.test(key))])) {
-    const given = own[name] ?? {};
+  const { shows, ...layout } = own;
+  const result = { ...base, ...layout };
+  for (const name of new Set(["xaxis", "yaxis", ...Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key))])) {
+    const { quantity, ...given } = layout[name] ?? {};
     const title = typeof given.title === "string" ? { text: given.title } : given.title;
     result[name] = { ...base.xaxis, ...given, title: { ...base.xaxis.title, ...title } };
   }
   return result;
 }
 
-/** @param {any} Plotly @param {HTMLElement} place */
-function config(Plotly, place) {
+/** @param {any} Plotly @param {HTMLElement} place @param {any} layout */
+function config(Plotly, place, layout) {
   const filename = (place.getAttribute("aria-label") ?? "picture").replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase();
   const save = (/** @type {string} */ format) => ({
     name: `save-${format}`,
@@ -144,7 +187,9 @@ function config(Plotly, place) {
   });
   // plotly would offer to send what is shown to a service of its own.
   const nowhereElse = { showSendToCloud: false, plotlyServerURL: "" };
-  return { ...nowhereElse, displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d", "autoScale2d"], modeBarButtonsToAdd: [save("png"), save("svg")] };
+  // Who has zoomed in to a picture in which a window is chosen can choose one again.
+  const unused = ["toImage", "lasso2d", "autoScale2d", ...(layout.dragmode === "select" ? [] : ["select2d"])];
+  return { ...nowhereElse, displaylogo: false, modeBarButtonsToRemove: unused, modeBarButtonsToAdd: [save("png"), save("svg")] };
 }
 
 /** Letters in a frame: `P` for PNG, `S` for SVG. */

@@ -16,7 +16,7 @@ const SAMPLED = 50_000;
  * @param {(time: number) => void} onTime where the reader points on the map
  */
 export function contactMap(context, onTime) {
-  const place = canvas("Contact force over depth and time");
+  const place = canvas("Contact force over depth and time", "contacts");
   const caption = h("figcaption", {});
   return {
     element: h("div", { class: "panel" }, h("h2", {}, "Contacts"), h("figure", {}, place, caption)),
@@ -30,7 +30,7 @@ export function contactMap(context, onTime) {
       const shape = await draw(
         place,
         [{ type: "heatmap", x: time, y: shown("measured_depth", statics.measured_depth), z: force.map((row) => row.map((value) => value / size)), zmin: 0, zmax: most / size, colorscale: SCALE, colorbar: colourBar(title("normal_force")), hovertemplate: `%{x:.2f} s, %{y:.1f} ${unit("measured_depth").symbol}: %{z:.4~g} ${unit("normal_force").symbol}<extra></extra>` }],
-        { xaxis: { title: "time [s]" }, yaxis: { title: title("measured_depth"), autorange: "reversed" } },
+        { xaxis: { title: "time [s]" }, yaxis: { title: title("measured_depth"), quantity: "measured_depth", autorange: "reversed" } },
         context.signal,
       );
       shape.removeAllListeners?.("plotly_click");

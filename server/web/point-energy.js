@@ -26,8 +26,8 @@ export function ledger(columns) {
  * @returns {import("./point.js").PointPart}
  */
 export function energy(context) {
-  const bars = canvas("Energy by account at the end of the run", "low");
-  const curves = canvas("Energy over time");
+  const bars = canvas("Energy by account at the end of the run", "bars", "low");
+  const curves = canvas("Energy over time", "curves");
   const caption = h("figcaption", {});
 
   async function redraw() {
@@ -42,8 +42,8 @@ export function energy(context) {
       const names = backwards.filter((account) => kind(account) === group);
       return { type: "bar", orientation: "h", name, y: names.map(label), x: names.map((account) => shown(account, [change(account)])[0]), marker: { color: LINES[group] }, showlegend: true, text: names.map((account) => say(account, change(account), 3)), textposition: "outside", cliponaxis: false, hovertemplate: `%{y}: %{x:.4~g} ${power}<extra></extra>` };
     });
-    await draw(bars, traces, { xaxis: { title: `energy [${power}]` }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal);
-    await draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${power}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${power}]` }, hovermode: "x" }, context.signal);
+    await draw(bars, traces, { xaxis: { title: `energy [${power}]`, quantity: backwards[0] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal);
+    await draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${power}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${power}]`, quantity: backwards[0] }, hovermode: "x" }, context.signal);
   }
 
   return {

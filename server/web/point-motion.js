@@ -21,10 +21,10 @@ export function motion(context) {
   const { recording, duration, operation } = point.scenario;
   /** @type {any[]} */
   const nodes = recording.nodes;
-  const history = canvas("History of the node", "low");
-  const rotation = canvas("Rotation speed and torque of the node", "low");
-  const orbit = canvas("Orbit of the node");
-  const spectrum = canvas("Full spectrum of the node");
+  const history = canvas("History of the node", "history", "low");
+  const rotation = canvas("Rotation speed and torque of the node", "rotation", "low");
+  const orbit = canvas("Orbit of the node", "orbit");
+  const spectrum = canvas("Full spectrum of the node", "spectrum");
   const statistics = h("div", {});
   const listed = h("div", {});
   const controls = h("div", { class: "controls" });
@@ -132,7 +132,7 @@ export function motion(context) {
       { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
     ];
     history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
-    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]` }, shapes: [shade()], newselection: { line: { color: inks().soft, width: 1 } } }, signal);
+    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()], newselection: { line: { color: inks().soft, width: 1 } } }, signal);
     shape.removeAllListeners?.("plotly_selecting");
     shape.removeAllListeners?.("plotly_selected");
     /** @type {[number, number] | null} */
@@ -176,7 +176,7 @@ export function motion(context) {
         { type: "scatter", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
         { type: "scatter", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
       ],
-      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]` }, yaxis2: { title: `torque [${unit(torque).symbol}]`, overlaying: "y", side: "right", showgrid: false } },
+      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false } },
       signal,
     );
   }
@@ -223,7 +223,7 @@ export function motion(context) {
     if (!table?.columns.u.length) return;
     orbit.setAttribute("aria-label", `Orbit of node ${node} at ${say("measured_depth", depth)}`);
     const trace = orbitTrace(table, lowSide, { color: LINES[0] });
-    await draw(orbit, [holeTrace(clearance), trace], orbitLayout(isZoomed(), [trace], clearance), signal);
+    await draw(orbit, [holeTrace(clearance), trace], { ...orbitLayout(isZoomed(), [trace], clearance), shows: [node, isZoomed()] }, signal);
   }
 
   async function drawSpectrum() {

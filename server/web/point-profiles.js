@@ -63,8 +63,8 @@ export async function drawProfiles(place, names, points, signal) {
     hovermode: "y",
     hoversubplots: "axis",
     margin: { l: 64, r: 12, t: points.length > 1 ? 40 : 12, b: 60 },
-    yaxis: { title: title("measured_depth"), autorange: "reversed", showspikes: true, spikemode: "across", spikesnap: "cursor", spikethickness: 1, spikecolor: soft, spikedash: "solid", zeroline: false },
-    ...Object.fromEntries(names.map((name, column) => [`xaxis${column ? column + 1 : ""}`, { title: { text: wrapped(title(name)), font: { size: 12 } }, domain: [column * width + (column ? gap : 0), (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2)], anchor: "y", nticks: 5 }])),
+    yaxis: { title: title("measured_depth"), quantity: "measured_depth", autorange: "reversed", showspikes: true, spikemode: "across", spikesnap: "cursor", spikethickness: 1, spikecolor: soft, spikedash: "solid", zeroline: false },
+    ...Object.fromEntries(names.map((name, column) => [`xaxis${column ? column + 1 : ""}`, { title: { text: wrapped(title(name)), font: { size: 12 } }, quantity: name, domain: [column * width + (column ? gap : 0), (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2)], anchor: "y", nticks: 5 }])),
   };
   return draw(place, traces, layout, signal);
 }
@@ -101,7 +101,7 @@ export function quantityTicks(chosen, onChange) {
  * @returns {import("./point.js").PointPart}
  */
 export function profiles(context) {
-  const place = canvas("Profiles over measured depth", "tall");
+  const place = canvas("Profiles over measured depth", "profiles", "tall");
   const reading = h("p", { class: "small soft", role: "status" }, "Point at a depth to read all profiles there.");
   const ticks = quantityTicks(context.query.get("profiles") ?? "", (names) => {
     context.keep({ profiles: names.join(",") });

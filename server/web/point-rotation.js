@@ -10,7 +10,7 @@ const TAKEN = 300_000;
 
 /** @param {import("./point.js").PointContext} context */
 export function rotation(context) {
-  const place = canvas("Rotation speed and torque at bit and top");
+  const place = canvas("Rotation speed and torque at bit and top", "rotation");
   return {
     element: h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, h("figcaption", {}, "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. At the bit the torque on bit is constant."))),
     /** @param {{from: number, to: number}} window [s] @param {number} nodes */
@@ -27,7 +27,7 @@ export function rotation(context) {
           line("torque", nodes - 1, "torque, bit", { yaxis: "y2", line: { color: LINES[1], width: 1.2 } }),
           line("torque", 0, "torque, top", { yaxis: "y2", line: { color: LINES[3], width: 1.2 } }),
         ],
-        { showlegend: true, xaxis: { title: "time [s]", anchor: "y2" }, yaxis: { title: title("rotation_speed"), domain: [0.54, 1] }, yaxis2: { title: title("torque"), domain: [0, 0.46], anchor: "x" } },
+        { showlegend: true, xaxis: { title: "time [s]", anchor: "y2" }, yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] }, yaxis2: { title: title("torque"), quantity: "torque", domain: [0, 0.46], anchor: "x" } },
         context.signal,
       );
     },

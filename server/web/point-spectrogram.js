@@ -19,7 +19,7 @@ export function spectrogram(context) {
   const { recording } = point.scenario;
   /** @type {any[]} */
   const nodes = recording.nodes;
-  const place = canvas("Spectrogram of the node", "tall");
+  const place = canvas("Spectrogram of the node", "spectrogram", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const wrong = h("p", { class: "wrong", role: "alert" });

@@ -21,7 +21,7 @@ const SAME = 1e-9;
  */
 export function difference(context) {
   const { query, signal } = context;
-  const place = canvas("Difference of two sweeps", "tall");
+  const place = canvas("Difference of two sweeps", "difference", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
@@ -98,7 +98,7 @@ export function difference(context) {
     const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
     const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}`, `other: ${say(colour, pair.partner.value)}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
     const keys = pairs.map((pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`);
-    const axisLayout = (/** @type {string} */ axis) => ({ title: title(axis), type: context.spans[axis]?.scale === "log" ? "log" : "linear" });
+    const axisLayout = (/** @type {string} */ axis) => ({ title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" });
     /** @type {any[]} */
     let traces;
     /** @type {any} */
@@ -120,7 +120,7 @@ export function difference(context) {
       const line = (/** @type {string} */ called, /** @type {(index: number) => number} */ value, /** @type {number} */ number, /** @type {any} */ more = {}) => ({ type: "scatter", mode: "lines+markers", name: called, showlegend: true, x: order.map((index) => at(x, pairs[index].x)), y: order.map(value), text: order.map((index) => text[index]), customdata: order.map((index) => keys[index]), hoverinfo: "text", line: { color: LINES[number], dash: DASHES[number] }, ...more });
       const { size } = unit(colour);
       traces = [line(first, (index) => pairs[index].value / size, 0), line(second, (index) => pairs[index].partner.value / size, 1), line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" })];
-      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), domain: [0.45, 1] }, yaxis2: { title: name, domain: [0, 0.36] } };
+      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] }, yaxis2: { title: name, domain: [0, 0.36] } };
     }
     const shape = await draw(place, traces, layout, signal);
     shape.removeAllListeners?.("plotly_click");

@@ -12,8 +12,8 @@ import { label, title, unit } from "./units.js";
  */
 export function effects(context) {
   const { table, axes, query } = context;
-  const bars = canvas("Shares of the variance", "low");
-  const curves = canvas("Main effects");
+  const bars = canvas("Shares of the variance", "shares", "low");
+  const curves = canvas("Main effects", "effects");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
@@ -52,7 +52,7 @@ export function effects(context) {
     fill(caption, `Of the variance of ${label(result)} over ${rows.length} points. `, hasTotals ? "The points are a full grid: the shares are its exact decomposition, over the values that it has." : "Estimated from the points in groups; lines are 95 % intervals (jackknife).", ` ${context.biases.say(result)}`);
     bars.setAttribute("aria-label", `Shares of the variance of ${label(result)}: ${order.toReversed().map((index) => `${label(axes[index])} ${Math.round(100 * found[index].first)} %`).join(", ")}`);
     await draw(bars, traces, { xaxis: { title: "share of the variance (Sobol index)", range: [Math.min(0, ...firsts) - 0.01, 1.02] }, yaxis: { title: "", gridcolor: "rgba(0,0,0,0)", automargin: true }, barmode: "group", margin: { l: 20, r: 16, t: 30, b: 50 } }, context.signal);
-    const layout = { grid: { rows: 1, columns: axes.length, pattern: "independent" }, showlegend: false, ...Object.fromEntries(axes.flatMap((axis, index) => [[`xaxis${index || ""}`.replace(/^xaxis(\d+)$/, (_, at) => `xaxis${Number(at) + 1}`), { title: title(axis), type: context.spans[axis]?.scale === "log" ? "log" : "linear" }], [`yaxis${index ? index + 1 : ""}`, { title: index ? "" : title(result), matches: index ? "y" : undefined }]])) };
+    const layout = { grid: { rows: 1, columns: axes.length, pattern: "independent" }, showlegend: false, ...Object.fromEntries(axes.flatMap((axis, index) => [[`xaxis${index || ""}`.replace(/^xaxis(\d+)$/, (_, at) => `xaxis${Number(at) + 1}`), { title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" }], [`yaxis${index ? index + 1 : ""}`, { title: index ? "" : title(result), matches: index ? "y" : undefined }]])) };
     await draw(curves, axes.map((axis, index) => ({ type: "scatter", mode: "lines+markers", x: found[index].levels.map((level) => level.value / unit(axis).size), y: found[index].levels.map((level) => level.mean), error_y: { type: "data", array: found[index].levels.map((level) => level.error), thickness: 1.2 }, line: { color: LINES[index % LINES.length] }, xaxis: `x${index ? index + 1 : ""}`, yaxis: `y${index ? index + 1 : ""}`, name: label(axis), hoverinfo: "x+y" })), layout, context.signal);
   }
 

@@ -15,7 +15,7 @@ const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9",
  */
 export function map(context) {
   const { axes, table, query } = context;
-  const place = canvas("Map of the sweep", "tall");
+  const place = canvas("Map of the sweep", "map", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const region = finer(context);
@@ -87,12 +87,12 @@ export function map(context) {
 
     const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / unit(name).size : value);
     const texts = rows.map((index) => [`point ${ordinals[index]}: ${states[index]}`, `${label(x)} ${say(x, xs[index])}`, y && `${label(y)} ${say(y, ys[index])}`, `${label(colour)} ${say(colour, values[index])}`].filter(Boolean).join("<br>"));
-    const axisLayout = (/** @type {string} */ name) => ({ title: title(name), type: context.spans[name]?.scale === "log" ? "log" : "linear" });
+    const axisLayout = (/** @type {string} */ name) => ({ title: title(name), quantity: name, type: context.spans[name]?.scale === "log" ? "log" : "linear" });
 
     if (!y) {
       const order = rows.map((_, position) => position).sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
       const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0] }, line: { color: LINES[0] } };
-      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
+      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
       listen(shape, chooseRegion);
       return;
     }

@@ -15,7 +15,7 @@ const MANY = 3000;
  */
 export function scatter(context) {
   const { table, query } = context;
-  const place = canvas("Scatter of the points", "tall");
+  const place = canvas("Scatter of the points", "scatter", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
 
@@ -51,7 +51,7 @@ export function scatter(context) {
     const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
     fill(caption, `${both} of ${ordinals.length} points have both values. Select a point to open it. `, [...new Set([x, y, colour])].map((name) => context.biases.say(name) && `${label(name)}: ${context.biases.say(name)} `));
     place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);
-    const shape = await draw(place, traces, { xaxis: { title: title(x), type: isText(xs) ? "category" : isLogX ? "log" : "linear" }, yaxis: { title: title(y), type: isText(ys) ? "category" : isLogY ? "log" : "linear" } }, context.signal);
+    const shape = await draw(place, traces, { xaxis: { title: title(x), quantity: x, type: isText(xs) ? "category" : isLogX ? "log" : "linear" }, yaxis: { title: title(y), quantity: y, type: isText(ys) ? "category" : isLogY ? "log" : "linear" } }, context.signal);
     shape.removeAllListeners?.("plotly_click");
     shape.on?.("plotly_click", (/** @type {any} */ event) => context.open(event.points[0].customdata));
   }
@@ -73,7 +73,7 @@ export function scatter(context) {
  */
 export function parallel(context) {
   const { table, axes, query } = context;
-  const place = canvas("Parallel coordinates of the sweep", "tall");
+  const place = canvas("Parallel coordinates of the sweep", "parallel", "tall");
   const caption = h("figcaption", {}, "Drag along an axis to keep the points that pass there; drag an axis by its name to move it.");
   const controls = h("div", { class: "controls" });
 

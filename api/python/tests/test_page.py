@@ -234,6 +234,50 @@ def test_pictures_are_saved_here_and_sent_nowhere(opened: Opens, named: Sweep) -
     assert not [title for title in titles if title is None or re.search("(?i)cloud|share|send|plotly|link", title)]
 
 
+def ranges(picture: Locator) -> list[float]:
+    """The ends of both axes, as they are drawn."""
+    return list(picture.evaluate("place => [...place._fullLayout.xaxis.range, ...place._fullLayout.yaxis.range]"))
+
+
+def test_the_link_holds_how_a_picture_is_zoomed(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1")
+    spectrum = drawn(page, "Full spectrum of node")
+    whole = ranges(spectrum)
+    spectrum.scroll_into_view_if_needed()
+    box = spectrum.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.2 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.9 * box["height"], steps=5)
+    page.mouse.up()
+    until(page, lambda: "zoom.spectrum=" in page.url)
+    width = whole[1] - whole[0]
+    chosen = ranges(spectrum)
+    assert chosen[:2] == pytest.approx([whole[0] + part * width for part in (0.4, 0.7)], abs=0.01 * width)
+    # Who opens the link sees the same, in the units that are theirs.
+    other = opened(f"#{page.url.partition('#')[2]}")
+    until(other, lambda: ranges(drawn(other, "Full spectrum of node")) == pytest.approx(chosen, rel=1e-6))
+    other.get_by_role("button", name="Units: SI. Switch").click()
+    in_inches = [*chosen[:2], *(end / 25.4 for end in chosen[2:])]
+    until(other, lambda: ranges(drawn(other, "Full spectrum of node")) == pytest.approx(in_inches, rel=1e-6))
+    # Shown as a whole again, it is no part of the link any more.
+    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    until(page, lambda: "zoom" not in page.url)
+    assert ranges(spectrum) == pytest.approx(whole)
+
+
+def test_a_zoom_goes_with_the_axes_that_it_was_of(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&zoom.map=x:0.008:0.02,y:1100:1500")
+    picture = drawn(page, "over flow rate and mud density")
+    until(page, lambda: ranges(picture)[2:] == pytest.approx([1100, 1500]))
+    page.get_by_label("Colour", exact=True).select_option("friction_coefficient_max")
+    picture = drawn(page, "friction coefficient.* over flow rate")
+    until(page, lambda: ranges(picture)[2:] == pytest.approx([1100, 1500]))
+    page.get_by_label("Up", exact=True).select_option("operation.rotation_speed_rpm")
+    drawn(page, "over flow rate and rotation speed")
+    until(page, lambda: "zoom" not in page.url)
+
+
 def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=about")
     effects = page.get_by_role("region", name="Effects")

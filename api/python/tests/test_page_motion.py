@@ -178,3 +178,21 @@ def test_a_phone_shows_the_string_without_sideways_scrolling(opened: Opens, reco
         page = opened(f"#/sweeps/{recorded.id}/points/1?view={view}", viewport={"width": 390, "height": 844})
         page.wait_for_load_state("networkidle")
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, view
+
+
+@pytest.mark.parametrize(("view", "name"), [("spectrogram", "Spectrogram of node"), ("string", "Contact force over")])
+def test_maps_over_time_are_saved_as_pictures(opened: Opens, recorded: Sweep, view: str, name: str) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view={view}")
+    picture = drawn(page, name)
+    saved = {}
+    for format in ("PNG", "SVG"):
+        with page.expect_download() as download:
+            picture.locator(f"[data-title='Save as {format}']").click()
+        assert download.value.suggested_filename.endswith(f".{format.lower()}")
+        saved[format] = download.value.path().read_bytes()
+    assert saved["PNG"].startswith(b"\x89PNG\r\n")
+    drawing = saved["SVG"].decode()
+    assert drawing.startswith("<svg")
+    # Its cells are there, not only its axes.
+    assert "<image" in drawing
+    assert "time [s]" in drawing

@@ -1,0 +1,82 @@
+// The part of a picture that the reader has zoomed in to, kept in the link in the service's units: `zoom.map=x:0.01:0.02,y:1200:1500`,
+// or `zoom.well=camera:...` of a picture in space.
+
+import { keep, route } from "./router.js";
+import { unit } from "./units.js";
+
+/** Digits of an end. */
+const DIGITS = 7;
+/** Part of a range by which an end may differ from where it was drawn, and the picture counts as whole. */
+const SAME = 1e-6;
+
+/**
+ * What the link says of a picture, as changes of its layout; nothing of axes that it has not.
+ * @param {string} key of the picture
+ * @param {any} layout
+ * @returns {Record<string, any>}
+ */
+export function zoomed(key, layout) {
+  /** @type {Record<string, any>} */
+  const changes = {};
+  for (const part of (route().query.get(`zoom.${key}`) ?? "").split(",")) {
+    const [name, ...texts] = part.split(":");
+    const ends = texts.map(Number);
+    if (!name || ends.some((end) => !Number.isFinite(end))) continue;
+    if (name === "camera" && ends.length === 6 && layout.scene) {
+      const [x, y, z, ...centre] = ends;
+      changes["scene.camera.eye"] = { x, y, z };
+      changes["scene.camera.center"] = { x: centre[0], y: centre[1], z: centre[2] };
+    }
+    const axis = `${name[0]}axis${name.slice(1)}`;
+    if (!layout[axis] || ends.length !== 2 || ends[0] === ends[1]) continue;
+    const range = ends.map((end) => end / sizeOf(layout[axis]));
+    if (layout[axis].type !== "log") changes[`${axis}.range`] = range;
+    else if (Math.min(...range) > 0) changes[`${axis}.range`] = range.map(Math.log10);
+  }
+  return changes;
+}
+
+/**
+ * How a picture is drawn before it is zoomed.
+ * @param {any} full plotly's layout
+ * @param {any} layout
+ * @returns {Record<string, any>}
+ */
+export function wholeOf(full, layout) {
+  const axes = Object.keys(layout).filter((name) => /^[xy]axis\d*$/.test(name) && full[name]?.range);
+  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene ? { camera: cameraOf(full) } : {}) };
+}
+
+/**
+ * Keeps in the link how a picture is zoomed.
+ * @param {string} key of the picture
+ * @param {any} full plotly's layout
+ * @param {any} layout
+ * @param {Record<string, any>} whole
+ */
+export function keepZoom(key, full, layout, whole) {
+  const parts = Object.entries(wholeOf(full, layout)).flatMap(([name, now]) => {
+    const drawn = whole[name];
+    const width = Math.abs(drawn[1] - drawn[0]) || 1;
+    if (now.every((/** @type {number} */ end, /** @type {number} */ index) => Math.abs(end - drawn[index]) <= SAME * width)) return [];
+    const served = name === "camera" ? now : now.map((/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end));
+    return [[name.replace("axis", ""), ...served.map((/** @type {number} */ end) => Number(end.toPrecision(DIGITS)))].join(":")];
+  });
+  keep({ [`zoom.${key}`]: parts.join(",") });
+}
+
+/** Shows a picture as a whole again. @param {string} key */
+export function forgetZoom(key) {
+  keep({ [`zoom.${key}`]: null });
+}
+
+/** @param {any} full plotly's layout */
+function cameraOf(full) {
+  const { eye, center } = full.scene.camera;
+  return [eye.x, eye.y, eye.z, center.x, center.y, center.z];
+}
+
+/** How many of the served unit one of an axis is. @param {any} axis */
+function sizeOf(axis) {
+  return axis.quantity ? unit(axis.quantity).size : 1;
+}

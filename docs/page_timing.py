@@ -6,14 +6,16 @@ The sweep has complete points with histories; that of point 1 is shown and brush
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass, fields
+from itertools import pairwise
 from statistics import median
 
 from playwright.sync_api import BrowserContext, Page, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
-MOVES = 100
-"""Moves of the mouse while a window is brushed."""
+MOVES = 200
+"""Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
 # Milliseconds from a change of the link until something is there, as the page's own clock has it.
 SHOWN = """([link, selector]) => new Promise((resolve) => {
@@ -26,10 +28,23 @@ SHOWN = """([link, selector]) => new Promise((resolve) => {
 # Bytes that all requests so far have transferred; those from the browser's cache transfer none.
 BYTES = """() => [...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")]
     .reduce((sum, entry) => sum + entry.transferSize, 0)"""
-COUNT = """(selector) => {
-    window.framesDrawn = 0;
-    document.querySelector(selector).addEventListener("brushed", () => window.framesDrawn += 1);
+# Frames of the browser, orbits painted, and how long each came after the move of the mouse that it follows [ms].
+OBSERVE = """(selector) => {
+    const seen = window.brushing = { frames: [], delays: [] };
+    let moved = 0;
+    addEventListener("pointermove", () => moved = performance.now(), true);
+    document.querySelector(selector).addEventListener("brushed", () => seen.delays.push(performance.now() - moved));
+    const tick = (time) => {
+        seen.frames.push(time);
+        requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
 }"""
+FORGET = "() => { window.brushing.frames.length = window.brushing.delays.length = 0; }"
+# The answers of a sweep's table: what was asked, how long it took, and when it had come [ms].
+ANSWERS = """() => performance.getEntriesByType("resource").filter(({ name }) => name.includes("/table"))
+    .map(({ name, startTime, responseEnd }) =>
+        [name.slice(name.indexOf("/table")), responseEnd - startTime, responseEnd])"""
 PICTURE = ".js-plotly-plot .main-svg"
 
 
@@ -65,8 +80,35 @@ def moved(page: Page, link: str, selector: str) -> tuple[float, float]:
     return time, page.evaluate(BYTES) - before
 
 
-def brushed(page: Page, server: str, sweep: str) -> tuple[float, float]:
-    """While a window is brushed: orbits drawn in a second, and processor time of the page's thread for each [ms]."""
+def mapped(page: Page, server: str, sweep: str) -> tuple[dict[str, float], float]:
+    """The map of a sweep: milliseconds of each answer that it needs of the table, and from the last to the picture."""
+    page.goto(f"{server}/#/sweeps/{sweep}?view=map", wait_until="commit")
+    page.evaluate(SHOWN, [None, ".heatmaplayer image"])
+    now = page.evaluate("() => performance.now()")
+    answers = page.evaluate(ANSWERS)
+    return {name: duration for name, duration, _ in answers}, now - max(end for *_, end in answers)
+
+
+@dataclass
+class Brushed:
+    """What a drag across a history was like."""
+
+    frames: float
+    """Frames of the browser in a second."""
+    longest_frame: float
+    """Longest time between two of them [ms]."""
+    orbits: float
+    """Orbits painted in a second."""
+    delay: float
+    """Time from a move of the mouse to the orbit that follows it [ms], the median."""
+    longest_delay: float
+    """The longest such time [ms]."""
+    worked: float
+    """Processor time of the page's thread for an orbit, with everything else that it did meanwhile [ms]."""
+
+
+def brushed(page: Page, server: str, sweep: str) -> Brushed:
+    """Drags a window across the history of point 1 by the mouse."""
     page.goto(f"{server}/#/sweeps/{sweep}/points/1?view=motion")
     orbit = ".plot[aria-label^='Orbit of node']"
     page.locator(f"{orbit} .main-svg").first.wait_for()
@@ -74,24 +116,34 @@ def brushed(page: Page, server: str, sweep: str) -> tuple[float, float]:
     box = page.locator(".plot[aria-label^='History of node'] .nsewdrag").first.bounding_box()
     if box is None:
         raise SystemExit("the history has no place on the page")
-    page.evaluate(COUNT, orbit)
+    page.evaluate(OBSERVE, orbit)
     tools = page.context.new_cdp_session(page)
     tools.send("Performance.enable")
 
     def processor_time() -> float:
         metrics = tools.send("Performance.getMetrics")["metrics"]
-        return float(next(metric["value"] for metric in metrics if metric["name"] == "ThreadTime"))
+        return 1000 * float(next(metric["value"] for metric in metrics if metric["name"] == "ThreadTime"))
 
     page.mouse.move(box["x"] + 0.1 * box["width"], box["y"] + 20)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + 20, steps=4)
-    start, worked = page.evaluate("() => [performance.now(), window.framesDrawn = 0]")[0], processor_time()
+    page.evaluate(FORGET)
+    worked = processor_time()
     for step in range(MOVES):
-        page.mouse.move(box["x"] + (0.2 + 0.6 * step / MOVES) * box["width"], box["y"] + 30)
-    now, frames = page.evaluate("() => [performance.now(), window.framesDrawn]")
+        page.mouse.move(box["x"] + (0.2 + 0.7 * step / MOVES) * box["width"], box["y"] + 30)
+    seen = page.evaluate("() => window.brushing")
     worked = processor_time() - worked
     page.mouse.up()
-    return 1000 * frames / (now - start), 1000 * worked / frames
+    frames, delays = seen["frames"], seen["delays"]
+    duration = (frames[-1] - frames[0]) / 1000
+    return Brushed(
+        frames=(len(frames) - 1) / duration,
+        longest_frame=max(later - earlier for earlier, later in pairwise(frames)),
+        orbits=len(delays) / duration,
+        delay=median(delays),
+        longest_delay=max(delays),
+        worked=worked / len(delays),
+    )
 
 
 def main() -> None:
@@ -100,12 +152,25 @@ def main() -> None:
     parser.add_argument("server")
     parser.add_argument("sweep")
     parser.add_argument("--times", type=int, default=5)
+    parser.add_argument("--brushing", action="store_true", help="measure nothing else")
+    parser.add_argument("--map", action="store_true", help="measure the map of the sweep alone, which is a grid")
     arguments = parser.parse_args()
-    print("| view | first load | after it | from another view | transferred at first | after it |")
-    print("|---|---|---|---|---|---|")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
-        for name, link, selector in views(arguments.sweep):
+        if arguments.map:
+            maps = []
+            for _ in range(arguments.times):
+                context = browser.new_context(viewport={"width": 1400, "height": 900})
+                maps.append(mapped(context.new_page(), arguments.server, arguments.sweep))
+                context.close()
+            for name in maps[0][0]:
+                print(f"{name}: {median(answers[name] for answers, _ in maps):.0f} ms")
+            print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
+            return
+        if not arguments.brushing:
+            print("| view | first load | after it | from another view | transferred at first | after it |")
+            print("|---|---|---|---|---|---|")
+        for name, link, selector in [] if arguments.brushing else views(arguments.sweep):
             cold, warm, inside = [], [], []
             for _ in range(arguments.times):
                 context = browser.new_context(viewport={"width": 1400, "height": 900})
@@ -121,13 +186,17 @@ def main() -> None:
             sizes = [median(size for _, size in of) / 1000 for of in (cold, warm)]
             told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
             print("| " + " | ".join([name, *told]) + " |")
-        rates = []
+        drags = []
         for _ in range(arguments.times):
             context = browser.new_context(viewport={"width": 1400, "height": 900})
-            rates.append(brushed(context.new_page(), arguments.server, arguments.sweep))
+            drags.append(brushed(context.new_page(), arguments.server, arguments.sweep))
             context.close()
-        rate, worked = (median(values) for values in zip(*rates, strict=True))
-        print(f"\nBrushing: {rate:.0f} orbits a second, {worked:.1f} ms of the page's thread for each.")
+        drag = {field.name: median(getattr(drag, field.name) for drag in drags) for field in fields(Brushed)}
+        print(
+            "\nBrushing: {frames:.0f} frames a second, at most {longest_frame:.0f} ms apart; {orbits:.0f} orbits a "
+            "second, each {delay:.1f} ms after the mouse, at most {longest_delay:.0f} ms; {worked:.1f} ms of the "
+            "page's thread for each.".format(**drag)
+        )
         browser.close()
 
 

@@ -1,16 +1,18 @@
 // The motion of a recorded node: a window brushed in its history, and orbit, full spectrum and statistics of that window.
 
 import { get, Problem } from "./api.js";
-import { Brush } from "./brush.js";
-import { choice, fill, h } from "./dom.js";
+import { Brush, dragWindow, orbitStatistics } from "./brush.js";
+import { choice, debounced, fill, h } from "./dom.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
-import { adjust, canvas, draw, inks, LINES } from "./plots.js";
+import { adjust, canvas, draw, LINES } from "./plots.js";
 import { say, shown, unit } from "./units.js";
 
 /** Samples in a picture: two for each pixel of a wide screen. */
 const SHOWN = 4000;
 /** Samples that a spectrum needs. */
 const LEAST = 8;
+/** How long a window that is dragged must rest before the service is asked for it. */
+const REST_MS = 100;
 
 /**
  * @param {import("./point.js").PointContext} context
@@ -132,31 +134,12 @@ export function motion(context) {
       { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
     ];
     history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
-    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()], newselection: { line: { color: inks().soft, width: 1 } } }, signal);
-    shape.removeAllListeners?.("plotly_selecting");
-    shape.removeAllListeners?.("plotly_selected");
-    /** @type {[number, number] | null} */
-    let brushed = null;
-    shape.on?.("plotly_selecting", (/** @type {any} */ event) => {
-      const range = event?.range?.x;
-      if (!range) return;
-      if (!brushed) requestAnimationFrame(() => {
-        const last = brushed;
-        brushed = null;
-        if (last) paint(last);
-      });
-      brushed = range;
-    });
-    shape.on?.("plotly_selected", (/** @type {any} */ event) => {
-      const range = event?.range?.x;
-      brushed = null;
-      brush?.end();
-      brush = null;
-      if (!range) return void drawOrbit();
-      choose(range[0], range[1]);
-      void adjust(history, { selections: [] });
-    });
+    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()] }, signal);
+    if (shape !== history || isDraggable || signal.aborted) return;
+    isDraggable = true;
+    dragWindow(history, follow, release, signal);
   }
+  let isDraggable = false;
 
   function shade() {
     const { from, to } = span();
@@ -187,14 +170,12 @@ export function motion(context) {
     wrong.textContent = "";
     void adjust(history, { shapes: [shade()] });
     try {
-      const [cut, lines, statistics] = await Promise.all([
-        context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
-        context.table("spectrum", { ...selector(), from, to, window: weighting(), peaks: 10 }),
-        context.table("statistics", { ...selector(), from, to }),
-      ]);
+      const [cut, lines, statistics] = await ofWindow(from, to);
       if (mine !== generation) return;
-      windowed = { cut, lines };
-      drawStatistics(statistics);
+      windowed = { cut, lines, statistics };
+      // What follows the mouse is shown until it is let go.
+      if (dragged) return;
+      drawStatistics();
       drawLines();
       drawModes().catch((error) => signal.aborted || console.error(error));
       await Promise.all([drawOrbit(), drawSpectrum()]);
@@ -204,17 +185,59 @@ export function motion(context) {
     }
   }
 
-  /** What paints the orbit while a window is being brushed. @type {import("./brush.js").Brush | null} */
+  /** What paints the orbit while a window is being dragged. @type {import("./brush.js").Brush | null} */
   let brush = null;
+  /** The window that is being dragged. @type {[number, number] | null} */
+  let dragged = null;
 
-  /** @param {[number, number]} range of time, cut from what the history shows */
-  function paint(range) {
+  /** What is cheap follows a window at each frame, from the samples that the history shows. @param {[number, number]} range */
+  function follow(range) {
     if (!brush) {
       const trace = orbitTrace(whole, place().lowSide, { color: LINES[0] });
       brush = new Brush(orbit, trace, whole.columns.time);
       void adjust(orbit, brush.layout());
     }
     brush.paint(range);
+    const rough = orbitStatistics(whole.columns, ...brush.rows(range));
+    if (rough) showStatistics(range[0], range[1], (name) => `≈ ${say(name, rough[name], 3)}`, "");
+    dragged = range;
+    rested();
+  }
+
+  const rested = debounced(() => dragged && !signal.aborted && void lookAt(dragged).catch((error) => {
+    if (!(error instanceof Problem) && !signal.aborted) console.error(error);
+  }), REST_MS);
+
+  /** All samples of a window that rests while it is dragged. @param {[number, number]} range */
+  async function lookAt(range) {
+    const [from, to] = range;
+    if ((to - from) * recording.rate_hz < LEAST) return;
+    const [cut, lines, statistics] = await ofWindow(from, to);
+    if (dragged !== range) return;
+    brush?.paintTrace(orbitTrace(cut, place().lowSide, { color: LINES[0] }));
+    showStatistics(from, to, (name) => say(name, statistics.columns[name][0]), String(statistics.attributes.samples));
+    await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumLayout(lines, isLog()), signal);
+  }
+
+  /** @param {[number, number] | null} range */
+  function release(range) {
+    dragged = null;
+    brush?.end();
+    brush = null;
+    if (range && (range[1] - range[0]) * recording.rate_hz >= LEAST) return choose(range[0], range[1]);
+    if (!windowed) return;
+    drawStatistics();
+    void drawOrbit();
+    void drawSpectrum();
+  }
+
+  /** @param {number} from @param {number} to */
+  function ofWindow(from, to) {
+    return Promise.all([
+      context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
+      context.table("spectrum", { ...selector(), from, to, window: weighting(), peaks: 10 }),
+      context.table("statistics", { ...selector(), from, to }),
+    ]);
   }
 
   async function drawOrbit() {
@@ -233,12 +256,20 @@ export function motion(context) {
     await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout(windowed.lines, isLog()), signal);
   }
 
-  /** @param {any} table */
-  function drawStatistics(table) {
+  function drawStatistics() {
     const { from, to } = span();
+    const { columns, attributes } = windowed.statistics;
     // Verified are the statistics of the scenario's own window.
     const isVerified = from === recording.orbit_window?.from && to === recording.orbit_window?.to;
-    const value = (/** @type {string} */ name) => say(name, table.columns[name][0]) + (isVerified ? context.bias(`${name}_${table.columns.node[0]}`) : "");
+    showStatistics(from, to, (name) => say(name, columns[name][0]) + (isVerified ? context.bias(`${name}_${columns.node[0]}`) : ""), String(attributes.samples));
+  }
+
+  /**
+   * @param {number} from @param {number} to
+   * @param {(name: string) => string} value of a statistic, in words
+   * @param {string} samples
+   */
+  function showStatistics(from, to, value, samples) {
     const facts = [
       ["Window", `${say("time", from)} to ${say("time", to)}`],
       ["Orbit size (rms about the mean)", value("orbit_radius_rms")],
@@ -248,7 +279,7 @@ export function motion(context) {
       ["Smallest radius", value("orbit_smallest_radius")],
       ["Offset of the mean position", value("orbit_offset")],
       ["Clearance", say("clearance", place().clearance)],
-      ["Samples", String(table.attributes.samples)],
+      ["Samples", samples],
     ];
     fill(statistics, h("h2", {}, "Statistics of the window"), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)])));
   }

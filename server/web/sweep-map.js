@@ -4,7 +4,7 @@ import { choice, fill, h } from "./dom.js";
 import { adjust, canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
 import { finer } from "./sweep-finer.js";
 import { distinct, isText } from "./table.js";
-import { label, say, title, unit } from "./units.js";
+import { label, say, sayer, title, unit } from "./units.js";
 
 /** Colours of words, such as states. */
 const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
@@ -85,8 +85,15 @@ export function map(context) {
     fill(caption, `${label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it. `, context.biases.say(colour), hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
     place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
 
-    const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / unit(name).size : value);
-    const texts = rows.map((index) => [`point ${ordinals[index]}: ${states[index]}`, `${label(x)} ${say(x, xs[index])}`, y && `${label(y)} ${say(y, ys[index])}`, `${label(colour)} ${say(colour, values[index])}`].filter(Boolean).join("<br>"));
+    // What a name stands for is looked up once, and not for each of a hundred thousand points.
+    const sizes = new Map([...sides, colour].map((name) => [name, unit(name).size]));
+    const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / (sizes.get(name) ?? 1) : value);
+    const part = (/** @type {string} */ name) => {
+      const [called, words] = [label(name), sayer(name)];
+      return (/** @type {any} */ value) => `${called} ${words(value)}`;
+    };
+    const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
+    const texts = rows.map((index) => `point ${ordinals[index]}: ${states[index]}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}`);
     const axisLayout = (/** @type {string} */ name) => ({ title: title(name), quantity: name, type: context.spans[name]?.scale === "log" ? "log" : "linear" });
 
     if (!y) {
@@ -160,6 +167,20 @@ export function map(context) {
       const { x, y, colour, held } = chosen();
       return ["ordinal", x, y, ...held, colour].filter((name) => name !== undefined);
     },
+  };
+}
+
+/**
+ * A function that is called once for each of the few values that it is given.
+ * @param {(value: any) => string} of
+ */
+function once(of) {
+  /** @type {Map<any, string>} */
+  const known = new Map();
+  return (/** @type {any} */ value) => {
+    const text = known.get(value) ?? of(value);
+    known.set(value, text);
+    return text;
   };
 }
 

@@ -95,11 +95,23 @@ export function shown(name, values) {
  * @param {number} [digits]
  */
 export function say(name, value, digits = 4) {
-  if (value === null || value === undefined) return "–";
-  if (typeof value !== "number") return String(value).replaceAll("_", " ");
+  return sayer(name, digits)(value);
+}
+
+/**
+ * As `say`, for many values of one name.
+ * @param {string} name
+ * @param {number} [digits]
+ * @returns {(value: unknown) => string}
+ */
+export function sayer(name, digits = 4) {
   const { symbol, size } = unit(name);
-  const text = number(value / size, digits);
-  return symbol ? `${text} ${symbol}` : text;
+  return (value) => {
+    if (value === null || value === undefined) return "–";
+    if (typeof value !== "number") return String(value).replaceAll("_", " ");
+    const text = number(value / size, digits);
+    return symbol ? `${text} ${symbol}` : text;
+  };
 }
 
 /**

@@ -1,9 +1,14 @@
 //! The table of a sweep: one row a point, with its parameters and its summary.
 
+use std::borrow::Cow;
+use std::collections::HashSet;
+
 use drillsweep_table::quantity::{Variant, columns};
 use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
-use serde_json::{Map, Value};
+use serde::Deserialize;
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
 
 use crate::point::{PointError, PointState};
 
@@ -16,15 +21,16 @@ pub struct PointSummary {
     pub state: PointState,
     /// Its parameters, by axis name.
     pub parameters: IndexMap<String, f64>,
-    /// The scalar results, if there are any.
-    pub summary: Option<Map<String, Value>>,
+    /// The scalar results, if there are any: a JSON object.
+    pub summary: Option<String>,
     /// The bias of its statistics, by their names, where it is verified.
     pub biases: IndexMap<String, f64>,
     /// Why it failed, if it did.
     pub error: Option<PointError>,
 }
 
-/// The table of a sweep as it is put together point by point, so that besides it only the point at hand is in memory.
+/// The table of a sweep as it is put together point by point, so that besides it only the point at hand is in memory. Summaries go into
+/// their columns as they are parsed: of a hundred thousand points they are hundreds of megabytes.
 ///
 /// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, of points that are verified the bias of each
 /// statistic NAME against the reference as `bias_NAME`, and the `error` with its `error_time` \[s\] and `error_node`.
@@ -39,6 +45,8 @@ pub struct PointsTable {
     parameters: IndexMap<String, Vec<f64>>,
     /// Columns of the summaries' fields, as far as these have a value; none where no point has one yet.
     fields: IndexMap<String, Option<Column>>,
+    /// The fields whose values are kept; none where all are.
+    kept: Option<HashSet<String>>,
     biases: IndexMap<String, Vec<f64>>,
     errors: Vec<Option<String>>,
     error_times: Vec<f64>,
@@ -46,16 +54,28 @@ pub struct PointsTable {
 }
 
 impl PointsTable {
+    /// A table that keeps, of the fields of summaries, the values of these alone; the columns of the others stay empty, of the kind that
+    /// holds their values.
+    pub fn keeping<'a>(fields: impl IntoIterator<Item = &'a str>) -> Self {
+        let kept = fields.into_iter().map(str::to_owned).collect();
+        PointsTable { kept: Some(kept), ..PointsTable::default() }
+    }
+
     /// Adds the row of a point.
-    pub fn push(&mut self, point: PointSummary) {
+    ///
+    /// # Errors
+    /// When its summary is no JSON object.
+    pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
         let row = self.ordinals.len();
         self.ordinals.push(Some(point.ordinal.into()));
         self.states.push(Some(point.state.to_string()));
         for (name, value) in point.parameters {
             put(&mut self.parameters, name, row, value);
         }
-        for (name, value) in point.summary.map(flatten).unwrap_or_default() {
-            put_field(self.fields.entry(name).or_default(), row, value);
+        if let Some(summary) = &point.summary {
+            let mut fields = Fields { columns: &mut self.fields, kept: self.kept.as_ref(), row };
+            let object = Object { fields: &mut fields, path: "" };
+            object.deserialize(&mut serde_json::Deserializer::from_str(summary))?;
         }
         for (name, value) in point.biases {
             put(&mut self.biases, name, row, value);
@@ -63,6 +83,7 @@ impl PointsTable {
         self.error_times.push(point.error.as_ref().and_then(|error| error.time).unwrap_or(f64::NAN));
         self.error_nodes.push(point.error.as_ref().and_then(|error| error.node).map(i64::from));
         self.errors.push(point.error.map(|error| error.reason));
+        Ok(())
     }
 
     /// The names of the parameters so far.
@@ -84,7 +105,9 @@ impl PointsTable {
             // A summary's own flow rate would only repeat the parameter of that name.
             if !table.columns.contains_key(&name) {
                 let mut column = column.unwrap_or(Column::Number(Vec::new()));
-                fill(&mut column, rows);
+                if self.kept.as_ref().is_none_or(|kept| kept.contains(&name)) {
+                    fill(&mut column, rows);
+                }
                 table.push(name, column);
             }
         }
@@ -107,22 +130,7 @@ fn put(columns: &mut IndexMap<String, Vec<f64>>, name: String, row: usize, value
 
 /// Puts a value into its row of a column, which becomes the narrowest kind that holds all: whole numbers, numbers, texts.
 fn put_field(field: &mut Option<Column>, row: usize, value: Value) {
-    let column = match (&mut *field, &value) {
-        (_, Value::Null) => return,
-        (None, Value::Number(number)) if number.is_i64() => field.insert(Column::Integer(Vec::new())),
-        (None, Value::Number(_)) => field.insert(Column::Number(Vec::new())),
-        (None, _) => field.insert(Column::Text(Vec::new())),
-        (Some(column), Value::Number(number)) => {
-            if matches!(column, Column::Integer(_)) && !number.is_i64() {
-                *column = Column::Number(column.numbers().unwrap_or_default());
-            }
-            column
-        }
-        (Some(column), _) => {
-            *column = Column::Text(texts(column));
-            column
-        }
-    };
+    let Some(column) = widened(field, &value) else { return };
     fill(column, row);
     match column {
         Column::Integer(values) => values.push(value.as_i64()),
@@ -133,6 +141,25 @@ fn put_field(field: &mut Option<Column>, row: usize, value: Value) {
             other => other.to_string(),
         })),
     }
+}
+
+/// The column as one that can hold a value; none of no value.
+fn widened<'c>(field: &'c mut Option<Column>, value: &Value) -> Option<&'c mut Column> {
+    let wider = match (field.as_mut(), value) {
+        (_, Value::Null) => return None,
+        (None, Value::Number(number)) if number.is_i64() => Some(Column::Integer(Vec::new())),
+        (None, Value::Number(_)) => Some(Column::Number(Vec::new())),
+        (None, _) => Some(Column::Text(Vec::new())),
+        (Some(column), Value::Number(number)) if matches!(column, Column::Integer(_)) && !number.is_i64() => {
+            Some(Column::Number(column.numbers().unwrap_or_default()))
+        }
+        (Some(Column::Text(_)), _) | (Some(_), Value::Number(_)) => None,
+        (Some(column), _) => Some(Column::Text(texts(column))),
+    };
+    if let Some(wider) = wider {
+        *field = Some(wider);
+    }
+    field.as_mut()
 }
 
 /// Missing values up to so many rows.
@@ -156,32 +183,137 @@ fn texts(column: &mut Column) -> Vec<Option<String>> {
     }
 }
 
-fn flatten(summary: Map<String, Value>) -> IndexMap<String, Value> {
-    let mut fields = IndexMap::new();
-    for (name, value) in summary {
-        match value {
-            Value::Object(inner) => {
-                fields.extend(
-                    flatten(inner).into_iter().map(|(inner, value)| (format!("{name}.{inner}"), value)),
-                );
-            }
-            value => {
-                fields.insert(name, value);
-            }
+/// Where the fields of a point's summary go.
+struct Fields<'t> {
+    columns: &'t mut IndexMap<String, Option<Column>>,
+    kept: Option<&'t HashSet<String>>,
+    row: usize,
+}
+
+impl Fields<'_> {
+    fn put(&mut self, name: &str, value: Value) {
+        if !self.columns.contains_key(name) {
+            self.columns.insert(name.to_owned(), None);
+        }
+        let Some(field) = self.columns.get_mut(name) else { return };
+        if self.kept.is_none_or(|kept| kept.contains(name)) {
+            put_field(field, self.row, value);
+        } else {
+            widened(field, &value);
         }
     }
-    fields
+}
+
+/// A summary, or an object in one, whose fields have the path before their names.
+struct Object<'f, 't> {
+    fields: &'f mut Fields<'t>,
+    path: &'f str,
+}
+
+/// The value of a field.
+struct Field<'f, 't> {
+    fields: &'f mut Fields<'t>,
+    name: &'f str,
+}
+
+#[derive(Deserialize)]
+struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
+
+impl<'de> DeserializeSeed<'de> for Object<'_, '_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Object<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(Name(name)) = map.next_key()? {
+            let name = match self.path {
+                "" => name,
+                path => format!("{path}.{name}").into(),
+            };
+            map.next_value_seed(Field { fields: self.fields, name: &name })?;
+        }
+        Ok(())
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Field<'_, '_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Field<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("a value")
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<(), E> {
+        self.fields.put(self.name, Value::Null);
+        Ok(())
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<(), E> {
+        self.fields.put(self.name, value.into());
+        Ok(())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<(), E> {
+        self.fields.put(self.name, value.into());
+        Ok(())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<(), E> {
+        self.fields.put(self.name, value.into());
+        Ok(())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<(), E> {
+        self.fields.put(self.name, value.into());
+        Ok(())
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<(), E> {
+        self.fields.put(self.name, value.into());
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = list.next_element::<Value>()? {
+            values.push(value);
+        }
+        self.fields.put(self.name, Value::Array(values));
+        Ok(())
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<(), A::Error> {
+        Object { fields: self.fields, path: self.name }.visit_map(map)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::point::FailureClass;
-    use serde_json::json;
+    use serde_json::{Map, json};
 
     fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
         let mut table = PointsTable::default();
-        points.into_iter().for_each(|point| table.push(point));
+        points.into_iter().for_each(|point| table.push(point).unwrap());
         table.finish()
     }
 
@@ -196,11 +328,12 @@ mod tests {
             ordinal,
             state: PointState::Succeeded,
             parameters: IndexMap::new(),
-            summary: summary.as_object().cloned(),
+            summary: Some(summary.to_string()),
             biases: IndexMap::new(),
             error: None,
         });
-        let table = table(points);
+        let points: Vec<PointSummary> = points.collect();
+        let table = table(points.clone());
         assert_eq!(table.columns["whole"], Column::Integer(vec![Some(1), None, None]));
         assert_eq!(table.columns["number"], Column::Number(vec![1.0, 0.5, 2.0]));
         let texts =
@@ -211,6 +344,15 @@ mod tests {
         assert!(
             matches!(&table.columns["nothing"], Column::Number(values) if values.iter().all(|v| v.is_nan()))
         );
+
+        // A table that keeps some of them has the same columns, empty but for those.
+        let mut part = PointsTable::keeping(["words", "none"]);
+        points.into_iter().for_each(|point| part.push(point).unwrap());
+        let part = part.finish();
+        assert_eq!(part.without_rows().columns, table.without_rows().columns);
+        assert!(part.columns.keys().eq(table.columns.keys()), "in the same order");
+        assert_eq!(part.columns["words"], table.columns["words"]);
+        assert_eq!(part.columns["number"], Column::Number(Vec::new()));
     }
 
     #[test]
@@ -222,7 +364,7 @@ mod tests {
             ordinal: 1,
             state: PointState::Succeeded,
             parameters: parameters(1200.0),
-            summary: summary.as_object().cloned(),
+            summary: Some(summary.to_string()),
             biases: [("orbit_radius_rms_49".to_owned(), -0.25)].into(),
             error: None,
         };

@@ -184,13 +184,13 @@ pub(crate) fn verified_point(record: &VerificationRecord) -> Result<VerifiedPoin
     })
 }
 
-/// A point's row in the table of its sweep, without what verifying it has shown.
-pub(crate) fn point_summary(record: &TableRecord) -> Result<PointSummary> {
+/// A point's row in the table of its sweep, without what verifying it has shown; its summary is taken.
+pub(crate) fn point_summary(record: &mut TableRecord) -> Result<PointSummary> {
     Ok(PointSummary {
         ordinal: ordinal(record.ordinal)?,
         state: point_state(record.state),
         parameters: read(&record.parameters_json)?,
-        summary: record.summary_json.as_deref().map(read).transpose()?,
+        summary: record.summary_json.take(),
         biases: IndexMap::new(),
         error: record.error_json.as_deref().map(|text| point_error(record.state, text)),
     })

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
+use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{ExportManifest, MissingFile};
 use drillsweep_store::{Artifact, Store, WorkKey};
 use drillsweep_table::csv;
@@ -118,7 +119,10 @@ impl Archive {
     }
 
     fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
-        let table = verified.points(&self.store, &self.id, &self.handle).map_err(failed)?.finish();
+        let table = verified
+            .points(PointsTable::default(), &self.store, &self.id, &self.handle)
+            .map_err(failed)?
+            .finish();
         csv::write_to(&table, zip).map_err(io::Error::other)
     }
 

@@ -7,6 +7,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
+use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{
     AppendRequest, ColumnList, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails,
     ProblemKind, RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState,
@@ -754,7 +755,14 @@ pub(crate) async fn table(
     let runtime = Handle::current();
     place
         .answer(move || {
-            let points = verified.points(&app.store, &id, &runtime)?;
+            // A picture shows more than the columns that are asked for.
+            let table = match &fields {
+                Some(fields) if !format.is_picture() => {
+                    PointsTable::keeping(fields.iter().map(String::as_str))
+                }
+                _ => PointsTable::default(),
+            };
+            let points = verified.points(table, &app.store, &id, &runtime)?;
             let parameters = points.parameters().map(str::to_owned).collect();
             let mut table = points.finish();
             let findings = &verified.findings;
@@ -785,5 +793,10 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let runtime = Handle::current();
-    place.run(move || Ok(Json(ColumnList::of(&verified.points(&app.store, &id, &runtime)?.finish())))).await
+    place
+        .run(move || {
+            let points = verified.points(PointsTable::keeping([]), &app.store, &id, &runtime)?;
+            Ok(Json(ColumnList::of(&points.finish())))
+        })
+        .await
 }

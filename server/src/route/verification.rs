@@ -13,7 +13,7 @@ use tokio::runtime::Handle;
 
 use crate::answer::blocking::blocking;
 use crate::answer::document::{Conditional, Problems, TableResponse};
-use crate::answer::error::Result;
+use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Format};
 use crate::answer::records;
@@ -59,20 +59,31 @@ impl Verified {
         .await
     }
 
-    /// The sweep's table, with the biases of the points that are verified. It is read in pages, each as it is at that moment; for a thread
-    /// that may wait.
-    pub(crate) fn points(&self, store: &Store, id: &str, runtime: &Handle) -> Result<PointsTable> {
+    /// The sweep's table, with the biases of the points that are verified, put into one that may keep the values of some columns alone. It
+    /// is read in pages, each as it is at that moment; for a thread that may wait.
+    pub(crate) fn points(
+        &self,
+        mut table: PointsTable,
+        store: &Store,
+        id: &str,
+        runtime: &Handle,
+    ) -> Result<PointsTable> {
         let by_ordinal: HashMap<i64, &VerifiedPoint> =
             self.points.iter().map(|point| (point.ordinal.into(), point)).collect();
-        let mut table = PointsTable::default();
-        let mut after = 0;
+        let read = |after| {
+            let (store, id) = (store.clone(), id.to_owned());
+            runtime.spawn(async move { store.table_rows(&id, after, PAGE).await })
+        };
+        let mut next = read(0);
         loop {
-            let page = runtime.block_on(store.table_rows(id, after, PAGE))?;
+            let mut page = runtime.block_on(next).map_err(|error| Error::internal(&error))??;
             let Some(last) = page.last() else { break };
-            after = last.ordinal;
-            for record in &page {
+            // The database reads on while these are parsed.
+            next = read(last.ordinal);
+            for record in &mut page {
                 let biases = by_ordinal.get(&record.ordinal).map(|point| point.biases()).unwrap_or_default();
-                table.push(PointSummary { biases, ..records::point_summary(record)? });
+                let point = PointSummary { biases, ..records::point_summary(record)? };
+                table.push(point).map_err(|error| Error::internal(&error))?;
             }
         }
         // A sweep that is deleted between two pages has no further ones: what there is of it is not its table.
@@ -128,8 +139,6 @@ pub(crate) async fn show(
 mod tests {
     use drillsweep_store::{Role, StoreConfig};
 
-    use crate::answer::error::Error;
-
     use super::*;
 
     #[tokio::test]
@@ -139,7 +148,9 @@ mod tests {
         let store = Store::open(&config).await.expect("a store");
         let runtime = Handle::current();
         // As the page after the deletion finds it.
-        let read = move || Verified::default().points(&store, "deleted", &runtime).map(|_| ());
+        let read = move || {
+            Verified::default().points(PointsTable::default(), &store, "deleted", &runtime).map(|_| ())
+        };
         let problem = blocking(read).await.map_err(Error::into_problem).expect_err("no table");
         assert_eq!(problem.status, 404);
     }

@@ -16,9 +16,11 @@ from playwright.sync_api import Page, sync_playwright
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 WIDTH, LARGEST_HEIGHT = 1200, 1000
-TALLER = {"sweep-map": 1400}
+TALLER = {"sweep-map": 1400, "point-string": 1500}
 """Pictures whose lower part is what they are taken for."""
 QUALITY = 40
+STRING_TIME = "50"
+"""Time at which the string is shown [s]."""
 
 
 def views(sweep: str, other: str) -> dict[str, str]:
@@ -40,6 +42,9 @@ def unfold(page: Page, name: str) -> None:
     if name == "new":
         page.get_by_text("All fields, with units").click()
         page.locator("summary", has_text="operation").first.click()
+    if name == "point-string":
+        # A time at which the string whirls.
+        page.get_by_label("Time", exact=True).fill(STRING_TIME)
     if name == "sweep-map":
         page.get_by_role("button", name="Finer grid").click()
         page.get_by_text("are known and not computed again").wait_for()
@@ -57,6 +62,7 @@ def main() -> None:
     parser.add_argument("server")
     parser.add_argument("sweep")
     parser.add_argument("other")
+    parser.add_argument("--only", nargs="*", help="names of the pictures to be taken; all unless given")
     parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).parent / "page")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
@@ -65,6 +71,8 @@ def main() -> None:
         for theme in ("light", "dark"):
             context = browser.new_context(viewport={"width": WIDTH, "height": 800}, color_scheme=theme)
             for name, link in views(arguments.sweep, arguments.other).items():
+                if arguments.only is not None and name not in arguments.only:
+                    continue
                 page = context.new_page()
                 page.goto(f"{arguments.server}/{link}")
                 page.locator("main h1").wait_for()

@@ -28,12 +28,18 @@ export class SweepTable {
       this.#columns = new Map(Object.entries(table.columns));
       this.names = [...this.#columns.keys()];
     } else {
-      const wanted = [...new Set(["ordinal", "state", ...this.#columns.keys()])];
-      const [columns, listed] = await Promise.all([this.#fetch(wanted), get(`${this.path}/columns`, {}, this.signal)]);
+      // At first nothing is wanted yet: the view asks for all that it needs at once.
+      const wanted = [...this.#columns.keys()];
+      const [columns, listed] = await Promise.all([wanted.length ? this.#fetch(wanted) : this.#columns, get(`${this.path}/columns`, {}, this.signal)]);
       this.#columns = columns;
       this.names = listed.columns.map((/** @type {any} */ column) => column.name);
     }
-    this.rows = this.#columns.get("ordinal")?.length ?? 0;
+    this.#count();
+  }
+
+  #count() {
+    const [column] = this.#columns.values();
+    this.rows = column?.length ?? 0;
   }
 
   /**
@@ -54,6 +60,7 @@ export class SweepTable {
     const missing = [...new Set(names)].filter((name) => !this.#columns.has(name));
     if (missing.length && !this.isWhole) {
       for (const [name, values] of await this.#fetch(missing)) this.#columns.set(name, values);
+      this.#count();
     }
     return names.map((name) => this.#columns.get(name) ?? Array(this.rows).fill(null));
   }

@@ -1,5 +1,6 @@
 //! What the handlers share, and how the service is set up.
 
+pub(crate) mod columns;
 pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
@@ -18,6 +19,7 @@ use crate::answer::body::MEMORY_OF_BODY;
 use crate::answer::error::Result;
 use crate::answer::extract::BodyPatience;
 use crate::answer::stored::MEMORY_OF_FILE;
+use crate::app::columns::KnownColumns;
 use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
@@ -82,6 +84,7 @@ pub(crate) struct App {
     pub(crate) streams: Arc<Semaphore>,
     /// What has changed among all sweeps, for those event streams that tell of all.
     pub(crate) feed: Arc<Feed>,
+    pub(crate) columns: Arc<KnownColumns>,
     /// Memory for views of results, which read and write out tables \[KiB\].
     views: Arc<Lane>,
     /// Memory for files that are sent as they are stored \[KiB\].
@@ -101,6 +104,7 @@ impl App {
             readiness: Arc::default(),
             streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
             feed: Arc::default(),
+            columns: Arc::default(),
             views: lane(config.large_answer_bytes / KIB),
             files: lane(config.large_answer_bytes / 2 / KIB),
             plans: lane(config.large_answers),

@@ -790,13 +790,18 @@ pub(crate) async fn table(
 )]
 pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> Result<Json<ColumnList>> {
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    if let Some(columns) = app.columns.get(&id, sweep.version) {
+        return Ok(Json(columns));
+    }
     let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let runtime = Handle::current();
     place
         .run(move || {
             let points = verified.points(PointsTable::keeping([]), &app.store, &id, &runtime)?;
-            Ok(Json(ColumnList::of(&points.finish())))
+            let columns = ColumnList::of(&points.finish());
+            app.columns.put(id, sweep.version, columns.clone());
+            Ok(Json(columns))
         })
         .await
 }

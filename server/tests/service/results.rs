@@ -349,6 +349,20 @@ async fn the_columns_of_a_table_are_listed_without_their_values() {
     }
     assert_eq!(listed[0], json!({"name": "ordinal", "kind": "integer"}));
     bench.get("/v1/sweeps/none/table/columns").await.problem(404, "not-found");
+
+    // They are those of the points as they are now, however often they were asked for before.
+    let axes = json!({"flow_rate": {"values": [0.011, 0.012]}});
+    let id = bench.submit(json!({"preset": "paper-200m", "axes": axes})).await;
+    let path = format!("/v1/sweeps/{id}/table");
+    let names = async || {
+        let listed = bench.get(&format!("{path}/columns")).await.json();
+        let names = listed["columns"].as_array().unwrap().iter();
+        names.map(|column| column["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names().await, names().await);
+    assert!(!names().await.contains(&"residual".to_owned()));
+    bench.succeed().await;
+    assert!(names().await.contains(&"residual".to_owned()));
 }
 
 #[tokio::test]

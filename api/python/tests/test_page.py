@@ -13,7 +13,7 @@ from urllib.parse import parse_qs
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Locator, Page, Request, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, Request, Route, expect, sync_playwright
 
 from drillsweep import Client, Range, Sweep
 from service import SHORT, Service
@@ -288,8 +288,14 @@ def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Swee
 def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1")
     history = drawn(page, "History of node")
+    shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    expect(shown).to_be_visible()
     box = history.locator(".nsewdrag").first.bounding_box()
     assert box is not None
+    # The service's statistics come later than those of the samples that are shown.
+    held: list[Route] = []
+    is_released = False
+    page.route("**/statistics?*", lambda route: route.continue_() if is_released else held.append(route))
     page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 40)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 50, steps=8)
@@ -298,6 +304,13 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     brush = page.locator("canvas.brush")
     expect(brush).to_have_count(1)
     until(page, lambda: bool(brush.evaluate(painted)))
+    expect(shown).to_contain_text("≈")
+    rough = float(str(shown.text_content()).removeprefix("≈ ").removesuffix(" mm"))
+    # Where the mouse rests they take their place.
+    until(page, lambda: bool(held))
+    is_released = True
+    held[-1].continue_()
+    expect(shown).not_to_contain_text("≈")
     page.mouse.up()
     until(page, lambda: "from=" in page.url and "to=" in page.url)
     expect(brush).to_have_count(0)
@@ -306,7 +319,7 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     table = named.point(1).orbit(node=named.point(1).scenario["recording"]["nodes"][1]["node"], time=(start, end))
     u, v = table["u"], table["v"]
     size = float((((u - u.mean()) ** 2 + (v - v.mean()) ** 2).mean()) ** 0.5)
-    shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    assert rough == pytest.approx(1e3 * size, rel=0.02)
     # As the page writes it: four digits, in millimetres.
     expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
 

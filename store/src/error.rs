@@ -29,7 +29,7 @@ pub enum StoreError {
     Migration(#[from] MigrateError),
     /// The object store failed.
     #[error("object store: {0}")]
-    Blob(object_store::Error),
+    Blob(#[source] object_store::Error),
     /// The object store has a certificate of an authority that is not trusted, of another name, or out of date.
     #[error(
         "the certificate of the object store is not accepted: {0}; the environment names the file of a private authority by SSL_CERT_FILE"

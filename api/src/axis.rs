@@ -207,7 +207,7 @@ mod schema {
         /// Last value.
         to: f64,
         /// Number of values, 2 to 100,000; usual 3 to 20, since a grid has the product of all axes' counts.
-        #[schema(minimum = 2)]
+        #[schema(minimum = 2, maximum = 100_000)]
         count: u32,
         #[serde(default)]
         scale: Scale,

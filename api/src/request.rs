@@ -69,9 +69,11 @@ pub struct SweepRequest {
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 100_000)]
     pub samples: Option<u32>,
     /// What these designs are drawn from, any whole number from 0; 0 unless given. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.
@@ -167,10 +169,12 @@ pub struct AppendRequest {
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 100_000)]
     pub samples: Option<u32>,
     /// What these designs are drawn from; 0 unless given. For further points of another Latin hypercube give another seed; of a
     /// Sobol sequence, `skip` with the same one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.

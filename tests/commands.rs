@@ -310,14 +310,16 @@ fn a_dry_run_is_a_table_and_a_submission_says_how_to_go_on() {
 #[test]
 fn output_ends_quietly_where_nobody_reads_and_errors_are_messages() {
     // The reading end is closed before the command starts.
-    let (reader, writer) = std::io::pipe().unwrap();
-    drop(reader);
-    let output = Command::new(BINARY).args(["scenario", "paper-200m"]).stdout(writer).output().unwrap();
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    for arguments in [&["scenario", "paper-200m"][..], &["completions", "bash"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = Command::new(BINARY).args(arguments).stdout(writer).output().unwrap();
+        assert!(
+            output.status.success() && output.stderr.is_empty(),
+            "{arguments:?}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
 
     let failing = Command::new(BINARY)
         .args(["check", "--data", "/nowhere"])

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use crate::data::DataArguments;
 use crate::print;
+use crate::text::count;
 
 #[derive(Args)]
 pub(crate) struct CheckArguments {
@@ -64,6 +65,6 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
             }
         }
     }
-    ensure!(report.problems.is_empty(), "{} problems were found", report.problems.len());
+    ensure!(report.problems.is_empty(), "{} found", count(report.problems.len(), "problem"));
     Ok(())
 }

@@ -31,7 +31,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use text::visible;
+use text::{chain, visible};
 use tracing_subscriber::Layer as _;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
@@ -138,7 +138,7 @@ pub fn main() -> ExitCode {
         Err(error) => {
             // Without the backtrace that anyhow's own way of printing adds where RUST_BACKTRACE is set: what ends here is a
             // message to the user; panics have theirs.
-            let _ = writeln!(std::io::stderr().lock(), "Error: {}", visible(&format!("{error:#}")));
+            let _ = writeln!(std::io::stderr().lock(), "Error: {}", visible(&chain(&error)));
             ExitCode::FAILURE
         }
     }
@@ -203,7 +203,9 @@ fn run() -> anyhow::Result<()> {
             Ok(())
         }
         Command::Completions { shell } => {
-            clap_complete::generate(shell, &mut Arguments::command(), "drillsweep", &mut std::io::stdout());
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "drillsweep", &mut script);
+            print(String::from_utf8_lossy(&script).trim_end());
             Ok(())
         }
     }

@@ -19,6 +19,7 @@ use serde_json::json;
 
 use crate::print;
 use crate::scenario::{self, ScenarioArguments};
+use crate::text::number;
 
 #[derive(Args)]
 pub(crate) struct SimulateArguments {
@@ -158,8 +159,8 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm",
                 orbit.node,
                 orbit.measured_depth,
-                orbit.window.from,
-                orbit.window.to,
+                number(orbit.window.from),
+                number(orbit.window.to),
                 orbit.orbit_radius_rms * 1e3,
                 orbit.mean_radius * 1e3,
                 orbit.radius_deviation * 1e3,

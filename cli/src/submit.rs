@@ -19,7 +19,7 @@ use crate::client::{Client, DEFAULT_SERVER, ServerArguments, path_segment};
 use crate::print;
 use crate::scenario::{ScenarioArguments, parse_value};
 use crate::sweeps::{print_sweep, verification_line, warn_of_bias};
-use crate::text::{Alignment, columns, number};
+use crate::text::{Alignment, columns, count, number};
 use crate::watch::{check, follow, warn_of_waiting};
 
 #[derive(Args)]
@@ -210,11 +210,11 @@ fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
     let at = if server == DEFAULT_SERVER { String::new() } else { format!(" --server {server}") };
     writeln!(
         std::io::stderr().lock(),
-        "{} points; watch:  drillsweep watch {id}{at}\n\
+        "{}; watch:  drillsweep watch {id}{at}\n\
          when complete:  drillsweep fetch {id}{at} --output results\n\
          table of points:  {server}/v1/sweeps/{id}/table?format=csv\n\
          C_f along the string:  {server}/v1/sweeps/{id}/points/1/profile?format=svg",
-        sweep.counts.total
+        count(sweep.counts.total, "point")
     )
 }
 
@@ -243,7 +243,7 @@ const POINTS_SHOWN: usize = 50;
 
 impl DryRun {
     fn text(&self) -> String {
-        let mut text = format!("{} points, {} with a result already", self.total, self.known);
+        let mut text = format!("{}, {} with a result already", count(self.total, "point"), self.known);
         if let Some(references) = &self.verification {
             let _ = write!(text, "; {} reference runs, {} with a result", references.total, references.known);
         }

@@ -1,7 +1,7 @@
 //! Text for people: columns, numbers, and nothing that a terminal would obey.
 
 use std::borrow::Cow;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 /// To which side a column's texts go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,9 @@ pub(crate) fn columns(
     rows: &[Vec<String>],
     alignment: impl Fn(usize) -> Alignment,
 ) -> String {
+    // A line end within a cell would begin a row of its own.
+    let in_line = |text: &String| text.replace('\n', "\\u000a").replace('\t', "\\u0009");
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(in_line).collect()).collect();
     let width = |column: usize| {
         let texts = rows.iter().filter_map(|row| row.get(column)).map(String::as_str);
         texts.chain([header[column]]).map(|text| text.chars().count()).max().unwrap_or(0)
@@ -35,6 +38,25 @@ pub(crate) fn columns(
     let mut lines = vec![line(&mut header.iter().copied())];
     lines.extend(rows.iter().map(|row| line(&mut row.iter().map(String::as_str))));
     lines.join("\n")
+}
+
+/// What went wrong and why, each cause once: many errors tell of their cause themselves.
+pub(crate) fn chain(error: &anyhow::Error) -> String {
+    let mut told = error.to_string();
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        if !told.contains(&cause) {
+            let _ = write!(told, ": {cause}");
+        }
+    }
+    told
+}
+
+/// So many of something whose plural has an s.
+pub(crate) fn count(number: impl Display, of: &str) -> String {
+    let number = number.to_string();
+    let plural = if number == "1" { "" } else { "s" };
+    format!("{number} {of}{plural}")
 }
 
 /// A text with its control characters but line ends and tabs as `\u001b`, which a terminal shows and JSON reads as the same
@@ -78,6 +100,22 @@ mod tests {
         assert_eq!(visible(hostile), "\\u001b]0;owned\\u0007\\u009b2J");
         let json = serde_json::to_string(hostile).unwrap();
         assert_eq!(serde_json::from_str::<String>(&visible(&json)).unwrap(), hostile);
+    }
+
+    #[test]
+    fn a_cell_stays_in_its_row() {
+        let table =
+            columns(&["name", "state"], &[vec!["a\nb".to_owned(), "x".to_owned()]], |_| Alignment::Left);
+        assert_eq!(table.lines().collect::<Vec<_>>(), ["name      state", "a\\u000ab  x"]);
+    }
+
+    #[test]
+    fn a_cause_is_told_once() {
+        let denied = || std::io::Error::from(std::io::ErrorKind::PermissionDenied);
+        let error = drillsweep_store::StoreError::Directory { path: "data".to_owned(), source: denied() };
+        assert_eq!(chain(&error.into()), "data: permission denied");
+        assert_eq!(chain(&anyhow::Error::from(denied()).context("no sweep")), "no sweep: permission denied");
+        assert_eq!((count(1, "point"), count(12, "point")), ("1 point".to_owned(), "12 points".to_owned()));
     }
 
     #[test]

@@ -162,7 +162,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
         let asked = Instant::now();
         match store.claim(&id, record.physics_version, worker.lease_ms()).await {
             Ok(Some(claim)) => {
-                let mut claim_ms = Some(asked.elapsed().as_secs_f64() * 1e3);
+                let mut claim_ms = Some(asked.elapsed().as_micros() as f64 / 1e3);
                 let mut next = Some(claim);
                 while let Some(claim) = next {
                     let key = hex(&claim.lease.key);

@@ -82,6 +82,11 @@ async function show() {
   }
 }
 
+/** Whether a form is shown that somebody may have typed in; it follows what changes by itself. */
+function isTyped() {
+  return viewOf(route().path) === "new" && main.querySelector("form") !== null;
+}
+
 /** @param {unknown} error */
 function failure(error) {
   if (error instanceof Problem && error.status === 401) return h("div", { class: "empty" }, h("h1", {}, "Log in to see this"));
@@ -129,11 +134,11 @@ connection.addEventListener("lost", (event) => {
 });
 connection.addEventListener("found", () => {
   banner.hidden = true;
-  void show();
+  if (!isTyped()) void show();
 });
 settings.addEventListener("change", () => {
   drawSwitches();
-  void show();
+  if (!isTyped()) void show();
 });
 addEventListener("hashchange", () => void show());
 

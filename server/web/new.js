@@ -1,18 +1,21 @@
 // A new sweep: what it varies, and beside it what the service says it would become.
 
-import { get, Problem, send } from "./api.js";
+import { connection, get, Problem, send } from "./api.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, shell } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
 import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "./session.js";
+import { settings } from "./settings.js";
 import { NoSurvey, surveyField } from "./survey.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
 /** Characters of a request that a link may hold. */
 const LINKED = 4000;
 const SURVEY = "well.survey";
+/** Members of a request that the form has fields for, and its owner, who is the one who submits it; others are carried over as they are. */
+const FIELDS = ["name", "owner", "tags", "preset", "scenario", "set", "outputs", "design", "axes", "samples", "seed", "verify"];
 const DRAWN = ["latin_hypercube", "sobol"];
 
 /** @type {import("./main.js").View} */
@@ -20,7 +23,7 @@ export async function show(main, route, signal) {
   const { scenarios } = await get("/v1/scenarios", {}, signal);
   const start = await begun(route.query, signal);
   /** @type {{name: string, values: string}[]} */
-  const axes = Object.entries(start.axes ?? { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } }).map(([name, axis]) => ({ name, values: written(axis) }));
+  const axes = Object.entries(start.axes ?? (isGoneOnWith(route.query) ? {} : { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } })).map(([name, axis]) => ({ name, values: written(axis) }));
   /** @type {{name: string, values: string}[]} */
   const changes = Object.entries(start.set ?? {}).filter(([name]) => name !== "accuracy" && name !== SURVEY).map(([name, value]) => ({ name, values: JSON.stringify(value) }));
   const form = {
@@ -30,6 +33,8 @@ export async function show(main, route, signal) {
     design: start.design ?? "grid",
     outputs: typeof start.outputs === "string" ? start.outputs : "",
   };
+
+  const carried = isGoneOnWith(route.query) ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
 
   const changed = debounced(() => void plan(), 400);
   const box = (/** @type {string} */ value, /** @type {Record<string, any>} */ attributes = {}) => h("input", { value, oninput: changed, ...attributes });
@@ -136,7 +141,8 @@ export async function show(main, route, signal) {
   /** The request that the form stands for; throws where a text cannot be read. */
   function request() {
     /** @type {any} */
-    const body = {};
+    const body = { ...carried };
+    if (form.design !== "list") delete body.points;
     if (name.value.trim()) body.name = name.value.trim();
     if (form.preset) body.preset = form.preset;
     else body.scenario = parsed(scenario.value, "/scenario");
@@ -153,6 +159,7 @@ export async function show(main, route, signal) {
     const words = tags.value.split(",").map((word) => word.trim()).filter(Boolean);
     if (words.length) body.tags = words;
     if (form.outputs) body.outputs = form.outputs;
+    else if (typeof start.outputs === "object") body.outputs = start.outputs;
     if (verify.value.trim()) body.verify = Number(verify.value);
     return body;
   }
@@ -220,6 +227,10 @@ export async function show(main, route, signal) {
     }
   });
 
+  // What is typed stays: the plan alone is made again, in the units and colours that now hold.
+  settings.addEventListener("change", changed, { signal });
+  connection.addEventListener("found", changed, { signal });
+
   const form_ = h(
     "form",
     { novalidate: true, onsubmit: async (/** @type {Event} */ event) => {
@@ -274,6 +285,14 @@ async function begun(query, signal) {
   } catch {
     return {};
   }
+}
+
+/**
+ * Whether the form goes on with a request that there is, instead of one that it proposes.
+ * @param {URLSearchParams} query
+ */
+function isGoneOnWith(query) {
+  return query.has("from") || query.has("request");
 }
 
 /** A text of the form that cannot be read. */
@@ -360,7 +379,7 @@ function requestLines(body) {
   const axisLine = (/** @type {any} */ axis) => (axis.values ? python(axis.values) : axis.count ? `Range(${axis.from}, ${axis.to}, ${axis.count}${axis.scale ? ', scale="log"' : ""})` : `Range(${axis.from}, ${axis.to}${axis.scale ? ', scale="log"' : ""})`);
   const arguments_ = [preset ? JSON.stringify(preset) : 'scenario=json.load(open("scenario.json"))', set && `set=${python(set)}`, Object.keys(axes).length && `axes={${Object.entries(axes).map(([name, axis]) => `${JSON.stringify(name)}: ${axisLine(axis)}`).join(", ")}}`, ...Object.entries(rest).map(([name, value]) => `${name}=${python(value)}`)].filter(Boolean);
   if (design) arguments_.push(`design="${design}"`, ...(samples ? [`samples=${samples}`, `seed=${seed}`] : []));
-  const options = [...Object.entries(set ?? {}).map(([name, value]) => `--set ${shell(`${name}=${typeof value === "string" ? value : JSON.stringify(value)}`)}`), ...Object.entries(axes).map(([name, axis]) => `--axis ${shell(`${name}=${written(axis).replaceAll(" ", "")}`)}`), ...(design ? [`--design ${design}`] : []), ...(samples ? [`--samples ${samples} --seed ${seed}`] : []), ...(rest.outputs ? [`--outputs ${rest.outputs}`] : []), ...(rest.verify ? [`--verify ${rest.verify}`] : []), ...(rest.name ? [`--name ${shell(rest.name)}`] : []), ...(rest.tags ?? []).map((/** @type {string} */ tag) => `--tag ${shell(tag)}`)];
+  const options = [...Object.entries(set ?? {}).map(([name, value]) => `--set ${shell(`${name}=${typeof value === "string" ? value : JSON.stringify(value)}`)}`), ...Object.entries(axes).map(([name, axis]) => `--axis ${shell(`${name}=${written(axis).replaceAll(" ", "")}`)}`), ...(design ? [`--design ${design}`] : []), ...(samples ? [`--samples ${samples} --seed ${seed}`] : []), ...(typeof rest.outputs === "string" ? [`--outputs ${rest.outputs}`] : []), ...(rest.verify ? [`--verify ${rest.verify}`] : []), ...(rest.name ? [`--name ${shell(rest.name)}`] : []), ...(rest.tags ?? []).map((/** @type {string} */ tag) => `--tag ${shell(tag)}`)];
   return {
     curl: `curl -s ${server}/v1/sweeps -H 'Content-Type: application/json' -d ${shell(JSON.stringify(body))}`,
     python: `${scenario ? "import json\n\n" : ""}from drillsweep import Client, Range\n\nsweep = Client("${server}").submit(\n    ${arguments_.join(",\n    ")},\n)\nsweep.wait()`,

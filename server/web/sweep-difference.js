@@ -79,8 +79,12 @@ export function difference(context) {
     const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
     const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
     fill(controls, chooser, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
+    const xs = classes([...mine.rows, ...theirs.rows].map((row) => row.x));
+    const ys = classes([...mine.rows, ...theirs.rows].map((row) => row.y));
+    const cell = (/** @type {{x: number, y: number}} */ row) => `${xs.get(row.x)} ${ys.get(row.y)}`;
+    const partners = new Map(theirs.rows.map((row) => [cell(row), row]));
     const pairs = mine.rows.flatMap((row) => {
-      const partner = theirs.rows.find((entry) => isSame(entry.x, row.x) && isSame(entry.y, row.y));
+      const partner = partners.get(cell(row));
       return partner ? [{ ...row, partner, change: isRelative ? (100 * (partner.value - row.value)) / Math.abs(row.value) : (partner.value - row.value) / unit(colour).size }] : [];
     }).filter(({ change }) => Number.isFinite(change));
     if (!pairs.length) {
@@ -106,10 +110,12 @@ export function difference(context) {
     if (y) {
       const across = distinct(pairs.map((pair) => pair.x));
       const up = distinct(pairs.map((pair) => pair.y));
+      const placeOf = (/** @type {(number | string)[]} */ values) => new Map(values.map((value, index) => [value, index]));
+      const [columns, lines] = [placeOf(across), placeOf(up)];
       const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
       const [cells, hover, points] = [grid(null), grid(""), grid(null)];
       pairs.forEach((pair, index) => {
-        const [row, column] = [up.indexOf(pair.y), across.indexOf(pair.x)];
+        const [row, column] = [lines.get(pair.y) ?? 0, columns.get(pair.x) ?? 0];
         [cells[row][column], hover[row][column], points[row][column]] = [pair.change, text[index], keys[index]];
       });
       const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
@@ -154,6 +160,21 @@ export function difference(context) {
   }
 
   return { element: h("div", {}, controls, empty, figure), draw: undelayed(redraw, context), fields: () => ["ordinal", ...context.axes, query.get("colour") ?? ""].filter((name) => context.table.names.includes(name)) };
+}
+
+/**
+ * A number for each value: the same one for values that are the same.
+ * @param {number[]} values
+ */
+function classes(values) {
+  /** @type {Map<number, number>} */
+  const found = new Map();
+  let last = NaN;
+  for (const value of distinct(values).map(Number)) {
+    found.set(value, (isSame(value, last) ? found.get(last) : undefined) ?? found.size);
+    last = value;
+  }
+  return found;
 }
 
 /** @param {number} a @param {number} b */

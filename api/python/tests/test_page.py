@@ -122,6 +122,31 @@ def test_a_sweep_is_submitted_and_watched_until_it_is_complete(opened: Opens) ->
     drawn(page, "over flow rate")
 
 
+def test_what_is_typed_stays_when_colours_and_units_are_switched(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    values = page.get_by_role("region", name="Parameters").get_by_role("textbox", name="Values").first
+    values.fill("0.015, not a number")
+    page.get_by_role("button", name="Dark theme").click()
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    expect(values).to_have_value("0.015, not a number")
+    page.get_by_role("button", name="Units: SI").click()
+    expect(page.get_by_role("button", name="Units: field")).to_be_visible()
+    expect(values).to_have_value("0.015, not a number")
+
+
+def test_a_sweep_like_another_one_is_its_request(opened: Opens, client: Client) -> None:
+    # Part of it has no field in the form.
+    points = [{"flow_rate": 0.021}, {"flow_rate": 0.022}]
+    outputs = {"orbits": {"nodes": [{"node": 49}]}}
+    first = client.submit("paper-200m", set=SHORT, design="list", points=points, priority=4, outputs=outputs)
+    page = opened(f"#/new?from={first.id}")
+    page.get_by_role("button", name="Submit 2 points").click()
+    expect(page.get_by_text("2 of 2 succeeded")).to_be_visible(timeout=60_000)
+    second = client.sweep(page.url.rsplit("/", 1)[1])
+    assert second.id != first.id
+    assert {**second.request, "owner": None} == {**first.request, "owner": None}
+
+
 def test_a_problem_stands_at_its_field(opened: Opens, troubles: list[str]) -> None:
     page = opened("#/new?preset=paper-200m")
     rows = page.get_by_role("region", name="Parameters")

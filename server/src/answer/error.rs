@@ -52,6 +52,11 @@ impl Error {
         Error { retry_after: Some(seconds), ..Error::new(kind, detail) }
     }
 
+    /// Whether it is a problem of this kind.
+    pub(crate) fn is_of(&self, kind: ProblemKind) -> bool {
+        self.problem.type_uri == kind.uri()
+    }
+
     /// The problem, to be written out where the id of the request is known.
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem

@@ -5,13 +5,16 @@
 //! open the service again.
 
 use std::net::IpAddr;
+use std::time::Duration;
 
+use axum::body::Body;
 use axum::extract::{MatchedPath, RawPathParams, Request, State};
 use axum::http::{HeaderMap, Method, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::ProblemKind;
 use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
+use futures::StreamExt as _;
 
 use crate::answer::error::{Error, Result};
 use crate::app::App;
@@ -30,6 +33,9 @@ const OPEN: [&str; 8] = [
     // Whoever has no token yet logs in here; what it tells of the session, it tells its bearer alone.
     "/v1/session",
 ];
+
+/// How long a stream of events goes on after its token has ended, at most.
+const LOOK_AGAIN: Duration = Duration::from_secs(5);
 
 /// Who asks.
 #[derive(Debug, Clone)]
@@ -98,13 +104,32 @@ pub(crate) async fn guard(
     match admit(&app, request.method(), request.headers(), route, id.as_deref()).await {
         Ok(caller) => {
             let (method, uri) = (request.method().clone(), request.uri().clone());
+            let headers = request.headers().clone();
             request.extensions_mut().insert(caller.clone());
             let response = next.run(request).await;
             audit::note(caller.token(), &method, &uri, &response);
-            response
+            if is_event_stream(&response) { while_admitted(app, headers, response) } else { response }
         }
         Err(error) => error.into_response(),
     }
+}
+
+fn is_event_stream(response: &Response) -> bool {
+    response.headers().get(header::CONTENT_TYPE).is_some_and(|kind| kind == "text/event-stream")
+}
+
+/// Ends a stream of events once who asked for it would not get it any more: it would outlive its token otherwise.
+fn while_admitted(app: App, headers: HeaderMap, response: Response) -> Response {
+    let is_refused = async move {
+        loop {
+            tokio::time::sleep(LOOK_AGAIN).await;
+            // A database that is away says nothing about the token.
+            if identify(&app, &headers).await.is_err_and(|error| error.is_of(ProblemKind::Unauthorized)) {
+                return;
+            }
+        }
+    };
+    response.map(|body| Body::from_stream(body.into_data_stream().take_until(Box::pin(is_refused))))
 }
 
 async fn admit(

@@ -112,7 +112,11 @@ impl Bench {
 
     /// An answer whose body is not read yet.
     pub(crate) async fn open(&self, path: &str) -> Response {
-        let request = Request::get(path).body(Body::empty()).unwrap();
+        self.begin(Request::get(path).body(Body::empty()).unwrap()).await
+    }
+
+    /// The same for any request.
+    pub(crate) async fn begin(&self, request: Request<Body>) -> Response {
         self.routes.clone().oneshot(request).await.unwrap()
     }
 

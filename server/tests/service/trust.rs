@@ -1,11 +1,15 @@
 //! Who may do what, how fast, and what operators see.
 
 use std::num::NonZeroU32;
+use std::time::Duration;
 
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
+use axum::response::Response;
 use drillsweep_server::{Config, Listeners, OwnerLimits, ServeError, serve};
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
+use futures::StreamExt as _;
+use http_body_util::BodyExt as _;
 use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
@@ -54,6 +58,43 @@ async fn once_a_token_exists_every_request_needs_one() {
     send(&bench, &reader, Method::GET, "/v1/sweeps", json!({})).await.problem(401, "unauthorized");
     // Without a valid token left, the service is closed, not open again.
     bench.get("/v1/sweeps").await.problem(401, "unauthorized");
+}
+
+#[tokio::test]
+async fn a_stream_of_events_ends_with_its_token() {
+    async fn is_ended(stream: Response) {
+        let all = stream.into_body().collect();
+        tokio::time::timeout(Duration::from_secs(60), all).await.expect("it ends").expect("in good order");
+    }
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.02]}}})).await;
+    let of_sweep = format!("/v1/sweeps/{id}/events");
+    // Of somebody on this machine, who needs a token once there is one.
+    let local = bench.open("/v1/events").await;
+    assert_eq!(local.status(), StatusCode::OK);
+    let (reader, other) =
+        (token(&bench, "anne", TokenScope::Read).await, token(&bench, "bob", TokenScope::Read).await);
+    let of = async |token: &TokenSecret, path: &str| {
+        let value = format!("Bearer {}", token.expose());
+        let request = Request::get(path).header(header::AUTHORIZATION, value).body(Body::empty()).unwrap();
+        let stream = bench.begin(request).await;
+        assert_eq!(stream.status(), StatusCode::OK);
+        stream
+    };
+    let revoked = [of(&reader, "/v1/events").await, of(&reader, &of_sweep).await];
+    let mut kept = of(&other, &of_sweep).await.into_body().into_data_stream();
+    bench.store.revoke_token(&reader.id()).await.unwrap();
+    let [all, one] = revoked;
+    tokio::join!(is_ended(local), is_ended(all), is_ended(one));
+
+    // One that still holds goes on to the end of its sweep.
+    assert_eq!(send(&bench, &other, Method::GET, "/v1/sweeps", json!({})).await.status, StatusCode::OK);
+    bench.succeed().await;
+    let mut text = String::new();
+    while let Some(piece) = kept.next().await {
+        text.push_str(std::str::from_utf8(&piece.unwrap()).unwrap());
+    }
+    assert!(text.contains(r#""state":"completed""#), "{text}");
 }
 
 #[tokio::test]

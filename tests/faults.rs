@@ -459,9 +459,10 @@ fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     assert!(up.log.lock().unwrap().contains("memory allocation"), "the workers died of something else");
     // SIGABRT.
     assert!(
-        point["error"]["reason"].as_str().unwrap().contains(
-            "the last one ended itself by signal 6 (abort), as it does where it gets no more memory"
-        ),
+        point["error"]["reason"]
+            .as_str()
+            .unwrap()
+            .contains("the last one aborted (signal 6), as when a memory allocation fails"),
         "{point}"
     );
     assert_eq!(wait(&address, &harmless, completed)["counts"]["succeeded"], 4);

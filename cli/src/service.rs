@@ -388,9 +388,9 @@ fn how_it_ended(status: ExitStatus, was_memory_short: bool) -> String {
     match (status.signal(), status.code()) {
         // The system ends processes with this signal when memory is short; so do people.
         (Some(9), _) if was_memory_short => "was ended by the system for lack of memory".to_owned(),
-        // A process ends itself with this signal when an allocation fails, and for other reasons, which it tells in the log.
+        // A failed allocation is one of the reasons; the process has written which it was to the log.
         (Some(6), _) => {
-            "ended itself by signal 6 (abort), as it does where it gets no more memory; the log tells more"
+            "aborted (signal 6), as when a memory allocation fails; the workers' log has the reason"
                 .to_owned()
         }
         (Some(signal), _) => format!("was ended by signal {signal}"),

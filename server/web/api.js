@@ -25,6 +25,8 @@ export const connection = new EventTarget();
 
 const FIRST_RETRY_MS = 1000;
 const LONGEST_RETRY_MS = 30_000;
+/** How long a stream that the service refuses is not asked for again. */
+const REFUSED_MS = 5000;
 let isLost = false;
 
 /**
@@ -116,7 +118,10 @@ async function ask(method, url, body, signal, read = (answer) => answer.json()) 
   }
   if (answer.status === 204) return null;
   if (answer.ok) return read(answer);
-  const document = await answer.json().catch(() => ({}));
+  const document = await answer.json().catch((error) => {
+    if (signal?.aborted) throw error;
+    return {};
+  });
   if (answer.status === 401) connection.dispatchEvent(new Event("login"));
   throw new Problem(answer.status, document);
 }
@@ -158,15 +163,17 @@ export function follow(id, listeners, signal) {
   });
   source.addEventListener("point", (event) => listeners.point?.(JSON.parse(event.data)));
   source.addEventListener("error", () => {
-    if (source.readyState === EventSource.CLOSED) return;
     // A stream that ends and a server that is gone look the same from here.
-    get("/livez", {}, signal).catch(() => {});
+    if (source.readyState !== EventSource.CLOSED) return void get("/livez", {}, signal).catch(() => {});
+    setTimeout(async () => {
+      // A stream is refused without a reason; the sweep itself says whether it has ended, or that a token is needed.
+      const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal).catch(() => null);
+      if (sweep) listeners.sweep?.(sweep);
+      if (!sweep || !isFinal(sweep)) follow(id, listeners, signal);
+    }, REFUSED_MS);
   });
   signal.addEventListener("abort", () => source.close(), { once: true });
 }
-
-/** How long a stream that the service refuses is not asked for again. */
-const REFUSED_MS = 5000;
 
 /**
  * Follows all sweeps until the signal. The browser reconnects by itself and says which event it saw last.

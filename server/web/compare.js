@@ -3,6 +3,7 @@
 import { get, Problem } from "./api.js";
 import { choice, fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
+import { attend } from "./notices.js";
 import { ledger } from "./point-energy.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { canvas, DASHES, draw, inks, LINES } from "./plots.js";
@@ -68,7 +69,7 @@ export async function show(main, route, signal) {
   const ticks = quantityTicks(query.get("profiles") ?? "friction_coefficient,eccentricity,effective_tension,largest_normal_force", (names) => {
     query.set("profiles", names.join(","));
     keep({ profiles: names.join(",") });
-    void redraw();
+    attend(redraw(), signal);
   });
   const recorded = points[0]?.detail.scenario.recording.nodes ?? [];
   const window_ = () => {
@@ -85,7 +86,7 @@ export async function show(main, route, signal) {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
       query.set(name, value);
       keep({ [name]: value });
-      void redraw();
+      attend(redraw(), signal);
     };
     const { from, to } = window_();
     const time = (/** @type {string} */ name, /** @type {number} */ value) => {

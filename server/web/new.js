@@ -3,6 +3,7 @@
 import { connection, get, Problem, send } from "./api.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, shell } from "./lines.js";
+import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
 import { scenarioForm } from "./scenario-form.js";
@@ -60,7 +61,7 @@ export async function show(main, route, signal) {
       drawRows(changesPart, changes, "set");
       changed();
     },
-  });
+  }, signal);
   const survey = surveyField(start.set?.[SURVEY], changed);
   const axesPart = h("div", {});
   const changesPart = h("div", {});
@@ -108,16 +109,19 @@ export async function show(main, route, signal) {
     const options = [/** @type {[string, string]} */ (["", "— my own, pasted as JSON"]), ...scenarios.map((/** @type {any} */ entry) => /** @type {[string, string]} */ ([entry.name, entry.name]))];
     fill(
       sourcePart,
-      choice("Scenario", options, form.preset, async (value) => {
-        if (!value && !scenario.value && form.preset) scenario.value = JSON.stringify((await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal)).scenario, null, 2);
-        form.preset = value;
-        drawSource();
-        changed();
-      }),
+      choice("Scenario", options, form.preset, (value) => attend(choose(value), signal)),
       h("p", { class: "small soft" }, scenarios.find((/** @type {any} */ entry) => entry.name === form.preset)?.description ?? "A scenario file's JSON; its fields are in SI units."),
       !form.preset && scenario,
     );
-    void drawFields();
+    attend(drawFields(), signal);
+  }
+
+  /** @param {string} preset none for a scenario of one's own, which begins as the one that was chosen before */
+  async function choose(preset) {
+    if (!preset && !scenario.value && form.preset) scenario.value = JSON.stringify((await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal)).scenario, null, 2);
+    form.preset = preset;
+    drawSource();
+    changed();
   }
 
   async function drawFields() {

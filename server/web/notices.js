@@ -1,5 +1,6 @@
 // Short messages about what was done or went wrong, read out by screen readers.
 
+import { Problem, Unreachable } from "./api.js";
 import { h } from "./dom.js";
 
 const SHOWN_MS = 6000;
@@ -24,4 +25,19 @@ export async function reported(work) {
     notice(error instanceof Error ? error.message : String(error));
     return undefined;
   }
+}
+
+/**
+ * Does something that nobody waits for, and says what went wrong, unless its view is gone or the page asks for a token.
+ * @param {Promise<unknown>} work
+ * @param {AbortSignal} signal of the view
+ */
+export function attend(work, signal) {
+  work.catch((error) => {
+    if (signal.aborted || (error instanceof Problem && error.status === 401)) return;
+    // What is down is said above the view, and asked for again there.
+    if (error instanceof Unreachable) return;
+    if (!(error instanceof Problem)) console.error(error);
+    notice(error instanceof Error ? error.message : String(error));
+  });
 }

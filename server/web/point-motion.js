@@ -3,6 +3,7 @@
 import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
 import { say, shown, unit } from "./units.js";
@@ -70,7 +71,7 @@ export function motion(context) {
       controls,
       choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth)]), query.get("node") ?? "0", (value) => {
         set("node", value);
-        void redraw();
+        attend(redraw(), signal);
       }),
       entry("from", from),
       entry("to", to),

@@ -1,6 +1,7 @@
 // Quantities over depth, side by side with one depth cursor.
 
 import { fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, draw, inks, LINES } from "./plots.js";
 import { label, meaning, say, shown, title } from "./units.js";
 
@@ -105,7 +106,7 @@ export function profiles(context) {
   const reading = h("p", { class: "small soft", role: "status" }, "Point at a depth to read all profiles there.");
   const ticks = quantityTicks(context.query.get("profiles") ?? "", (names) => {
     context.keep({ profiles: names.join(",") });
-    void redraw();
+    attend(redraw(), context.signal);
   });
   /** @type {Record<string, any>} */
   const tables = {};

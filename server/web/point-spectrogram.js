@@ -2,6 +2,7 @@
 
 import { Problem } from "./api.js";
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, logTicks, SCALE } from "./plots.js";
 import { say, shown, title, unit } from "./units.js";
 
@@ -38,7 +39,7 @@ export function spectrogram(context) {
   function drawControls() {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
       context.keep({ [name]: value || null });
-      void redraw();
+      attend(redraw(), context.signal);
     };
     fill(
       controls,

@@ -2,6 +2,7 @@
 
 import { GRADIENT } from "./colours.js";
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { BEYOND, contactMap, largestShown } from "./point-contacts.js";
 import { rotation } from "./point-rotation.js";
 import { onNodes } from "./point-well.js";
@@ -105,13 +106,13 @@ export function string(context) {
     };
     fill(
       controls,
-      choice("Colour", offered().map(([name]) => [name, named(name)]), colour()[0], set("colour", () => void recolour())),
+      choice("Colour", offered().map(([name]) => [name, named(name)]), colour()[0], set("colour", () => attend(recolour(), signal))),
       choice("Distance from the axis", EXAGGERATIONS.map((text) => [text, text === "1" ? "to scale" : `${text} times`]), String(factor()), set("exaggerate", show)),
       choice("Speed", SPEEDS.map((text) => [text, text === "1" ? "as it happens" : Number(text) > 1 ? `${text} times` : `1/${Math.round(1 / Number(text))}`]), String(speed()), set("speed", () => {})),
       entry("From depth", "top", depths().from, "measured_depth", show),
       entry("to depth", "bottom", depths().to, "measured_depth", show),
-      entry("From", "from", span().from, "time", () => void load()),
-      entry("to", "to", span().to, "time", () => void load()),
+      entry("From", "from", span().from, "time", () => attend(load(), signal)),
+      entry("to", "to", span().to, "time", () => attend(load(), signal)),
     );
   }
 

@@ -1,6 +1,7 @@
 // The well in space with the string in it at rest, coloured by a quantity.
 
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, SCALE } from "./plots.js";
 import { QUANTITIES, tableOf } from "./point-profiles.js";
 import { label, say, shown, title, unit } from "./units.js";
@@ -25,7 +26,7 @@ export function well(context) {
     const name = colour();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
-      void redraw();
+      attend(redraw(), context.signal);
     };
     fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor()), set("exaggerate")));
     const statics = (await context.table("statics")).columns;

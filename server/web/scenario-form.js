@@ -2,6 +2,7 @@
 
 import { get } from "./api.js";
 import { fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { unitSystem } from "./settings.js";
 import { number, say, servedUnit } from "./units.js";
 
@@ -17,9 +18,10 @@ const REFERENCE = "#/components/schemas/";
 
 /**
  * @param {Changes} changes
+ * @param {AbortSignal} signal of the view
  * @returns {{element: HTMLElement, show: (scenario: any) => void}} `show` draws the fields of another scenario, or none
  */
-export function scenarioForm(changes) {
+export function scenarioForm(changes, signal) {
   const body = h("div", {});
   /** @type {any} */
   let shownScenario = null;
@@ -34,7 +36,7 @@ export function scenarioForm(changes) {
     }
     if (!schemas) {
       fill(body, h("p", { class: "soft small", role: "status" }, "Loading…"));
-      schemas = /** @type {Record<string, any>} */ ((await get("/openapi.json")).components.schemas);
+      schemas = /** @type {Record<string, any>} */ ((await get("/openapi.json", {}, signal)).components.schemas);
     }
     fill(body, section(schemas.Scenario, shownScenario, ""));
   }
@@ -121,12 +123,12 @@ export function scenarioForm(changes) {
     return row;
   }
 
-  const element = h("details", { class: "schema", ontoggle: (/** @type {Event} */ event) => event.target === element && void draw() }, h("summary", {}, "All fields, with units, limits and help"), body);
+  const element = h("details", { class: "schema", ontoggle: (/** @type {Event} */ event) => event.target === element && attend(draw(), signal) }, h("summary", {}, "All fields, with units, limits and help"), body);
   return {
     element,
     show: (scenario) => {
       shownScenario = scenario;
-      void draw();
+      attend(draw(), signal);
     },
   };
 }

@@ -1,6 +1,7 @@
 // Which of the swept parameters matters to a result.
 
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { LEAST_POINTS, shares } from "./sensitivity.js";
 import { preferred, undelayed } from "./sweep-map.js";
@@ -28,7 +29,7 @@ export function effects(context) {
     const { results, result } = chosen();
     fill(controls, choice("Result", results.map((name) => [name, label(name)]), result, (value) => {
       context.keep({ result: value });
-      void redraw();
+      attend(redraw(), context.signal);
     }));
     const [values, ...columns] = await table.columns(result, ...axes);
     const rows = values.map((_, index) => index).filter((index) => typeof values[index] === "number" && columns.every((column) => typeof column[index] === "number"));

@@ -1,6 +1,7 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
 import { finer } from "./sweep-finer.js";
 import { distinct, isText } from "./table.js";
@@ -43,7 +44,7 @@ export function map(context) {
     const [ordinals, states, xs, ys, values, ...others] = await table.columns("ordinal", "state", x, y ?? x, colour, ...held);
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
       context.keep({ [name]: value });
-      void redraw();
+      attend(redraw(), context.signal);
     };
     const named = (/** @type {string[]} */ names) => names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     const words = isText(values);
@@ -195,7 +196,7 @@ export function undelayed(redraw, context) {
     const work = redraw();
     if (!isFirst) return work;
     isFirst = false;
-    work.catch((error) => context.signal.aborted || console.error(error));
+    attend(work, context.signal);
   };
 }
 

@@ -1,6 +1,7 @@
 // Clouds of points: any two columns against each other, and all swept parameters side by side.
 
 import { choice, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, colourBar, draw, LINES, SCALE } from "./plots.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { isText } from "./table.js";
@@ -29,7 +30,7 @@ export function scatter(context) {
     const { names, x, y, colour, isLogX, isLogY } = chosen();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
-      void redraw();
+      attend(redraw(), context.signal);
     };
     const options = names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     /** @type {[string, string][]} */
@@ -89,7 +90,7 @@ export function parallel(context) {
     const { results, colour, beside } = chosen();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
-      void redraw();
+      attend(redraw(), context.signal);
     };
     const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));

@@ -1,6 +1,7 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
 import { choice, debounced, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { link } from "./router.js";
 import { preferred } from "./sweep-map.js";
 import { label, meaning, number, title, unit } from "./units.js";
@@ -21,7 +22,7 @@ export function table(context) {
   const status = h("p", { class: "soft small", role: "status" });
   const filter = h("input", { type: "search", value: query.get("filter") ?? "", placeholder: "e.g. flow_rate>0.02 state=failed", size: 34, oninput: debounced(() => {
     context.keep({ filter: filter.value || null });
-    void redraw();
+    attend(redraw(), context.signal);
   }, 250) });
   const wrong = h("p", { class: "wrong", role: "alert" });
   const columnsPart = h("details", {});
@@ -66,7 +67,7 @@ export function table(context) {
       const isSorted = name === by;
       return h("th", { class: typeof firstOf(name) === "number" ? "number" : "", scope: "col", style: `width:${name === "ordinal" ? 5 : name === "state" ? 8 : 10}rem;white-space:normal`, "aria-sort": isSorted && (isDown ? "descending" : "ascending"), title: meaning(name) }, h("button", { onclick: () => {
         context.keep({ sort: name, order: isSorted && !isDown ? "down" : null });
-        void redraw();
+        attend(redraw(), context.signal);
       } }, name === "ordinal" ? "Point" : title(name), isSorted ? (isDown ? " ▼" : " ▲") : ""), context.biases.brief(name) && h("div", { title: context.biases.say(name) }, context.biases.brief(name)));
     }));
     drawColumns();
@@ -104,7 +105,7 @@ export function table(context) {
         box.checked ? chosen.add(name) : chosen.delete(name);
         const kept = data.names.filter((entry) => chosen.has(entry));
         context.keep({ columns: kept.join(",") || null });
-        void redraw();
+        attend(redraw(), context.signal);
       } });
       return h("label", { class: "tick small", style: "width:17rem" }, box, name === "ordinal" ? "point" : label(name));
     });
@@ -124,7 +125,7 @@ export function table(context) {
   const presets = choice("Show", [["", "all points"], ["state=succeeded", "succeeded"], ["state=failed", "failed"], ["state=running", "running"], ["state=queued", "queued"]], "", (value) => {
     filter.value = value;
     context.keep({ filter: value || null });
-    void redraw();
+    attend(redraw(), context.signal);
   });
   return {
     element: h("div", {}, h("div", { class: "controls" }, h("label", { class: "field" }, h("span", {}, "Filter, in units as shown"), filter), presets), wrong, columnsPart, status, scroller),

@@ -3,6 +3,7 @@
 import { address, followAll, get, isFinal } from "./api.js";
 import { debounced, choice, fill, h } from "./dom.js";
 import { lines, shell } from "./lines.js";
+import { attend } from "./notices.js";
 import { go, keep, link } from "./router.js";
 import { duration } from "./units.js";
 
@@ -24,7 +25,7 @@ export async function show(main, route, signal) {
   const filtered = debounced(() => {
     keep(filters());
     redraw();
-    void load();
+    attend(load(), signal);
   }, 250);
   const input = (/** @type {string} */ label, /** @type {string} */ name, /** @type {string} */ type = "text") =>
     h("input", { type, value: route.query.get(name) ?? "", oninput: filtered, "aria-label": label, placeholder: label, size: 12 });

@@ -17,7 +17,7 @@ from playwright.sync_api import Browser, Locator, Page, Request, Route, expect, 
 
 from drillsweep import Client, Range, Sweep
 from service import SHORT, Service
-from test_tokens import make_token
+from test_tokens import make_token, revoke_token, tokens_of
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
@@ -25,6 +25,8 @@ NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="tak
 """A name that would be markup where it was taken for it."""
 GONE = re.compile(r"net::ERR_|502|Failed to load resource")
 """What a browser itself writes on its console of a server that is gone."""
+REFUSED = re.compile("status of 40[13]")
+"""What it writes of every answer that refuses."""
 MINUS = "\N{MINUS SIGN}"
 POINT_VIEWS = ["profiles", "motion", "well", "energy", "about"]
 
@@ -656,7 +658,36 @@ def test_a_token_logs_in_and_out(opened: Opens, troubles: list[str], tmp_path: P
         page.get_by_role("button", name="Log out").click()
         expect(dialog).to_be_visible()
         assert page.context.cookies() == []
+        page.close()
     finally:
         service.stop()
-    # The browser writes of every answer that refuses.
-    troubles[:] = [text for text in troubles if not re.search("status of 40[13]", text)]
+    troubles[:] = [text for text in troubles if not REFUSED.search(text)]
+
+
+@pytest.mark.parametrize("view", ["sweeps", "sweep", "new"])
+def test_a_session_that_ends_is_asked_for_again(view: str, opened: Opens, troubles: list[str], tmp_path: Path) -> None:
+    others = make_token(tmp_path, "submit")
+    service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    try:
+        with Client(service.server, token=others) as client:
+            sweep = submit_slow(client, "waits")
+        before = tokens_of(tmp_path)
+        token = make_token(tmp_path, "submit")
+        (identifier,) = tokens_of(tmp_path) - before
+        links = {"sweeps": "#/sweeps", "sweep": f"#/sweeps/{sweep.id}", "new": "#/new"}
+        page = opened(links[view], service.server)
+        dialog = page.get_by_role("dialog")
+        page.get_by_label("Token").fill(token)
+        dialog.get_by_role("button", name="Log in").click()
+        expect(
+            page.get_by_role("button", name="Submit") if view == "new" else page.get_by_text("0 of 1 succeeded")
+        ).to_be_visible()
+        expect(dialog).not_to_be_attached()
+        revoke_token(tmp_path, identifier)
+        if view == "new":
+            page.get_by_role("combobox", name="Scenario", exact=True).select_option("paper-200m-dry")
+        expect(dialog).to_be_visible()
+        page.close()
+    finally:
+        service.stop()
+    troubles[:] = [text for text in troubles if not REFUSED.search(text)]

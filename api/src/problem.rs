@@ -232,18 +232,22 @@ impl ProblemDetails {
     pub fn malformed_body(pointer: String, error: &serde_json::Error) -> Self {
         let (message, position) =
             (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
-        let detail = if error.is_data() {
-            let problem =
-                Problem::from_serde(String::new(), message.strip_suffix(&position).unwrap_or(&message));
-            // A pointer tells the place better than lines do, where there is one.
-            let position = if pointer.is_empty() && error.line() > 0 { position } else { String::new() };
-            format!("{problem}{position}")
+        let (got, detail) = if error.is_data() {
+            // The pointer tells the place.
+            let message = message.strip_suffix(&position).unwrap_or(&message);
+            let problem = Problem::from_serde(String::new(), message);
+            match serde_json::from_str(&problem.got) {
+                Ok(got) => (Some(got), problem.message),
+                Err(_) => (None, problem.to_string()),
+            }
         } else {
-            format!("not JSON: {message}")
+            (None, format!("not JSON: {message}"))
         };
-        let place = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
-        let problem = ProblemDetails::new(ProblemKind::MalformedBody, format!("{place}{detail}"));
-        let error = FieldProblem { pointer: Some(pointer), parameter: None, got: None, detail };
+        let error = FieldProblem { pointer: Some(pointer), parameter: None, got, detail };
+        // That of the whole body needs no place.
+        let text = error.to_string();
+        let text = text.strip_prefix(": ").unwrap_or(&text);
+        let problem = ProblemDetails::new(ProblemKind::MalformedBody, text);
         ProblemDetails { errors: vec![error], ..problem }
     }
 
@@ -270,6 +274,12 @@ impl ProblemDetails {
         };
         let detail = format!("{name}: {detail}");
         ProblemDetails { errors: vec![error], ..ProblemDetails::new(ProblemKind::InvalidParameter, detail) }
+    }
+
+    /// A query parameter that serde could not read, by its message.
+    pub fn unreadable_parameter(name: &str, got: Option<&str>, message: &str) -> Self {
+        let detail = Problem::from_serde(String::new(), message).message;
+        Self::invalid_parameter(name, got, detail.replacen("no field", "no parameter", 1))
     }
 
     /// The problem that a table has no column of this name, which `fields` asks for; it names those that there are.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use drillsweep_sim::scenario::{Outputs, Scenario};
 use indexmap::IndexMap;
 use jiff::Timestamp;
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -20,16 +21,21 @@ use crate::problem::{FieldProblem, ProblemDetails};
 pub struct SweepRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 200, example = "flow rate against density")]
+    #[schema(
+        min_length = 1,
+        max_length = 200,
+        pattern = r"^\P{Cc}*$",
+        example = "flow rate against density"
+    )]
     pub name: Option<String>,
     /// Whose share of the workers the sweep counts against; absent means `default`. Where tokens are in use it is the token's
     /// owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 100)]
+    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, value_type = Vec<String>, example = json!(["campaign-7"]))]
+    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -94,21 +100,27 @@ pub struct SweepRequest {
     pub priority: i32,
 }
 
+/// A word to find a sweep by.
+#[derive(ToSchema)]
+#[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
+#[expect(dead_code, reason = "only its schema is used")]
+struct Tag(String);
+
 /// A single point, computed by the same machinery as a sweep.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 200)]
+    #[schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
     pub name: Option<String>,
     /// Whose share of the workers the run counts against; absent means `default`. Where tokens are in use it is the token's owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 100)]
+    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, value_type = Vec<String>, example = json!(["campaign-7"]))]
+    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -230,7 +242,7 @@ impl SweepRequest {
 pub struct SweepPatch {
     /// A name for people; `null` takes it away.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(value_type = Option<String>, min_length = 1, max_length = 200)]
+    #[schema(value_type = Option<String>, min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
     pub name: Option<Option<String>>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -238,13 +250,13 @@ pub struct SweepPatch {
     pub priority: Option<i32>,
     /// Words to find it by, in place of those that it has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_items = 20, value_type = Option<Vec<String>>)]
+    #[schema(max_items = 20, value_type = Option<Vec<Tag>>)]
     pub tags: Option<BTreeSet<String>>,
     /// Whether the sweep, and all that belongs to it, is kept whatever its age.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pinned: Option<bool>,
     /// When the sweep is to be deleted, once all its points are final and unless it is pinned; `null` means never.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "time")]
     #[schema(value_type = Option<Timestamp>)]
     pub expires: Option<Option<Timestamp>>,
 }
@@ -254,6 +266,12 @@ fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<Option<T>>, D::Error> {
     Option::deserialize(deserializer).map(Some)
+}
+
+/// A time that is there, be it `null`.
+fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<Timestamp>>, D::Error> {
+    let expected = |_| D::Error::custom("must be a time such as 2026-12-31T00:00:00Z (RFC 3339), or null");
+    given(deserializer).map_err(expected)
 }
 
 /// How points are made from the axes.

@@ -9,6 +9,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
 use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind};
 use serde::de::{DeserializeOwned, Error as _};
+use serde_json::Value;
 use tokio::time::timeout;
 
 use crate::answer::error::Error;
@@ -70,31 +71,54 @@ fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     if bytes.trim_ascii_start().starts_with(b"[") {
         return Err(malformed(String::new(), &serde_json::Error::custom("must be an object, not an array")));
     }
-    let mut deserializer = serde_json::Deserializer::from_slice(bytes);
-    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let pointer = pointer(error.path());
-        malformed(pointer, error.inner())
-    })?;
-    deserializer.end().map_err(|error| malformed(String::new(), &error))?;
-    Ok(value)
+    // What is given twice is only found here.
+    let twice = match serde_json::from_slice(bytes) {
+        Ok(value) => return Ok(value),
+        Err(error) => error,
+    };
+    // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
+    let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
+    write_whole(&mut body);
+    let read = serde_path_to_error::deserialize(body);
+    if read.is_ok() && twice.to_string().starts_with("duplicate field") {
+        return Err(malformed(String::new(), &twice));
+    }
+    read.map_err(|error| malformed(pointer(error.path()), error.inner()))
+}
+
+/// Writes whole numbers without a decimal point: to JSON Schema 2.0 is an integer, and some clients write integers so.
+fn write_whole(body: &mut Value) {
+    /// Beyond it a float does not hold every integer.
+    const LARGEST: f64 = (1_u64 << 53) as f64;
+    match body {
+        Value::Array(entries) => entries.iter_mut().for_each(write_whole),
+        Value::Object(members) => members.values_mut().for_each(write_whole),
+        Value::Number(number) => {
+            let whole = number.as_f64().filter(|value| value.fract() == 0.0 && value.abs() <= LARGEST);
+            if let Some(whole) = whole.filter(|_| number.is_f64()) {
+                *body = Value::from(whole as i64);
+            }
+        }
+        _ => {}
+    }
 }
 
 fn malformed(pointer: String, error: &serde_json::Error) -> Error {
     ProblemDetails::malformed_body(pointer, error).into()
 }
 
-/// A path of serde's as a JSON Pointer. Enum variants are not members of the document.
+/// A path of serde's as a JSON Pointer. A variant that has fields is a member that holds them.
 fn pointer(path: &serde_path_to_error::Path) -> String {
     use serde_path_to_error::Segment;
     let mut pointer = String::new();
     for segment in path.iter() {
         match segment {
             Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
-            Segment::Map { key } => {
+            Segment::Map { key: member } | Segment::Enum { variant: member } => {
                 pointer.push('/');
-                pointer.push_str(&pointer_token(key));
+                pointer.push_str(&pointer_token(member));
             }
-            Segment::Enum { .. } | Segment::Unknown => {}
+            Segment::Unknown => {}
         }
     }
     pointer
@@ -110,13 +134,12 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Query<T> {
         let query = parts.uri.query().unwrap_or_default().as_bytes();
         let deserializer = serde_urlencoded::Deserializer::new(form_urlencoded::parse(query));
         serde_path_to_error::deserialize(deserializer).map(Query).map_err(|error| {
-            let detail = error.inner().to_string();
             let name = match error.path().iter().next() {
                 Some(serde_path_to_error::Segment::Map { key }) => key.clone(),
                 _ => String::new(),
             };
             let got = form_urlencoded::parse(query).find(|(key, _)| *key == name).map(|(_, value)| value);
-            Error::parameter(&name, got.as_deref(), detail)
+            ProblemDetails::unreadable_parameter(&name, got.as_deref(), &error.inner().to_string()).into()
         })
     }
 }

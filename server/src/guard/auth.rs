@@ -105,9 +105,10 @@ pub(crate) async fn guard(
         Ok(caller) => {
             let (method, uri) = (request.method().clone(), request.uri().clone());
             let headers = request.headers().clone();
+            let peer = request.extensions().get().copied();
             request.extensions_mut().insert(caller.clone());
             let response = next.run(request).await;
-            audit::note(caller.token(), &method, &uri, &response);
+            audit::note(caller.token(), peer, &method, &uri, &response);
             if is_event_stream(&response) { while_admitted(app, headers, response) } else { response }
         }
         Err(error) => error.into_response(),

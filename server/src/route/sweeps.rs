@@ -32,6 +32,7 @@ use crate::answer::format::{Answer, Format, PictureFormat};
 use crate::answer::records;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
+use crate::guard::audit::Owner;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
 use crate::route::status::WORKER_SILENCE;
@@ -182,7 +183,8 @@ async fn submit(
     };
     let sweep = Sweep { warnings: expansion.warnings, ..load(&app, &id).await? };
     let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
-    Ok((StatusCode::CREATED, [(header::LOCATION, location)], Tagged(sweep)).into_response())
+    let owner = Extension(Owner(sweep.owner.clone()));
+    Ok((StatusCode::CREATED, [(header::LOCATION, location)], owner, Tagged(sweep)).into_response())
 }
 
 /// The problem that a sweep which computes nothing has points without an outcome.

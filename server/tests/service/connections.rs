@@ -4,7 +4,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use drillsweep_server::{Config, ConnectionLimits, Listeners, serve};
-use serde_json::json;
+use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpSocket, TcpStream};
 use tokio::sync::oneshot;
@@ -52,8 +52,12 @@ impl Service {
 
     /// A connection from elsewhere on which a request is begun and not ended.
     async fn half_open(&self) -> TcpStream {
+        self.half_open_from(ATTACKER).await
+    }
+
+    async fn half_open_from(&self, address: IpAddr) -> TcpStream {
         let socket = TcpSocket::new_v4().unwrap();
-        socket.bind(SocketAddr::new(ATTACKER, 0)).unwrap();
+        socket.bind(SocketAddr::new(address, 0)).unwrap();
         let mut connection = socket.connect(self.address).await.unwrap();
         let _ = connection.write_all(b"GET /livez HTTP/1.1\r\nHost: localhost\r\n").await;
         connection
@@ -102,6 +106,16 @@ async fn read_until(connection: &mut TcpStream, text: &str) {
 
 #[tokio::test]
 async fn half_open_connections_leave_room_for_health() {
+    half_open_connections_leave_room(ATTACKER).await;
+}
+
+/// Behind a proxy, or on this machine, those who ask share their address with those who stay silent.
+#[tokio::test]
+async fn half_open_connections_of_the_same_address_leave_room_for_health() {
+    half_open_connections_leave_room(IpAddr::V4(Ipv4Addr::LOCALHOST)).await;
+}
+
+async fn half_open_connections_leave_room(attacker: IpAddr) {
     let limits = ConnectionLimits {
         total: 30,
         reserve: 8,
@@ -113,7 +127,7 @@ async fn half_open_connections_leave_room_for_health() {
     let service = Service::start(limits).await;
     let mut attack = Vec::new();
     for _ in 0..200 {
-        attack.push(service.half_open().await);
+        attack.push(service.half_open_from(attacker).await);
     }
     // All places are taken, and of the reserve those of one address.
     for light in ["/livez", "/readyz", "/v1/queue"] {
@@ -126,6 +140,21 @@ async fn half_open_connections_leave_room_for_health() {
     // Once they are gone there is room for everything.
     drop(attack);
     service.has_room().await;
+    service.end().await;
+}
+
+#[tokio::test]
+async fn a_target_too_long_to_be_read_is_refused_with_a_problem() {
+    let service = Service::start(ConnectionLimits::default()).await;
+    let target = format!("GET /v1/sweeps?name={} HTTP/1.1\r\nHost: localhost\r\n\r\n", "x".repeat(70_000));
+    let answer = rest(&mut service.connect(&target).await).await;
+    let (head, body) = answer.split_once("\r\n\r\n").expect("an answer");
+    assert!(head.starts_with("HTTP/1.1 414 URI Too Long\r\n"), "{head}");
+    assert!(head.contains("content-type: application/problem+json"), "{head}");
+    assert!(head.contains(&format!("content-length: {}\r\n", body.len())), "{head}");
+    let problem: Value = serde_json::from_str(body).unwrap();
+    assert_eq!(problem["type"], "urn:drillsweep:problem:target-too-long");
+    assert_eq!(problem["status"], 414);
     service.end().await;
 }
 

@@ -22,8 +22,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
             "cost_study.duration",
             duration,
             format!(
-                "must be a whole multiple of the recording interval, {} s, and at least {FEWEST_SAMPLES_OF_A_RUN} of them",
-                1.0 / rate
+                "must be a whole multiple of the recording interval, 1/{rate} s, and at least {FEWEST_SAMPLES_OF_A_RUN} of them"
             ),
         );
     }

@@ -216,6 +216,13 @@ fn check_tolerance(report: &mut Report, scenario: &Scenario) {
     }
 }
 
+/// A bound rounded down to three significant digits, as people read it.
+fn in_three_digits(bound: f64) -> f64 {
+    let decimals = 2 - bound.log10().floor() as i32;
+    let unit = 10.0_f64.powi(decimals.abs());
+    if decimals > 0 { (bound * unit).floor() / unit } else { (bound / unit).floor() * unit }
+}
+
 /// The run must hold a whole number of recording intervals, and not too many.
 fn check_samples(report: &mut Report, scenario: &Scenario) {
     let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
@@ -227,7 +234,7 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         is_whole(samples),
         "duration",
         duration,
-        format!("must be a whole multiple of the recording interval, {} s", 1.0 / rate),
+        format!("must be a whole multiple of the recording interval, 1/{rate} s"),
     );
     report.require(
         samples <= MOST_SAMPLES,
@@ -235,7 +242,7 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         rate,
         format!(
             "must be at most {}: {duration} s may have {MOST_SAMPLES} samples, which orbits and spectra are computed from in memory",
-            MOST_SAMPLES / duration
+            in_three_digits(MOST_SAMPLES / duration)
         ),
     );
     let nodes = scenario.recording.nodes.len() as f64;

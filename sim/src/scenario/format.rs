@@ -154,7 +154,7 @@ mod tests {
         let problem = Scenario::from_toml(&text).unwrap_err();
         assert_eq!(problem.path, "mud.flowrate");
         assert!(
-            problem.message.contains("unknown field") && problem.message.contains("`flow_rate`"),
+            problem.message.contains("there is no field") && problem.message.contains("`flow_rate`"),
             "{problem}"
         );
         let problem = Scenario::from_json(&paper().to_json().replace("flow_rate", "flowrate")).unwrap_err();
@@ -180,7 +180,7 @@ mod tests {
     fn missing_fields_are_named() {
         let problem = Scenario::from_toml(&paper().to_toml().replace("hole_diameter", "#")).unwrap_err();
         assert_eq!(problem.path, "well");
-        assert!(problem.message.contains("missing field `hole_diameter`"), "{problem}");
+        assert!(problem.message.contains("the field `hole_diameter` is missing"), "{problem}");
     }
 
     #[test]

@@ -25,16 +25,62 @@ impl Problem {
         pointer(&self.path)
     }
 
-    /// A problem from the words of a serde error: what it got and what it expected are separated, and Rust's
-    /// names of types become words.
+    /// A problem from the message of a serde error, in words that need no Rust: what it got and what it expected are separated, names of
+    /// types, variants and fields become what a document holds.
     pub fn from_serde(path: String, message: &str) -> Self {
-        let parted = ["invalid type: ", "invalid value: "]
+        let path = if path == "." { String::new() } else { path };
+        let parted = ["invalid type: ", "invalid value: ", "invalid length "]
             .iter()
             .find_map(|prefix| message.strip_prefix(prefix)?.rsplit_once(", expected "));
-        let path = if path == "." { String::new() } else { path };
-        match parted {
-            Some((got, expected)) => Self::new(path, got, format!("must be {}", in_words(expected))),
-            None => Self::new(path, "", message),
+        if let Some((got, expected)) = parted {
+            return Self::new(path, found(got), format!("must be {}", in_words(expected)));
+        }
+        if let Some((name, choices)) = unknown(message, "variant") {
+            return Self::new(path, format!("\"{name}\""), format!("must be {}", listed(choices, "or")));
+        }
+        if let Some((name, choices)) = unknown(message, "field") {
+            let message = format!("there is no field `{name}`; there are {}", listed(choices, "and"));
+            return Self::new(path, "", message);
+        }
+        let of_one_field = |prefix: &str| message.strip_prefix(prefix)?.strip_suffix('`');
+        if let Some(name) = of_one_field("missing field `") {
+            return Self::new(path, "", format!("the field `{name}` is missing"));
+        }
+        if let Some(name) = of_one_field("duplicate field `") {
+            return Self::new(path, "", format!("the field `{name}` is given twice"));
+        }
+        Self::new(path, "", message)
+    }
+}
+
+/// The name and the choices of a message such as "unknown variant `x`, expected `a` or `b`".
+fn unknown<'a>(message: &'a str, kind: &str) -> Option<(&'a str, Vec<&'a str>)> {
+    let (name, rest) = message.strip_prefix(&format!("unknown {kind} `"))?.split_once("`, ")?;
+    // Every other part stands between backticks.
+    Some((name, rest.split('`').skip(1).step_by(2).collect()))
+}
+
+/// Names as a list that a person reads: "`a`, `b` and `c`".
+fn listed(names: Vec<&str>, last: &str) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        None => "none".to_owned(),
+        Some((only, [])) => only.clone(),
+        Some((end, others)) => format!("{} {last} {end}", others.join(", ")),
+    }
+}
+
+/// What serde found, as the document writes it.
+fn found(got: &str) -> &str {
+    match got {
+        "sequence" => "a list",
+        "map" => "an object",
+        "unit value" => "null",
+        _ => {
+            let inner = ["string ", "integer ", "floating point ", "boolean ", "character "]
+                .iter()
+                .find_map(|kind| got.strip_prefix(kind));
+            inner.unwrap_or(got).trim_matches('`')
         }
     }
 }
@@ -51,6 +97,7 @@ fn in_words(expected: &str) -> &str {
         "a boolean" => "true or false",
         "a sequence" => "a list",
         "a map" => "an object",
+        "string or map" => "a name, or an object with a name as its only field",
         _ if names_a_type(&[
             "struct",
             "struct variant",
@@ -143,6 +190,32 @@ mod tests {
         assert_eq!(pointer("duration"), "/duration");
         assert_eq!(pointer(""), "");
         assert_eq!(pointer("a/b.c~d"), "/a~1b/c~0d");
+    }
+
+    #[test]
+    fn messages_of_serde_become_words_of_the_document() {
+        let text = |message: &str| Problem::from_serde(String::new(), message).to_string();
+        let cases = [
+            ("invalid type: string \"x\", expected f64", "must be a number (got \"x\")"),
+            (
+                "invalid type: floating point `1.5`, expected u32",
+                "must be a whole number, 0 or more (got 1.5)",
+            ),
+            ("invalid type: sequence, expected a map", "must be an object (got a list)"),
+            ("unknown variant `lin`, expected `linear` or `log`", "must be `linear` or `log` (got \"lin\")"),
+            ("unknown variant `x`, expected one of `a`, `b`, `c`", "must be `a`, `b` or `c` (got \"x\")"),
+            (
+                "unknown field `x`, expected one of `a`, `b`, `c`",
+                "there is no field `x`; there are `a`, `b` and `c`",
+            ),
+            ("unknown field `x`, there are no fields", "there is no field `x`; there are none"),
+            ("missing field `well`", "the field `well` is missing"),
+            ("duplicate field `well`", "the field `well` is given twice"),
+            ("must be finite", "must be finite"),
+        ];
+        for (message, expected) in cases {
+            assert_eq!(text(message), expected);
+        }
     }
 
     #[test]

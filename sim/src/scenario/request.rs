@@ -241,7 +241,7 @@ mod tests {
         let both = format!(r#"{{"preset": "paper-200m", "scenario": {}}}"#, paper().to_json());
         assert!(resolve_json(&both).is_err());
         let problem = ScenarioRequest::from_json(r#"{"preset": "paper-200m", "sets": {}}"#).unwrap_err();
-        assert!(problem.message.contains("unknown field `sets`"), "{problem}");
+        assert!(problem.message.contains("there is no field `sets`"), "{problem}");
         let broken =
             format!(r#"{{"scenario": {}}}"#, paper().to_json().replace("\"count\": 9", "\"count\": 0.5"));
         assert_eq!(

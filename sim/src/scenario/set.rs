@@ -231,7 +231,7 @@ mod tests {
     fn wrong_types_say_what_was_expected() {
         let problem = paper().with("mud.flow_rate", json!("fast")).unwrap_err();
         assert_eq!(problem.path, "mud.flow_rate");
-        assert_eq!(problem.to_string(), "mud.flow_rate: must be a number (got string \"fast\")");
+        assert_eq!(problem.to_string(), "mud.flow_rate: must be a number (got \"fast\")");
         let problem = paper().with("mud.regime", json!("turbulent")).unwrap_err();
         assert_eq!(problem.path, "mud.regime");
         assert!(problem.message.contains("`auto` or `laminar`"), "{problem}");

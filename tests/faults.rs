@@ -197,6 +197,28 @@ pub(crate) fn last_claim(log: &str) -> Option<u64> {
 }
 
 #[test]
+fn the_log_says_who_submitted_and_who_cancelled() {
+    let data = tempfile::tempdir().unwrap();
+    let (server, address) = serve(data.path(), None);
+    let mut wanted = request(1.0, 1, 1);
+    wanted["owner"] = json!("anne");
+    let sweep = submit(&address, &wanted);
+    post(&format!("{address}/v1/sweeps/{sweep}/cancel"), &json!({}));
+    let line_with = |words: [String; 3]| {
+        server.wait_for(|log| {
+            let has_all = |line: &&str| words.iter().all(|word| line.contains(word.as_str()));
+            log.lines().find(has_all).map(str::to_owned)
+        })
+    };
+    line_with([
+        "owner=\"anne\"".to_owned(),
+        "peer=\"127.0.0.1:".to_owned(),
+        format!("made=\"/v1/sweeps/{sweep}\""),
+    ]);
+    line_with(["changed".to_owned(), "peer=\"127.0.0.1:".to_owned(), format!("/v1/sweeps/{sweep}/cancel")]);
+}
+
+#[test]
 fn storm_of_kills_loses_nothing_and_changes_no_number() {
     // Half a second a point at least: those who are spared between two kills do not finish most of it.
     const PACE: &str = "18";

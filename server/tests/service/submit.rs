@@ -152,6 +152,39 @@ async fn every_problem_of_a_request_is_reported_at_once() {
     assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"], json!([]));
 }
 
+/// To JSON Schema 2.0 is an integer, and MATLAB's and R's numbers may be written so.
+#[tokio::test]
+async fn whole_numbers_may_be_written_with_a_decimal_point() {
+    let bench = Bench::new().await;
+    let count = |count: &str| {
+        format!(
+            r#"{{"preset": "paper-200m", "axes": {{"flow_rate": {{"from": 0.01, "to": 0.04, "count": {count}}}}}}}"#
+        )
+    };
+    for text in ["3", "3.0", "30e-1"] {
+        let request = json_request(Method::POST, "/v1/sweeps?dry_run=true", count(text));
+        assert_eq!(bench.send(request).await.json()["total"], 3, "{text}");
+    }
+    let request = json_request(Method::POST, "/v1/sweeps", count("2.5"));
+    bench.send(request).await.problem(400, "malformed-body");
+}
+
+#[tokio::test]
+async fn names_and_tags_of_control_characters_are_refused_by_schema_and_server() {
+    let bench = Bench::new().await;
+    for (member, value) in
+        [("name", json!("a\u{7}b")), ("tags", json!(["a\u{1b}b"])), ("owner", json!("a\nb"))]
+    {
+        let mut body = json!({"preset": "paper-200m"});
+        body[member] = value;
+        let problem = bench.post("/v1/sweeps", body).await.problem(422, "invalid-request");
+        assert!(
+            problem["errors"][0]["pointer"].as_str().unwrap().starts_with(&format!("/{member}")),
+            "{problem}"
+        );
+    }
+}
+
 #[tokio::test]
 async fn a_body_of_another_form_is_refused_at_its_place() {
     let bench = Bench::new().await;
@@ -163,6 +196,16 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         (r#"{"preset": "#, "", "EOF"),
         (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
         (r#" [null, "anne"]"#, "", "object, not an array"),
+        (
+            r#"{"axes": {"mud_density": {"from": 1, "to": 2, "count": 3, "scale": null}}}"#,
+            "/axes/mud_density/scale",
+            "a name",
+        ),
+        (r#"{"preset": "paper-200m", "outputs": 3}"#, "/outputs", "a name, or an object"),
+        (r#"{"outputs": {"orbits": {"nodes": "all"}}}"#, "/outputs/orbits/nodes", "must be a list"),
+        (r#"{"outputs": {"orbits": {"decimation": 1.5}}}"#, "/outputs/orbits/decimation", "a whole number"),
+        (r#"{"design": "grad"}"#, "/design", "must be `grid`, `zip`"),
+        (r#"{"preset": "a", "preset": "b"}"#, "", "`preset` is given twice"),
     ] {
         let request = json_request(Method::POST, "/v1/sweeps", body.to_owned());
         let problem = bench.send(request).await.problem(400, "malformed-body");

@@ -10,6 +10,7 @@ import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "./session.js";
 import { settings } from "./settings.js";
 import { NoSurvey, surveyField } from "./survey.js";
+import { NoToml, readToml } from "./toml.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
 /** Characters of a request that a link may hold. */
@@ -17,6 +18,8 @@ const LINKED = 4000;
 const SURVEY = "well.survey";
 /** Members of a request that the form has fields for, and its owner, who is the one who submits it; others are carried over as they are. */
 const FIELDS = ["name", "owner", "tags", "preset", "scenario", "set", "outputs", "design", "axes", "samples", "seed", "verify"];
+/** The choice that keeps what the request that the form begins with says of histories in part, for which there are no fields. */
+const PART = "part";
 const DRAWN = ["latin_hypercube", "sobol"];
 
 /** @type {import("./main.js").View} */
@@ -32,7 +35,7 @@ export async function show(main, route, signal) {
     scenario: start.scenario ? JSON.stringify(start.scenario, null, 2) : "",
     accuracy: typeof start.set?.accuracy === "string" ? start.set.accuracy : "",
     design: start.design ?? "grid",
-    outputs: typeof start.outputs === "string" ? start.outputs : "",
+    outputs: typeof start.outputs === "string" ? start.outputs : start.outputs ? PART : "",
   };
 
   const carried = isGoneOnWith(route.query) ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
@@ -45,6 +48,7 @@ export async function show(main, route, signal) {
   const seed = box(String(start.seed ?? 0), { type: "number", min: 0 });
   const verify = box(start.verify ? String(start.verify) : "", { placeholder: "such as 0.05 or 10" });
   const scenario = h("textarea", { class: "code", "aria-label": "Scenario as JSON", spellcheck: "false", oninput: changed, value: form.scenario });
+  const file = h("input", { type: "file", accept: ".toml,.json", "aria-label": "Scenario file", onchange: () => attend(take(), signal) });
   const field = (/** @type {string} */ text, /** @type {HTMLElement} */ element, /** @type {string} */ pointer) => h("label", { class: "field", "data-pointer": pointer }, h("span", {}, text), element);
 
   const fields = scenarioForm({
@@ -69,6 +73,7 @@ export async function show(main, route, signal) {
   const drawnPart = h("div", { class: "controls" });
   const general = h("p", { class: "wrong", role: "alert" });
   const planned = h("div", {});
+  const previewed = h("div", { class: "controls" });
   const preview = canvas("Preview of the points", "preview");
   const submit = h("button", { class: "main", type: "submit", disabled: true }, "Submit");
   const paths = h("datalist", { id: "paths" }, ["flow_rate", "mud_density", ...pathNames()].map((entry) => h("option", { value: entry }, label(entry))));
@@ -106,11 +111,12 @@ export async function show(main, route, signal) {
   }
 
   function drawSource() {
-    const options = [/** @type {[string, string]} */ (["", "— my own, pasted as JSON"]), ...scenarios.map((/** @type {any} */ entry) => /** @type {[string, string]} */ ([entry.name, entry.name]))];
+    const options = [/** @type {[string, string]} */ (["", "— my own, from a file or pasted as JSON"]), ...scenarios.map((/** @type {any} */ entry) => /** @type {[string, string]} */ ([entry.name, entry.name]))];
     fill(
       sourcePart,
       choice("Scenario", options, form.preset, (value) => attend(choose(value), signal)),
       h("p", { class: "small soft" }, scenarios.find((/** @type {any} */ entry) => entry.name === form.preset)?.description ?? "A scenario file's JSON; its fields are in SI units."),
+      field("A scenario file, TOML or JSON", file, "/file"),
       !form.preset && scenario,
     );
     attend(drawFields(), signal);
@@ -124,9 +130,34 @@ export async function show(main, route, signal) {
     changed();
   }
 
+  /** Takes the scenario of the file that is chosen. */
+  async function take() {
+    const chosen = file.files?.[0];
+    if (!chosen) return;
+    const text = await chosen.text();
+    try {
+      const read = chosen.name.toLowerCase().endsWith(".json") ? parsed(text, "/file") : readToml(text);
+      scenario.value = JSON.stringify(read, null, 2);
+    } catch (error) {
+      if (!(error instanceof NoToml || error instanceof Unreadable)) throw error;
+      mark([{ pointer: "/file", detail: error instanceof NoToml ? `This is not TOML. ${error.message}` : error.message }]);
+      return;
+    }
+    await choose("");
+  }
+
+  /** Of the scenario whose fields are shown, what it was made from. */
+  let fieldsOf = "";
   async function drawFields() {
-    if (form.preset) fields.show((await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal)).scenario);
-    else fields.show(null);
+    const source = form.preset || scenario.value;
+    if (source === fieldsOf) return;
+    fieldsOf = source;
+    if (form.preset) {
+      const answer = await get(`/v1/scenarios/${encodeURIComponent(form.preset)}`, {}, signal);
+      if (source === fieldsOf) fields.show(answer.scenario);
+    } else {
+      fields.show(object(source));
+    }
   }
 
   function drawDrawn() {
@@ -162,8 +193,7 @@ export async function show(main, route, signal) {
     if (isDrawn) Object.assign(body, { samples: Number(samples.value), seed: Number(seed.value) });
     const words = tags.value.split(",").map((word) => word.trim()).filter(Boolean);
     if (words.length) body.tags = words;
-    if (form.outputs) body.outputs = form.outputs;
-    else if (typeof start.outputs === "object") body.outputs = start.outputs;
+    if (form.outputs) body.outputs = form.outputs === PART ? start.outputs : form.outputs;
     if (verify.value.trim()) body.verify = Number(verify.value);
     return body;
   }
@@ -192,6 +222,7 @@ export async function show(main, route, signal) {
     const mine = ++generation;
     taken.dispatchEvent(new Event("redraw"));
     submit.disabled = true;
+    attend(drawFields(), signal);
     try {
       const body = request();
       const text = JSON.stringify(body);
@@ -213,12 +244,21 @@ export async function show(main, route, signal) {
     }
   }
 
+  /** The parameters over which points are shown, where they are chosen. */
+  const over = { x: "", y: "" };
   /** @param {any[]} points */
   async function drawPreview(points) {
     const names = Object.keys(points[0]?.parameters ?? {});
     preview.hidden = names.length === 0;
+    const x = names.includes(over.x) ? over.x : names[0];
+    const others = names.filter((entry) => entry !== x);
+    const y = others.includes(over.y) ? over.y : others[0];
+    const pick = (/** @type {"x" | "y"} */ side, /** @type {string} */ text, /** @type {string[]} */ from) => choice(text, from.map((entry) => [entry, label(entry)]), side === "x" ? x : y, (value) => {
+      over[side] = value;
+      attend(drawPreview(points), signal);
+    });
+    fill(previewed, names.length > 2 && [pick("x", "Across", names), pick("y", "Up", others)]);
     if (!names.length) return;
-    const [x, y] = names;
     const values = (/** @type {string} */ of) => shown(of, points.map((point) => point.parameters[of]));
     await draw(preview, [{ type: points.length > 3000 ? "scattergl" : "scatter", mode: "markers", x: values(x), y: y ? values(y) : points.map(() => 0), marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 }, hoverinfo: y ? "x+y" : "x" }], { xaxis: { title: title(x), quantity: x }, yaxis: y ? { title: title(y), quantity: y } : { visible: false } }, signal);
   }
@@ -232,7 +272,10 @@ export async function show(main, route, signal) {
   });
 
   // What is typed stays: the plan alone is made again, in the units and colours that now hold.
-  settings.addEventListener("change", changed, { signal });
+  settings.addEventListener("change", () => {
+    survey.say();
+    changed();
+  }, { signal });
   connection.addEventListener("found", changed, { signal });
 
   const form_ = h(
@@ -251,7 +294,7 @@ export async function show(main, route, signal) {
     h("section", { class: "panel", "aria-label": "Scenario" }, sourcePart, h("div", { class: "controls" }, choice("Accuracy", [["", "the scenario's"], ["draft", "draft"], ["standard", "standard"], ["reference", "reference"]], form.accuracy, (value) => {
       form.accuracy = value;
       changed();
-    }), choice("Kept of each point", [["", "the scenario's"], ["full", "everything, with histories"], ["spectra", "spectra, no histories"], ["summary", "its row of the table only"]], form.outputs, (value) => {
+    }), choice("Kept of each point", [["", "the scenario's"], ["full", "everything, with histories"], ["spectra", "spectra, no histories"], ["summary", "its row of the table only"], ...(start.outputs && typeof start.outputs === "object" ? [/** @type {[string, string]} */ ([PART, `histories in part: ${JSON.stringify(start.outputs)}`])] : [])], form.outputs, (value) => {
       form.outputs = value;
       changed();
     })), h("h2", {}, "Changes to the scenario"), changesPart, fields.element, survey.element),
@@ -266,7 +309,7 @@ export async function show(main, route, signal) {
   fill(
     main,
     h("div", { class: "head" }, h("h1", {}, "New sweep")),
-    h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), h("section", { class: "panel", "aria-label": "Preview" }, h("h2", {}, "Points"), h("figure", {}, preview, h("figcaption", {}, "Over the first two parameters."))))),
+    h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), h("section", { class: "panel", "aria-label": "Preview" }, h("h2", {}, "Points"), previewed, h("figure", {}, preview)))),
     taken,
   );
   void plan();
@@ -314,6 +357,16 @@ function parsed(text, pointer) {
     return JSON.parse(text);
   } catch (error) {
     throw new Unreadable(pointer, `This is not JSON: ${error instanceof Error ? error.message : ""}`);
+  }
+}
+
+/** @param {string} text @returns {any} the object that it is the JSON of, or null */
+function object(text) {
+  try {
+    const value = JSON.parse(text);
+    return typeof value === "object" && !Array.isArray(value) ? value : null;
+  } catch {
+    return null;
   }
 }
 
@@ -367,9 +420,10 @@ function plannedPart(answer) {
   const row = (/** @type {string} */ name, /** @type {any} */ value) => [h("dt", {}, name), h("dd", {}, value)];
   const { plan } = answer;
   const accuracies = (plan?.accuracies ?? []).map((/** @type {any} */ one, /** @type {number} */ index) => h("tr", {}, h("td", {}, one.name, index === 0 && h("span", { class: "soft" }, " (chosen)")), h("td", { class: "number" }, duration(one.step)), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time) : "–"), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time * (answer.total - answer.known)) : "–")));
+  const footprint = plan?.footprint ?? {};
   const growing = plan?.undamped_torsion?.growing_modes;
   return [
-    h("dl", { class: "facts" }, row("Points", String(answer.total)), row("Known already", `${answer.known}, not computed again`), answer.verification && row("Verified", `${answer.verification.total}, ${answer.verification.known} of the reference runs known already`), row("Time", answer.known === answer.total ? "none: all results are there" : answer.wall_time !== undefined && answer.wall_time !== null ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time; no worker is there now` : "not known"), row("Storage", answer.table_bytes ? `about ${bytes(answer.table_bytes)} before compression` : "nothing further"), plan && row("String", `${plan.elements} elements, ${number(plan.simulated_time)} s simulated`)),
+    h("dl", { class: "facts" }, row("Points", String(answer.total)), row("Known already", `${answer.known}, not computed again`), answer.verification && row("Verified", `${answer.verification.total}, ${answer.verification.known} of the reference runs known already`), row("Time", answer.known === answer.total ? "none: all results are there" : answer.wall_time !== undefined && answer.wall_time !== null ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time; no worker is there now` : "not known"), row("Storage", answer.table_bytes ? `about ${bytes(answer.table_bytes)} before compression` : "nothing further"), plan && row("Tables of a point", `about ${bytes(footprint.table_bytes)} before compression at each accuracy${footprint.snapshot_bytes ? `, of that ${bytes(footprint.snapshot_bytes)} of snapshots` : ""}`), plan && row("String", `${plan.elements} elements, ${number(plan.simulated_time)} s simulated`)),
     accuracies.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "All on one core"))), h("tbody", {}, accuracies)) : null,
     (plan?.warnings ?? []).map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
     growing ? h("p", { class: "small soft" }, `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz.`) : null,

@@ -31,7 +31,7 @@ export function scenarioForm(changes, signal) {
   async function draw() {
     if (!element.open) return;
     if (!shownScenario) {
-      fill(body, h("p", { class: "soft small" }, "The fields appear here once a preset is chosen."));
+      fill(body, h("p", { class: "soft small" }, "The fields appear here once the scenario can be read."));
       return;
     }
     if (!schemas) {
@@ -50,8 +50,13 @@ export function scenarioForm(changes, signal) {
 
   /** The fields of an object, sections within it folded. @param {any} schema @param {any} value @param {string} path */
   function section(schema, value, path) {
-    const entries = Object.entries(schema.properties ?? {}).map(([name, field]) => /** @type {[string, any]} */ ([path ? `${path}.${name}` : name, resolved(field)]));
-    return entries.filter(([at]) => !ELSEWHERE.includes(at)).map(([at, field]) => part(field, value?.[at.slice(path ? path.length + 1 : 0)], at));
+    return Object.entries(schema.properties ?? {}).flatMap(([name, given]) => {
+      const at = path ? `${path}.${name}` : name;
+      // A section that a scenario leaves out has its defaults, unless it may be none.
+      const absent = isOptional(given) ? undefined : {};
+      const field = resolved(given);
+      return ELSEWHERE.includes(at) ? [] : [part(field, value?.[name] ?? (field.properties ? absent : undefined), at)];
+    });
   }
 
   /** @param {any} schema @param {any} value @param {string} path @returns {HTMLElement} */
@@ -131,6 +136,11 @@ export function scenarioForm(changes, signal) {
       attend(draw(), signal);
     },
   };
+}
+
+/** Whether a field may be `null`. @param {any} schema */
+function isOptional(schema) {
+  return [schema.type].flat().includes("null") || (schema.oneOf ?? schema.anyOf ?? []).some((/** @type {any} */ one) => one.type === "null");
 }
 
 /** @param {any} schema */

@@ -1,7 +1,7 @@
 // A survey of the well, pasted from a spreadsheet or a report.
 
 import { choice, fill, h } from "./dom.js";
-import { number } from "./units.js";
+import { number, say as sayValue } from "./units.js";
 
 /** @typedef {{measured_depth: number, inclination_deg: number, azimuth_deg: number}} Station */
 
@@ -50,6 +50,7 @@ export function readSurvey(text, unit) {
  * A field for a survey.
  * @param {Station[] | undefined} given in a request that the form begins with
  * @param {() => void} changed
+ * @returns {{element: HTMLElement, read: () => Station[] | undefined, say: () => void}} `say` sums the survey up again, in the units that now hold
  */
 export function surveyField(given, changed) {
   let unit = "m";
@@ -63,7 +64,7 @@ export function surveyField(given, changed) {
     try {
       const stations = read();
       const last = stations?.at(-1);
-      fill(summary, last ? `${stations?.length} stations down to ${number(last.measured_depth)} m, inclination up to ${number(Math.max(...(stations ?? []).map((station) => station.inclination_deg)))}°.` : "Nothing pasted: the well is the scenario's.");
+      fill(summary, last ? `${stations?.length} stations down to ${sayValue("measured_depth", last.measured_depth)}, inclination up to ${number(Math.max(...(stations ?? []).map((station) => station.inclination_deg)))}°.` : "Nothing pasted: the well is the scenario's.");
     } catch (error) {
       if (!(error instanceof NoSurvey)) throw error;
       // The form says what is wrong with it.
@@ -77,5 +78,5 @@ export function surveyField(given, changed) {
     changed();
   });
   const element = h("details", { open: Boolean(given), "data-pointer": "/set/well.survey" }, h("summary", {}, "Survey from a spreadsheet"), h("p", { class: "small soft" }, "Paste the columns measured depth, inclination [°] and azimuth [°]: they take the place of the scenario's survey."), units, text, summary);
-  return { element, read };
+  return { element, read, say };
 }

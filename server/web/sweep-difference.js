@@ -1,7 +1,9 @@
 // Two sweeps compared: the difference of a result on the parameters that both have.
 
 import { get } from "./api.js";
-import { choice, fill, h } from "./dom.js";
+import { Biases } from "./bias.js";
+import { choice, debounced, fill, h } from "./dom.js";
+import { attend } from "./notices.js";
 import { canvas, colourBar, DASHES, draw, LINES } from "./plots.js";
 import { go, link } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
@@ -13,7 +15,7 @@ const DIVERGING = "RdBu";
 /** Coordinates this near to each other, relative to their size, are one. */
 const SAME = 1e-9;
 
-/** @typedef {{sweep: any, table: SweepTable, axes: string[]}} Other */
+/** @typedef {{sweep: any, table: SweepTable, axes: string[], biases: Biases}} Other */
 
 /**
  * @param {import("./sweep.js").Context} context
@@ -27,15 +29,25 @@ export function difference(context) {
   const empty = h("p", { class: "empty", hidden: true });
   const figure = h("figure", {}, place, caption);
   const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
-  /** @type {any[] | undefined} */
+  const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250) });
+  const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);
+  /** Those that can be chosen. @type {any[] | undefined} */
   let sweeps;
+  /** The columns that are shown, of this sweep and of the other one. */
+  let fields = { mine: ["ordinal"], theirs: ["ordinal"] };
   /** @type {Other | undefined} */
   let other;
 
   const nameOf = (/** @type {any} */ sweep) => sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
   const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
     context.keep({ [name]: value || null });
-    redraw().catch((error) => signal.aborted || console.error(error));
+    attend(redraw(), signal);
+  };
+  /** The search is kept, with what is typed in it, while the choices beside it change. @param {HTMLElement[]} whom @param {(import("./dom.js").Child | import("./dom.js").Child[])[]} chosen */
+  const choices = (whom, ...chosen) => {
+    const hadFocus = document.activeElement === search;
+    fill(controls, whom, ...chosen);
+    if (hadFocus) search.focus();
   };
   const say_ = (/** @type {string} */ text) => {
     empty.hidden = text === "";
@@ -46,26 +58,36 @@ export function difference(context) {
   /** @param {string} id @returns {Promise<Other>} */
   async function load(id) {
     const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
-    const table = new SweepTable(sweep, signal);
-    await table.load();
-    return { sweep, table, axes: sweptBy(sweep, table.names).axes };
+    const [table, biases] = [new SweepTable(sweep, signal), new Biases()];
+    await Promise.all([table.load(), biases.load(sweep, signal)]);
+    return { sweep, table, biases, axes: sweptBy(sweep, table.names).axes };
+  }
+
+  /** Offers the newest sweeps whose name has what is searched. */
+  async function find() {
+    const name = search.value.trim();
+    const answer = await get("/v1/sweeps", { limit: 100, name }, signal);
+    if (name !== search.value.trim()) return;
+    sweeps = answer.sweeps.filter((/** @type {any} */ sweep) => sweep.id !== context.sweep.id);
+    await redraw();
   }
 
   async function redraw() {
-    sweeps ??= (await get("/v1/sweeps", { limit: 100 }, signal)).sweeps.filter((/** @type {any} */ sweep) => sweep.id !== context.sweep.id);
+    if (!sweeps) return find();
     const id = query.get("with") ?? "";
+    if (other?.sweep.id !== id) other = id ? await load(id) : undefined;
     const known = sweeps?.some((sweep) => sweep.id === id);
-    const chooser = choice("Compared with", [["", "— choose a sweep"], ...(sweeps ?? []).map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])), ...(id && !known ? [/** @type {[string, string]} */ ([id, `Sweep ${id.slice(-8)}`])] : [])], id, set("with"));
-    if (!id) {
-      fill(controls, chooser);
+    const chooser = choice("Compared with", [["", "— choose a sweep"], ...(sweeps ?? []).map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])), ...(id && !known ? [/** @type {[string, string]} */ ([id, nameOf(other?.sweep)])] : [])], id, set("with"));
+    const whom = [searched, chooser];
+    if (!other) {
+      choices(whom);
       say_("Choose the sweep whose results are compared with those of this one, at the points that both have.");
       return;
     }
-    if (other?.sweep.id !== id) other = await load(id);
     const axes = context.axes.filter((axis) => other?.axes.includes(axis));
     const results = context.table.results().filter((name) => other?.table.names.includes(name) && !context.axes.includes(name) && !other.axes.includes(name) && !["state", "error_time", "error_node"].includes(name));
     if (!axes.length || !results.length) {
-      fill(controls, chooser);
+      choices(whom);
       say_(axes.length ? "The two sweeps have no result in common." : "The two sweeps have no parameter in common.");
       return;
     }
@@ -78,7 +100,9 @@ export function difference(context) {
 
     const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
     const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
-    fill(controls, chooser, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
+    choices(whom, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
+    fields = { mine: columnsOf(context.axes, colour), theirs: columnsOf(other.axes, colour) };
+    context.drawn();
     const xs = classes([...mine.rows, ...theirs.rows].map((row) => row.x));
     const ys = classes([...mine.rows, ...theirs.rows].map((row) => row.y));
     const cell = (/** @type {{x: number, y: number}} */ row) => `${xs.get(row.x)} ${ys.get(row.y)}`;
@@ -93,14 +117,14 @@ export function difference(context) {
     }
     say_("");
     const unitOf = isRelative ? "%" : unit(colour).symbol;
-    const name = `difference of ${label(colour)}${unitOf ? ` [${unitOf}]` : ""}`;
+    const name = `difference of ${context.depths.label(colour)}${unitOf ? ` [${unitOf}]` : ""}`;
     const [first, second] = [nameOf(context.sweep), nameOf(other.sweep)];
     const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
     const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
-    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`);
-    place.setAttribute("aria-label", `${name} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`, biasesOf(colour, first, second).map((found) => ` ${found}`));
+    place.setAttribute("aria-label", `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
     const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
-    const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}`, `other: ${say(colour, pair.partner.value)}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
+    const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}${context.biases.beside(colour, pair.ordinal)}`, `other: ${say(colour, pair.partner.value)}${other?.biases.beside(colour, pair.partner.ordinal) ?? ""}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
     const keys = pairs.map((pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`);
     const axisLayout = (/** @type {string} */ axis) => ({ title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" });
     /** @type {any[]} */
@@ -159,7 +183,22 @@ export function difference(context) {
     return { held, choices, rows };
   }
 
-  return { element: h("div", {}, controls, empty, figure), draw: undelayed(redraw, context), fields: () => ["ordinal", ...context.axes, query.get("colour") ?? ""].filter((name) => context.table.names.includes(name)) };
+  /** What was found of the biases of both. @param {string} colour @param {string} first @param {string} second */
+  function biasesOf(colour, first, second) {
+    return [[first, context.biases.say(colour)], [second, other?.biases.say(colour)]].filter(([, found]) => found).map(([name, found]) => `${name}: ${found}`);
+  }
+
+  return {
+    element: h("div", {}, controls, empty, figure),
+    draw: undelayed(redraw, context),
+    fields: () => fields.mine,
+    others: () => (other && query.get("with") === other.sweep.id ? [{ id: other.sweep.id, path: other.table.path, fields: fields.theirs }] : []),
+  };
+}
+
+/** @param {string[]} axes @param {string} colour */
+function columnsOf(axes, colour) {
+  return [...new Set(["ordinal", ...axes, colour])];
 }
 
 /**

@@ -22,7 +22,8 @@ const OF_THE_SWEEP = new Set(["axes", "design", "points", "samples", "seed", "sk
 
 /**
  * @param {import("./sweep.js").Context} context
- * @returns {{element: HTMLElement, choose: (sides: Side[], held: {name: string, value: number}[]) => void, close: () => void}}
+ * @returns {{element: HTMLElement, choose: (sides: Side[], held: {name: string, value: number}[]) => void, close: () => void, kept: (names: string[]) => Side[] | null}}
+ *   `kept` is the region that the link has of these parameters
  */
 export function finer(context) {
   const element = h("section", { class: "panel finer", "aria-label": "Finer grid", hidden: true });
@@ -34,6 +35,9 @@ export function finer(context) {
   /** @type {{name: string, value: number}[]} */
   let held = [];
   let generation = 0;
+
+  /** Keeps the region in the link, in the service's units. */
+  const keepRegion = () => context.keep({ finer: sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(",") });
 
   const path = () => `/v1/sweeps/${encodeURIComponent(context.sweep.id)}/points`;
 
@@ -86,6 +90,7 @@ export function finer(context) {
       const input = h("input", { type: "number", step: "any", style: "width:8rem", value, oninput: () => {
         if (input.value === "" || !Number.isFinite(Number(input.value))) return;
         set(Number(input.value));
+        keepRegion();
         plan();
       } });
       return h("label", { class: "field" }, h("span", {}, text), input);
@@ -112,16 +117,23 @@ export function finer(context) {
 
   function close() {
     element.hidden = true;
+    context.keep({ finer: null });
     element.dispatchEvent(new Event("closed"));
   }
 
   return {
     element,
     close,
+    kept: (names) => {
+      const given = (context.query.get("finer") ?? "").split(",").map((text) => text.split(":")).map(([name, ...numbers]) => ({ name, numbers: numbers.map(Number) }));
+      const isWhole = given.length === names.length && given.every(({ name, numbers }) => names.includes(name) && numbers.length === 3 && numbers.every(Number.isFinite));
+      return isWhole ? given.map(({ name, numbers: [from, to, count] }) => ({ name, from, to, count: Math.max(1, Math.round(count)) })) : null;
+    },
     choose: (chosen, others) => {
       // To six digits: a pixel's width is less than that.
       sides = chosen.map((side) => ({ ...side, count: side.count || COUNT, from: Number(side.from.toPrecision(6)), to: Number(side.to.toPrecision(6)) }));
       held = others;
+      keepRegion();
       element.hidden = false;
       fill(
         element,

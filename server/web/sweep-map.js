@@ -3,7 +3,9 @@
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
+import { keyboard } from "./sweep-cursor.js";
 import { finer } from "./sweep-finer.js";
+import { ends, layered } from "./sweep-layers.js";
 import { distinct, isText } from "./table.js";
 import { label, say, sayer, title, unit } from "./units.js";
 
@@ -20,7 +22,8 @@ export function map(context) {
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const region = finer(context);
-  const element = h("div", {}, controls, h("figure", {}, place, caption), region.element);
+  const cursor = keyboard(place, context.open);
+  const element = h("div", {}, controls, h("figure", {}, place, caption, cursor.element), region.element);
   region.element.addEventListener("closed", () => {
     void adjust(place, { dragmode: "zoom", selections: [] });
   });
@@ -53,7 +56,8 @@ export function map(context) {
       const asked = Number(get(`at.${axis}`, ""));
       return { axis, all, value: query.has(`at.${axis}`) && all.includes(asked) ? asked : all[0], column: others[index] };
     });
-    const isGrid = distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16 || !y;
+    const { axes: spans, design = "grid" } = context.sweep.request ?? {};
+    const isGrid = !y || (spans && design === "grid") || distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16;
     // A design that draws its points has no slices: all of them are shown.
     const slices = isGrid ? heldValues : [];
     fill(
@@ -75,6 +79,8 @@ export function map(context) {
       const [from, to] = shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
       return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
     }), heldValues.map(({ axis, value }) => ({ name: axis, value: Number(value) })));
+    const kept = region.kept(sides);
+    if (kept && region.element.hidden) region.choose(kept, heldValues.map(({ axis, value }) => ({ name: axis, value: Number(value) })));
     const begin = () => {
       chooseRegion();
       void adjust(place, { dragmode: "select" });
@@ -83,24 +89,25 @@ export function map(context) {
     const done = rows.filter((index) => values[index] !== null).length;
     const logged = (/** @type {any} */ value) => (typeof value === "number" && value > 0 ? Math.log10(value) : null);
     const hidden = isLog && !words ? rows.filter((index) => typeof values[index] === "number" && Number(values[index]) <= 0).length : 0;
-    fill(caption, `${label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it. `, context.biases.say(colour), hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
+    fill(caption, `${context.depths.label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it, or go over them by arrow keys and open by Enter. `, context.biases.say(colour), hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "");
     place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
 
     // What a name stands for is looked up once, and not for each of a hundred thousand points.
     const sizes = new Map([...sides, colour].map((name) => [name, unit(name).size]));
     const at = (/** @type {string} */ name, /** @type {any} */ value) => (typeof value === "number" ? value / (sizes.get(name) ?? 1) : value);
     const part = (/** @type {string} */ name) => {
-      const [called, words] = [label(name), sayer(name)];
+      const [called, words] = [context.depths.label(name), sayer(name)];
       return (/** @type {any} */ value) => `${called} ${words(value)}`;
     };
     const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
-    const texts = rows.map((index) => `point ${ordinals[index]}: ${states[index]}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}`);
+    const texts = rows.map((index) => `point ${ordinals[index]}: ${states[index]}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${typeof values[index] === "number" ? context.biases.beside(colour, Number(ordinals[index])) : ""}`);
     const axisLayout = (/** @type {string} */ name) => ({ title: title(name), quantity: name, type: context.spans[name]?.scale === "log" ? "log" : "linear" });
 
     if (!y) {
       const order = rows.map((_, position) => position).sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
       const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0] }, line: { color: LINES[0] } };
-      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
+      cursor.over(order.map((position, column) => ({ x: at(x, xs[rows[position]]), y: at(colour, values[rows[position]]), column, row: 0, ordinal: Number(ordinals[rows[position]]), text: texts[position] })).filter((point) => typeof point.y === "number"));
+      const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: context.depths.title(colour), quantity: colour, type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
       listen(shape, chooseRegion);
       return;
     }
@@ -114,36 +121,31 @@ export function map(context) {
     const least = finite.reduce((a, b) => Math.min(a, b), Infinity) - (words ? 0 : offset);
     const largest = finite.reduce((a, b) => Math.max(a, b), -Infinity) - (words ? 0 : offset);
     const bar = words
-      ? { ...colourBar(label(colour)), tickvals: vocabulary.map((_, index) => index), ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")) }
-      : { ...colourBar(title(colour)), ...(isLog && finite.length ? logTicks(least, largest) : {}) };
+      ? { ...colourBar(context.depths.label(colour)), tickvals: vocabulary.map((_, index) => index), ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")) }
+      : { ...colourBar(context.depths.title(colour)), ...(isLog && finite.length ? logTicks(least, largest) : {}) };
     const count = Math.max(vocabulary.length, 1);
     const discrete = Array.from({ length: count }, (_, index) => [[index / count, WORDS[index % WORDS.length]], [(index + 1) / count, WORDS[index % WORDS.length]]]).flat();
-    const scale = words ? { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 } : { colorscale: SCALE };
+    const scale = words ? { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 } : { colorscale: SCALE, ...(finite.length ? { zmin: least, zmax: largest } : {}) };
 
     /** @type {any[]} */
     const traces = [];
     if (isGrid) {
-      const across = distinct(rows.map((index) => xs[index]));
-      const up = distinct(rows.map((index) => ys[index]));
-      const column = new Map(across.map((value, index) => [value, index]));
-      const line = new Map(up.map((value, index) => [value, index]));
-      const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
-      const cells = grid(null);
-      const hover = grid("");
-      const numbers = grid(null);
-      rows.forEach((index, position) => {
-        const [r, c] = [line.get(/** @type {number} */ (ys[index])) ?? 0, column.get(/** @type {number} */ (xs[index])) ?? 0];
-        cells[r][c] = shownZ[position];
-        hover[r][c] = texts[position];
-        numbers[r][c] = ordinals[index];
+      const requests = [context.sweep.request, ...(context.sweep.appended ?? [])].map((request) => ({ x: request?.axes?.[context.paths[x] ?? x], y: request?.axes?.[context.paths[y] ?? y] }));
+      const [allX, allY] = [xs, ys].map((column) => distinct(rows.map((index) => column[index])).map(Number));
+      layered(rows.map((index) => Number(xs[index])), rows.map((index) => Number(ys[index])), requests).forEach(({ across, up, at: positions }, order) => {
+        const part = (/** @type {(position: number) => any} */ value, /** @type {any} */ none) => positions.map((line) => line.map((position) => (position === undefined ? none : value(position))));
+        const gap = words || up.length * across.length > 900 ? 0 : 1;
+        const isContour = style === "contour" && !words && across.length > 1 && up.length > 1;
+        traces.push({ type: isContour ? "contour" : "heatmap", x: ends(across, allX).map((value) => at(x, value)), y: ends(up, allY).map((value) => at(y, value)), z: part((position) => shownZ[position], null), text: part((position) => texts[position], ""), customdata: part((position) => ordinals[rows[position]], null), hoverinfo: "text", hoverongaps: order === 0, colorbar: bar, showscale: order === 0, ...scale, xgap: gap, ygap: gap, contours: { coloring: "heatmap" }, line: { color: inks().panel, width: 0.7 } });
       });
-      traces.push({ type: style === "contour" && !words && across.length > 1 && up.length > 1 ? "contour" : "heatmap", x: across.map((value) => at(x, value)), y: up.map((value) => at(y, value)), z: cells, text: hover, customdata: numbers, hoverinfo: "text", colorbar: bar, ...scale, xgap: words || up.length * across.length > 900 ? 0 : 1, ygap: words || up.length * across.length > 900 ? 0 : 1, contours: { coloring: "heatmap" }, line: { color: inks().panel, width: 0.7 } });
     } else {
       const kind = rows.length > 3000 ? "scattergl" : "scatter";
       traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > 3000 ? 5 : 9, color: shownZ, colorscale: scale.colorscale, cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
     }
     const failed = rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });
+    const [columnOf, rowOf] = [xs, ys].map((column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])));
+    cursor.over(rows.map((index, position) => ({ x: at(x, xs[index]), y: at(y, ys[index]), column: columnOf.get(/** @type {number} */ (xs[index])) ?? 0, row: rowOf.get(/** @type {number} */ (ys[index])) ?? 0, ordinal: Number(ordinals[index]), text: texts[position] })));
     const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y), dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
     listen(shape, chooseRegion);
   }

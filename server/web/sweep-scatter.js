@@ -5,8 +5,9 @@ import { attend } from "./notices.js";
 import { canvas, colourBar, draw, LINES, SCALE } from "./plots.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { isText } from "./table.js";
-import { label, say, shown, title } from "./units.js";
+import { label, say, shown, title, unit } from "./units.js";
 
+const HOW = "Drag along an axis to keep the points that pass there; drag an axis by its name to move it.";
 /** Points beyond which marks are drawn by WebGL. */
 const MANY = 3000;
 
@@ -40,7 +41,7 @@ export function scatter(context) {
     const words = isText(colours) ? [...new Set(colours)].filter((word) => word !== null) : null;
     const at = (/** @type {string} */ name, /** @type {any[]} */ values) => (isText(values) ? values : shown(name, values));
     const [atX, atY] = [at(x, xs), at(y, ys)];
-    const text = ordinals.length > MANY ? undefined : ordinals.map((ordinal, index) => `point ${ordinal}<br>${label(x)} ${say(x, xs[index])}<br>${label(y)} ${say(y, ys[index])}<br>${label(colour)} ${say(colour, colours[index])}`);
+    const text = ordinals.length > MANY ? undefined : ordinals.map((ordinal, index) => `point ${ordinal}<br>${label(x)} ${say(x, xs[index])}${context.biases.beside(x, Number(ordinal))}<br>${label(y)} ${say(y, ys[index])}${context.biases.beside(y, Number(ordinal))}<br>${label(colour)} ${say(colour, colours[index])}${context.biases.beside(colour, Number(ordinal))}`);
     const base = { type: ordinals.length > MANY ? "scattergl" : "scatter", mode: "markers", hoverinfo: text ? "text" : "x+y" };
     const size = ordinals.length > MANY ? 4 : 8;
     const traces = words
@@ -75,7 +76,7 @@ export function scatter(context) {
 export function parallel(context) {
   const { table, axes, query } = context;
   const place = canvas("Parallel coordinates of the sweep", "parallel", "tall");
-  const caption = h("figcaption", {}, "Drag along an axis to keep the points that pass there; drag an axis by its name to move it.");
+  const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
 
   function chosen() {
@@ -101,10 +102,41 @@ export function parallel(context) {
       fill(caption, "No point has all of these values yet.");
       return;
     }
-    const dimensions = names.map((name, order) => ({ label: title(name), values: shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))) }));
+    const kept = brushed(query.get("brush") ?? "");
+    const dimensions = names.map((name, order) => ({ name, label: title(name), constraintrange: kept.get(name)?.map((range) => range.map((end) => end / unit(name).size)), values: shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))) }));
     const last = dimensions[names.indexOf(colour)];
-    await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: SCALE, colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
+    fill(caption, HOW, [...new Set([beside, colour])].map((name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`));
+    const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: SCALE, colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
+    shape.removeAllListeners?.("plotly_restyle");
+    shape.on?.("plotly_restyle", () => context.keep({ brush: written(shape.data[0].dimensions) || null }));
   }
 
-  return { element: h("div", {}, controls, h("figure", {}, place, caption)), draw: undelayed(redraw, context), fields: () => ["ordinal", ...axes, chosen().colour] };
+  return { element: h("div", {}, controls, h("figure", {}, place, caption)), draw: undelayed(redraw, context), fields: () => {
+    const { colour, beside } = chosen();
+    return [...new Set(["ordinal", ...axes, beside, colour])];
+  } };
+}
+
+/**
+ * The stretches of axes to which points are kept, as the link has them in the service's units: `flow_rate:0.01:0.02,mud_density:1200:1500`.
+ * @param {string} text
+ * @returns {Map<string, number[][]>} by column
+ */
+function brushed(text) {
+  /** @type {Map<string, number[][]>} */
+  const kept = new Map();
+  for (const part of text.split(",")) {
+    const [name, ...ends] = part.split(":");
+    const range = ends.map(Number);
+    if (range.length === 2 && range.every(Number.isFinite)) kept.set(name, [...(kept.get(name) ?? []), range]);
+  }
+  return kept;
+}
+
+/** The same of a picture. @param {any[]} dimensions */
+function written(dimensions) {
+  return dimensions.flatMap(({ name, constraintrange }) => {
+    const ranges = constraintrange?.length ? (Array.isArray(constraintrange[0]) ? constraintrange : [constraintrange]) : [];
+    return ranges.map((/** @type {number[]} */ range) => [name, ...range.map((end) => Number((end * unit(name).size).toPrecision(7)))].join(":"));
+  }).join(",");
 }

@@ -2,8 +2,9 @@
 
 import { follow, get, isFinal, send } from "./api.js";
 import { Biases } from "./bias.js";
+import { Depths } from "./depths.js";
 import { choice, fill, h } from "./dom.js";
-import { lines, tableLines } from "./lines.js";
+import { lines } from "./lines.js";
 import { reported, notice } from "./notices.js";
 import { go, keep, link } from "./router.js";
 import { MAY_NOT, maySubmit } from "./session.js";
@@ -14,6 +15,7 @@ import { map } from "./sweep-map.js";
 import { parallel, scatter } from "./sweep-scatter.js";
 import { table } from "./sweep-table.js";
 import { Pace, progressPart, when } from "./sweeps.js";
+import { sweepLines } from "./sweep-lines.js";
 import { SweepTable, sweptBy } from "./table.js";
 import { say } from "./units.js";
 
@@ -26,16 +28,19 @@ import { say } from "./units.js";
  * @property {Record<string, string>} paths what the request calls each
  * @property {SweepTable} table
  * @property {Biases} biases what verifying a sample of the points has found
+ * @property {Depths} depths of the nodes that columns are of
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
+ * @property {() => void} drawn says that what is shown is other columns than before
  * @property {(ordinal: number) => void} open
  * @property {(changed: any) => void} changed takes the sweep as an answer shows it
  * @property {AbortSignal} signal
  */
 
 /**
- * A view of a sweep's points: its element, and how it is drawn anew when there are further results.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[]}} Part
+ * A view of a sweep's points: its element, how it is drawn anew when there are further results, the columns that it shows, and those
+ * of other sweeps.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./sweep-lines.js").Shown[]}} Part
  */
 
 /** @type {[string, string, (context: Context) => Part][]} */
@@ -58,19 +63,17 @@ export async function show(main, route, signal) {
   let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
   const data = new SweepTable(sweep, signal);
   const biases = new Biases();
-  await Promise.all([data.load(), biases.load(sweep, signal)]);
+  const depths = new Depths();
+  await Promise.all([data.load(), biases.load(sweep, signal), depths.load(sweep, signal)]);
   const { axes, spans, paths } = sweptBy(sweep, data.names);
   const asked = route.query.get("view");
   const [view, , make] = PARTS.find(([name]) => name === asked) ?? PARTS[axes.length ? 0 : 4];
 
   const query = new URLSearchParams(route.query);
   const taken = lines(() => {
-    const fields = part.fields();
-    const list = fields.length ? `[${fields.map((field) => JSON.stringify(field)).join(", ")}]` : "";
-    return {
-      ...tableLines(data.path, { fields: fields.join(",") }, `from drillsweep import Client\n\nsweep = Client("${location.origin}").sweep("${id}")\ntable = sweep.table().to_pandas()${list && `[${list}]`}`),
-      cli: `drillsweep fetch ${id} --server ${location.origin} --output results`,
-    };
+    const own = { id, path: data.path, fields: part.fields() };
+    const others = part.others?.() ?? [];
+    return sweepLines([own, ...others]);
   });
   /** @type {Context} */
   const context = {
@@ -79,6 +82,7 @@ export async function show(main, route, signal) {
     spans,
     paths,
     biases,
+    depths,
     table: data,
     query,
     keep: (changes) => {
@@ -89,6 +93,7 @@ export async function show(main, route, signal) {
       keep(changes);
       taken.dispatchEvent(new Event("redraw"));
     },
+    drawn: () => taken.dispatchEvent(new Event("redraw")),
     changed: (changed) => update(changed),
     open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
     signal,
@@ -134,7 +139,7 @@ export async function show(main, route, signal) {
     waiting = undefined;
     drawnAt = Date.now();
     try {
-      await Promise.all([data.load(), biases.load(sweep, signal)]);
+      await Promise.all([data.load(), biases.load(sweep, signal), depths.load(sweep, signal)]);
       await part.draw();
     } catch {
       // A later result, or the server's return, draws again.

@@ -56,7 +56,8 @@ export async function show(main, route, signal) {
   /** @type {string | null} */
   let next = null;
   let isLoading = false;
-  let selected = -1;
+  /** The sweep that the keyboard has selected. @type {string | null} */
+  let selected = null;
   /** Numbers the loads, so that the answer to an older filter is dropped. */
   let generation = 0;
 
@@ -65,7 +66,7 @@ export async function show(main, route, signal) {
     const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
     if (mine !== generation) return;
     known.clear();
-    selected = -1;
+    selected = null;
     fill(body);
     next = page.next ?? null;
     add(page.sweeps);
@@ -137,6 +138,8 @@ export async function show(main, route, signal) {
 
   /** @param {string} id */
   function forget(id) {
+    // Where the selected sweep was, its neighbour is.
+    if (id === selected && body.rows.length > 1) move(known.get(id)?.row === body.rows[body.rows.length - 1] ? -1 : 1);
     known.get(id)?.row.remove();
     known.delete(id);
     add([]);
@@ -178,15 +181,17 @@ export async function show(main, route, signal) {
     fill(failures, ...failuresPart(failed.failures));
   }
 
-  /** @param {number} index */
-  function select(index) {
+  /** Selects the sweep so many rows below the one that is selected. @param {number} by */
+  function move(by) {
     const rows = [...body.rows];
     if (!rows.length) return;
-    rows[selected]?.removeAttribute("aria-selected");
-    selected = Math.max(0, Math.min(rows.length - 1, index));
-    rows[selected].setAttribute("aria-selected", "true");
-    rows[selected].querySelector("a")?.focus({ preventScroll: true });
-    rows[selected].scrollIntoView({ block: "nearest" });
+    const row = known.get(selected ?? "")?.row;
+    const next = rows[row ? Math.max(0, Math.min(rows.length - 1, rows.indexOf(row) + by)) : 0];
+    row?.removeAttribute("aria-selected");
+    selected = [...known].find(([, entry]) => entry.row === next)?.[0] ?? null;
+    next.setAttribute("aria-selected", "true");
+    next.querySelector("a")?.focus({ preventScroll: true });
+    next.scrollIntoView({ block: "nearest" });
   }
 
   addEventListener("keydown", (event) => {
@@ -198,8 +203,8 @@ export async function show(main, route, signal) {
     if (event.key === "/") {
       event.preventDefault();
       search.focus();
-    } else if (event.key === "j") select(selected + 1);
-    else if (event.key === "k") select(selected - 1);
+    } else if (event.key === "j") move(1);
+    else if (event.key === "k") move(-1);
     else if (event.key === "n") go("#/new");
   }, { signal });
 
@@ -223,7 +228,7 @@ export async function show(main, route, signal) {
       curl: `curl -s ${shell(location.origin + list)}`,
       python: `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`,
       matlab: `list = webread("${location.origin}/v1/sweeps"${chosen.map(([name, value]) => `, "${name}", "${value.replaceAll('"', '""')}"`).join("")});`,
-      cli: `drillsweep list --server ${location.origin}${chosen.filter(([name]) => name !== "name").map(([name, value]) => ` --${name} ${shell(value)}`).join("")}`,
+      cli: `drillsweep list --server ${location.origin}${chosen.map(([name, value]) => ` --${name} ${shell(value)}`).join("")}`,
     };
   });
   const redraw = () => taken.dispatchEvent(new Event("redraw"));
@@ -252,7 +257,7 @@ export async function show(main, route, signal) {
   return "Sweeps";
 }
 
-/** How fast a sweep goes, from the progress seen of it. */
+/** How fast a sweep goes: from the progress seen of it, and until that is enough, from its mean pace since it was submitted. */
 export class Pace {
   /** @type {{at: number, progress: number}[]} */
   #seen = [];
@@ -263,12 +268,14 @@ export class Pace {
     if (this.#seen.length > 30) this.#seen.shift();
   }
 
-  /** @returns {number | null} seconds left; null where nothing moved yet */
-  left() {
-    const first = this.#seen[0];
+  /**
+   * @param {string} created when the sweep was submitted, RFC 3339
+   * @returns {number | null} seconds left; null where nothing moved yet
+   */
+  left(created) {
     const last = this.#seen[this.#seen.length - 1];
-    if (!first || last.progress <= first.progress) return null;
-    return ((1 - last.progress) * (last.at - first.at)) / (last.progress - first.progress) / 1000;
+    const since = [this.#seen[0], { at: Date.parse(created), progress: 0 }].find((past) => past && last.progress > past.progress && last.at > past.at);
+    return since ? ((1 - last.progress) * (last.at - since.at)) / (last.progress - since.progress) / 1000 : null;
   }
 }
 
@@ -298,7 +305,7 @@ function drawRow(row, sweep, pace) {
  */
 export function progressPart(sweep, pace) {
   const { counts } = sweep;
-  const left = sweep.state === "running" ? pace.left() : null;
+  const left = sweep.state === "running" ? pace.left(sweep.created) : null;
   const words = [`${counts.succeeded} of ${counts.total} succeeded`];
   if (counts.running) words.push(`${counts.running} running`);
   if (counts.failed) words.push(`${counts.failed} failed`);

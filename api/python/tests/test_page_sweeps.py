@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import json
+import math
+import os
+import random
 import re
+import subprocess
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from drillsweep import Client
-from service import REPOSITORY, SHORT
+from drillsweep import Client, Range, Sweep
+from service import REPOSITORY, SHORT, Service, binary
 from test_page import Opens, browser, drawn, named, opened, requested, troubles, until
 
 __all__ = ["browser", "named", "opened", "troubles"]
@@ -178,7 +184,293 @@ def test_histories_in_part_can_be_dropped_from_a_sweep_like_another(opened: Open
     first = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.02]}, outputs=outputs)
     page = opened(f"#/new?from={first.id}")
     until(page, lambda: requested(page).get("outputs", {}).get("orbits", {}).get("nodes") == [{"node": 49}])
-    page.get_by_label("Kept of each point").select_option("spectra")
-    until(page, lambda: requested(page).get("outputs") == "spectra")
+    page.get_by_label("Kept of each point").select_option("full")
+    until(page, lambda: requested(page).get("outputs") == "full")
     page.get_by_label("Kept of each point").select_option("")
     until(page, lambda: "outputs" not in requested(page))
+
+
+def test_the_selected_sweep_stays_so_when_another_arrives(opened: Opens, client: Client) -> None:
+    tag = "selection"
+    first, second = (client.submit("paper-200m", set=SHORT, tags=[tag], name=name) for name in ("older", "newer"))
+    page = opened(f"#/sweeps?tag={tag}")
+    expect(page.get_by_role("table", name="Sweeps").locator("tbody tr")).to_have_count(2)
+    selected = page.locator("tr[aria-selected]")
+    page.keyboard.press("j")
+    expect(selected).to_contain_text("newer")
+    client.submit("paper-200m", set=SHORT, tags=[tag], name="newest")
+    expect(page.get_by_role("link", name="newest")).to_be_visible()
+    expect(selected).to_contain_text("newer")
+    page.keyboard.press("k")
+    expect(selected).to_contain_text("newest")
+    for _ in range(2):
+        page.keyboard.press("j")
+    expect(selected).to_contain_text("older")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", level=1)).to_have_text("older")
+    assert page.url.endswith(first.id)
+    assert second.id != first.id
+
+
+def test_a_page_just_opened_says_how_much_time_is_left(opened: Opens) -> None:
+    # A quarter was done in the 100 s since the submission.
+    call = """(() => {
+        const pace = new module.Pace();
+        pace.note(argument);
+        return pace.left(new Date(Date.now() - 100000).toISOString());
+    })()"""
+    page = opened()
+    assert module(page, "sweeps.js", call, 0.25) == pytest.approx(300, rel=0.01)
+    assert module(page, "sweeps.js", call, 0) is None
+
+
+@pytest.fixture
+def other(client: Client) -> Sweep:
+    """Two of the points of `named`, at another friction."""
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200]}
+    changes = {**SHORT, "operation.rotation_speed_rpm": 90}
+    return client.submit("paper-200m", set=changes, axes=axes, name="it's the other").wait(timeout=120.0)
+
+
+def lines_of(page: Page) -> dict[str, str]:
+    """The lines under a view, by language."""
+    page.get_by_text("Lines that made this view").click()
+    lines = page.locator("details.lines[open]")
+    expect(lines.locator("pre")).to_have_count(4)
+    names = lines.locator("h2").all_text_contents()
+    return dict(zip(names, lines.locator("pre").all_text_contents(), strict=True))
+
+
+def run(*command: str) -> str:
+    """What a command writes; it succeeds."""
+    environment = {**os.environ, "PATH": f"{Path(binary()).parent}{os.pathsep}{os.environ['PATH']}"}
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0, env=environment, check=False)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+COLUMNS = {
+    "map&colour=friction_coefficient_max": {"friction_coefficient_max"},
+    "scatter&x=torque_top&y=contact_count&colour=tension_top": {"torque_top", "contact_count", "tension_top"},
+    "parallel&colour=torque_top&beside=contact_count": {"torque_top", "contact_count"},
+    "effects&result=contact_count": {"contact_count"},
+    "difference&colour=contact_count": {"contact_count"},
+    "table&columns=ordinal,contact_count": {"contact_count"},
+}
+
+
+@pytest.mark.parametrize("view", COLUMNS)
+def test_the_lines_of_a_view_get_what_it_shows(
+    opened: Opens, named: Sweep, other: Sweep, tmp_path: Path, view: str
+) -> None:
+    is_difference = view.startswith("difference")
+    page = opened(f"#/sweeps/{named.id}?view={view}{f'&with={other.id}' if is_difference else ''}")
+    if view.startswith("table"):
+        expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(8)
+    else:
+        drawn(page, "." if not view.startswith("effects") else "Shares of the variance")
+    lines = lines_of(page)
+    tables = run("sh", "-c", lines["curl"]).split("ordinal")[1:]
+    assert len(tables) == (2 if is_difference else 1)
+    expected = COLUMNS[view]
+    for table in tables:
+        head, *rows = f"ordinal{table}".strip().splitlines()
+        assert expected <= set(head.split(","))
+        assert len(rows) == (2 if is_difference and table is tables[1] else 8)
+    script = tmp_path / "lines.py"
+    names = ["table", "other_table"][: len(tables)]
+    check = "\n".join(f"print('COLUMNS', *{name}.columns)" for name in names)
+    script.write_text(f"{lines['Python']}\n{check}\n", encoding="utf-8")
+    found = [line.split()[1:] for line in run(sys.executable, str(script)).splitlines() if line.startswith("COLUMNS")]
+    assert found == [f"ordinal{table}".splitlines()[0].split(",") for table in tables]
+    run("sh", "-c", f"cd {tmp_path}; {lines['Command line']}")
+    assert (tmp_path / "results").is_dir()
+    assert (tmp_path / "other_results").is_dir() == is_difference
+    assert lines["MATLAB"].count("webread") == len(tables)
+
+
+def test_the_lines_of_the_list_get_what_it_shows(opened: Opens, other: Sweep) -> None:
+    page = opened("#/sweeps?name=it's+the+other&state=completed")
+    expect(page.get_by_role("link", name="it's the other").first).to_be_visible()
+    lines = lines_of(page)
+    listed = json.loads(run("sh", "-c", lines["curl"]))["sweeps"]
+    assert other.id in [sweep["id"] for sweep in listed]
+    assert {sweep["name"] for sweep in listed} == {"it's the other"}
+    printed = run(sys.executable, "-c", lines["Python"])
+    assert printed.splitlines()[0].startswith(listed[0]["id"])
+    commanded = json.loads(run("sh", "-c", f"{lines['Command line']} --json"))
+    assert [sweep["id"] for sweep in commanded["sweeps"]] == [sweep["id"] for sweep in listed]
+
+
+def test_a_sweep_to_compare_with_is_searched_among_all(opened: Opens, named: Sweep, other: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=difference&colour=contact_count")
+    chooser = page.get_by_role("combobox", name="Compared with")
+    expect(chooser).to_be_visible()
+    with page.expect_response(lambda answer: "name=the" in answer.url):
+        page.get_by_role("searchbox", name="Search sweeps").press_sequentially("the other")
+    expect(chooser.locator("option", has_text="it's the other").first).to_be_attached()
+    expect(page.get_by_role("searchbox", name="Search sweeps")).to_have_value("the other")
+    until(page, lambda: {"— choose a sweep", "it's the other"} == set(chooser.locator("option").all_text_contents()))
+    chooser.select_option(other.id)
+    drawn(page, "difference of")
+    # Whatever is searched, what is chosen is called by its name.
+    page.reload()
+    expect(chooser.locator("option:checked")).to_have_text("it's the other")
+
+
+def test_the_link_holds_what_is_brushed_on_parallel_coordinates(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel&brush=mud_density:1100:1500,flow_rate:0.005:0.02")
+    picture = drawn(page, "Parallel coordinates")
+    script = "place => Object.fromEntries(place.data[0].dimensions.map(one => [one.name, one.constraintrange]))"
+    until(page, lambda: bool(picture.evaluate(script)["mud_density"]))
+    ranges = picture.evaluate(script)
+    assert (ranges["mud_density"], ranges["flow_rate"]) == ([[1100, 1500]], [[0.005, 0.02]])
+    axis = picture.locator(".axis-brush").nth(1)
+    box = axis.bounding_box()
+    assert box is not None
+    middle = box["x"] + box["width"] / 2
+    page.mouse.move(middle, box["y"] + 0.05 * box["height"])
+    page.mouse.down()
+    page.mouse.move(middle, box["y"] + 0.3 * box["height"], steps=6)
+    page.mouse.up()
+    until(page, lambda: page.url.count("mud_density") == 2)
+    other = opened(f"#{page.url.partition('#')[2]}")
+    copy = drawn(other, "Parallel coordinates")
+    until(other, lambda: len(copy.evaluate(script)["mud_density"] or []) == 2)
+
+
+def test_the_link_holds_the_region_of_a_finer_grid(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
+    drawn(page, "over flow rate")
+    page.get_by_role("button", name="Finer grid").click()
+    panel = page.get_by_role("region", name="Finer grid")
+    panel.get_by_label("From [m³/s]").fill("0.02")
+    panel.get_by_label("Values").first.fill("3")
+    until(page, lambda: "finer=flow_rate%3A0.02%3A0.04%3A3" in page.url)
+    other = opened(f"#{page.url.partition('#')[2]}")
+    panel = other.get_by_role("region", name="Finer grid")
+    expect(panel.get_by_label("From [m³/s]")).to_have_value("0.02")
+    expect(panel.get_by_label("Values").first).to_have_value("3")
+    panel.get_by_role("button", name="Close").click()
+    until(other, lambda: "finer" not in other.url)
+
+
+def test_the_bar_of_colours_says_the_depth_of_its_node(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49")
+    picture = drawn(page, "node 49 over flow rate")
+    statics = named.point(1).statics()
+    depth = float(statics["measured_depth"][list(statics["node"]).index(49)])
+    title = "place => place.data[0].colorbar.title.text"
+    assert picture.evaluate(title) == f"orbit radius rms, node 49 at {float(f'{depth:.4g}'):g} m [mm]"
+
+
+def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=contact_count&at.operation.rotation_speed_rpm=90")
+    picture = drawn(page, "over flow rate")
+    said = page.get_by_role("region", name="Map").get_by_role("status").first
+    picture.focus()
+    for key, flow_rate, density in [
+        ("ArrowRight", "0.01", "1200"),
+        ("ArrowRight", "0.04", "1200"),
+        ("ArrowRight", "0.04", "1200"),
+        ("ArrowUp", "0.04", "1800"),
+        ("ArrowLeft", "0.01", "1800"),
+        ("ArrowDown", "0.01", "1200"),
+    ]:
+        page.keyboard.press(key)
+        expect(said).to_contain_text(f"flow rate {flow_rate} m³/s")
+        expect(said).to_contain_text(re.compile(f"density {density} kg/m³"))
+    page.keyboard.press("Enter")
+    page.wait_for_url(f"**/sweeps/{named.id}/points/1*")
+
+
+def test_biases_stand_in_every_picture_of_a_sweep(opened: Opens, client: Client, other: Sweep) -> None:
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1700]}
+    verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=4).wait(timeout=180.0)
+    colour = "orbit_radius_rms_49"
+    for view in ("map", "parallel", "scatter", "difference"):
+        page = opened(f"#/sweeps/{verified.id}?view={view}&colour={colour}&with={other.id}")
+        drawn(page, ".")
+        expect(page.locator("figcaption", has_text="Bias against reference runs at 4 points: mean")).to_be_visible()
+        if view != "parallel":
+            hover = page.locator(".js-plotly-plot").evaluate("place => place.data[0].text.flat()")
+            assert all("(bias " in text for text in hover), hover
+
+
+def test_a_finer_grid_leaves_the_coarse_cells_in_the_map(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": Range(0.01, 0.04, 4), "mud_density": Range(1200, 1800, 4)}
+    coarse = client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary")
+    coarse.append({"flow_rate": Range(0.02, 0.03, 3), "mud_density": Range(1400, 1500, 3)})
+    coarse.append({"flow_rate": [0.033], "mud_density": [1250]})
+    coarse.wait(timeout=180.0)
+    page = opened(f"#/sweeps/{coarse.id}?view=map&colour=contact_count")
+    picture = drawn(page, "over flow rate")
+    layers = picture.evaluate("place => place.data.map(one => ({ z: one.z, points: one.customdata, x: one.x }))")
+    assert [(len(layer["z"]), len(layer["z"][0])) for layer in layers] == [(4, 4), (3, 3), (1, 1)]
+    # No cell is empty, and each shows the value of its own point.
+    values = coarse.table().to_pandas().set_index("ordinal")["contact_count"]
+    for layer in layers:
+        for points, shown in zip(layer["points"], layer["z"], strict=True):
+            assert list(values.loc[points]) == shown
+    shown_points = {point for layer in layers for row in layer["points"] for point in row}
+    assert shown_points == set(values.index)
+    # A single point's cell ends halfway to the next values.
+    assert layers[2]["x"] == pytest.approx([0.0315, 0.0365])
+
+
+def test_first_order_indices_are_those_of_the_ishigami_function(opened: Opens) -> None:
+    # Exact shares of f = sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1 over (-pi, pi)^3 (Ishigami and Homma 1990).
+    exact = [0.3139, 0.4424, 0.0]
+    rng = random.Random(7)
+    points = [[rng.uniform(-math.pi, math.pi) for _ in range(3)] for _ in range(2000)]
+    values = [math.sin(a) + 7 * math.sin(b) ** 2 + 0.1 * c**4 * math.sin(a) for a, b, c in points]
+    found = module(opened(), "sensitivity.js", "module.shares(...argument)", [list(zip(*points, strict=True)), values])
+    for share, index in zip(found, exact, strict=True):
+        assert share["first"] == pytest.approx(index, abs=0.04)
+        low, high = share["interval"]
+        assert low <= index <= high
+        assert high - low < 0.15
+        assert share["total"] is None
+
+
+def test_an_incomplete_grid_says_how_its_indices_are_estimated(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": Range(0.01, 0.04, 4), "mud_density": Range(1200, 1800, 3)}
+    sweep = client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary")
+    sweep.append({"flow_rate": [0.033], "mud_density": [1250]})
+    sweep.wait(timeout=180.0)
+    page = opened(f"#/sweeps/{sweep.id}?view=effects&result=tension_top")
+    drawn(page, "Shares of the variance")
+    said = "The points are no full grid: first-order indices are estimated from the points as they are"
+    expect(page.get_by_text(said)).to_be_visible()
+    expect(page.get_by_text("95 % intervals")).to_be_visible()
+
+
+@pytest.fixture
+def idle(tmp_path: Path) -> Iterator[str]:
+    """A server without workers."""
+    service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path / "data"))
+    yield service.server
+    service.stop()
+
+
+def test_a_thousand_sweeps_are_listed(opened: Opens, idle: str) -> None:
+    with Client(idle) as client:
+        for number in range(1000):
+            client.submit("paper-200m", set=SHORT, name=f"sweep {number:04d}", outputs="summary")
+    page = opened("", address=idle)
+    rows = page.get_by_role("table", name="Sweeps").locator("tbody tr")
+    expect(rows.first).to_contain_text("sweep 0999")
+    assert rows.count() < 1000
+
+    def is_whole() -> bool:
+        page.evaluate("() => scrollTo(0, document.body.scrollHeight)")
+        return rows.count() == 1000
+
+    until(page, is_whole)
+    expect(rows.last).to_contain_text("sweep 0000")
+    expect(page.get_by_text("1000 sweeps.")).to_be_visible()
+    page.get_by_role("searchbox", name="Search names").fill("0123")
+    expect(rows).to_have_count(1)
+    expect(rows.first).to_contain_text("sweep 0123")
+    page.get_by_role("link", name="sweep 0123").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("sweep 0123")

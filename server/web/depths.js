@@ -1,0 +1,36 @@
+// The depths of the nodes that columns are of.
+
+import { get } from "./api.js";
+import { label, say, unit } from "./units.js";
+
+/** Depths by node, of the first point of a sweep that has them. */
+export class Depths {
+  /** @type {Map<number, number>} */
+  #depths = new Map();
+
+  /** Reads them, unless they are there already; where no point has kept its equilibrium, they stay unknown. @param {any} sweep @param {AbortSignal} signal */
+  async load(sweep, signal) {
+    if (this.#depths.size || !sweep.counts.succeeded) return;
+    const path = `/v1/sweeps/${encodeURIComponent(sweep.id)}/points`;
+    const { points } = await get(path, { state: "succeeded", limit: 1 }, signal);
+    if (!points[0]) return;
+    const { tables } = await get(`${path}/${points[0].ordinal}`, {}, signal);
+    if (!JSON.stringify(tables ?? []).includes("statics")) return;
+    const { columns } = await get(`${path}/${points[0].ordinal}/statics`, { format: "json", fields: "node,measured_depth" }, signal);
+    this.#depths = new Map(columns.node.map((/** @type {number} */ node, /** @type {number} */ row) => [node, columns.measured_depth[row]]));
+  }
+
+  /** The label of a column, with the depth of its node. @param {string} name */
+  label(name) {
+    return label(name).replace(/\bnode (\d+)/, (text, node) => {
+      const depth = this.#depths.get(Number(node));
+      return depth === undefined ? text : `${text} at ${say("measured_depth", depth)}`;
+    });
+  }
+
+  /** The same with its unit in brackets. @param {string} name */
+  title(name) {
+    const { symbol } = unit(name);
+    return symbol ? `${this.label(name)} [${symbol}]` : this.label(name);
+  }
+}

@@ -1,7 +1,13 @@
 // Which parameter a result depends on: shares of its variance, from the points of a sweep.
 
-/** Parts into which a parameter's range is divided where its values do not repeat. */
-const LARGEST_BINS = 10;
+/** Values up to which each is a group of its own; more are grouped, unless they repeat. */
+const FEW_VALUES = 10;
+/**
+ * Groups of equal number along a parameter whose values do not repeat, at most, and the points that each has at least: what a result
+ * varies within a group is missed, and is little in narrow ones.
+ */
+const MOST_GROUPS = 40;
+const LEAST_IN_GROUP = 6;
 /** Parts that are left out in turn. */
 const PARTS = 40;
 const TWO_SIDED_95 = 1.96;
@@ -41,11 +47,11 @@ export function shares(parameters, result) {
 /** @param {number[]} column @returns {{of: number[], middles: number[]}} the group of each row, and where the groups are */
 function grouped(column) {
   const values = [...new Set(column)].sort((a, b) => a - b);
-  if (values.length <= Math.max(LARGEST_BINS, Math.sqrt(column.length))) {
+  if (values.length <= Math.max(FEW_VALUES, Math.sqrt(column.length))) {
     const place = new Map(values.map((value, index) => [value, index]));
     return { of: column.map((value) => place.get(value) ?? 0), middles: values };
   }
-  const bins = Math.max(2, Math.min(LARGEST_BINS, Math.floor(column.length / 4)));
+  const bins = Math.max(2, Math.min(MOST_GROUPS, Math.floor(column.length / LEAST_IN_GROUP)));
   const order = column.map((_, index) => index).sort((a, b) => column[a] - column[b]);
   const of = Array(column.length).fill(0);
   order.forEach((index, rank) => (of[index] = Math.floor((rank * bins) / column.length)));

@@ -453,7 +453,7 @@ def idle(tmp_path: Path) -> Iterator[str]:
     service.stop()
 
 
-def test_a_thousand_sweeps_are_listed(opened: Opens, idle: str) -> None:
+def test_a_thousand_sweeps_are_listed(idle: str, opened: Opens) -> None:
     with Client(idle) as client:
         for number in range(1000):
             client.submit("paper-200m", set=SHORT, name=f"sweep {number:04d}", outputs="summary")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 from matplotlib.axes import Axes
 
 from drillsweep import Client, InvalidRequest, Point, Sweep, plot
-from service import SHORT
+from service import REPOSITORY, SHORT
 
 
 def test_orbit_and_summary_follow_from_the_recorded_motion(sweep: Sweep) -> None:
@@ -168,16 +169,18 @@ def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sw
     assert len(lateral.lines) == 4
     table = point.history()
     # 120 rpm are imposed at the top.
-    rpm = 120.0 + np.asarray(table["theta_z_rate_297"]) * 30.0 / np.pi
-    assert np.ptp(rpm) > 1.0
-    np.testing.assert_allclose(drawn(speed), rpm, atol=1e-4)
-    assert (speed.get_title(), speed.get_ylabel()) == ("Rotation at the bit", "rotation speed [rpm]")
+    rates = 120.0 * np.pi / 30.0 + np.asarray(table["theta_z_rate_297"])
+    assert np.ptp(rates) > 0.1
+    np.testing.assert_allclose(drawn(speed), rates, atol=1e-5)
+    assert (speed.get_title(), speed.get_ylabel()) == ("Rotation at the bit", "rotation speed [rad/s]")
+    assert legend_of(lateral) == ["u, node 296", "v, node 296", "u, node 297", "v, node 297"]
+    assert [line.get_color() for line in lateral.lines] == list(plot.PALETTE[:4])
     # From that of the equilibrium on by the twist between the ends of the lowest element, of 0.5 m, on G I_p.
     shear_modulus, polar = 2.03e11 / 2.6, np.pi / 32 * (0.159**4 - 0.071**4)
     twist = np.asarray(table["theta_z_297"]) - np.asarray(table["theta_z_296"])
     expected = 1e-3 * (point.profile()["torque"][-1] + shear_modulus * polar * (twist - twist[0]) / 0.5)
     assert np.ptp(expected) > 0.05
-    assert torque.get_ylabel() == "torque [kN m]"
+    assert torque.get_ylabel() == "torque [kN·m]"
     np.testing.assert_allclose(drawn(torque), expected, atol=0.01)
 
     point = snapped.wait(timeout=120.0).point(1)
@@ -193,6 +196,13 @@ def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sw
     assert "Rotation at the bit, at 200.0 m MD, was not recorded" in svg(point)
     assert "rotation speed at the bit, 200.0 m MD" in svg(snapped.point(1))
     assert "rotation speed at the bit, 200.0 m MD" in svg(recorded.point(1))
+
+
+def legend_of(axes: Axes) -> list[str]:
+    """The names in its legend."""
+    legend = axes.get_legend()
+    assert legend is not None
+    return [text.get_text() for text in legend.get_texts()]
 
 
 def drawn(axes: Axes) -> np.ndarray[Any, Any]:
@@ -228,5 +238,13 @@ def test_spectrum_and_profile_are_drawn(sweep: Sweep) -> None:
     assert len(axes.texts) == 3
     axes = plot.profile(sweep.points())
     assert len(axes.lines) == 4
+    assert axes.get_xlabel() == "friction coefficient C_f"
+    assert legend_of(axes)[0] == "flow rate 0.01 m³/s, mud density 1200 kg/m³"
     bottom, top = axes.get_ylim()
     assert bottom > top, "depth goes down"
+
+
+def test_lines_have_the_colours_of_the_page() -> None:
+    page = (REPOSITORY / "server" / "web" / "plots.js").read_text(encoding="utf-8")
+    colours = re.findall(r"light: \[(.*)\]", page)[0]
+    assert tuple(re.findall("#[0-9a-f]{6}", colours)) == plot.PALETTE

@@ -5,6 +5,7 @@ Every function draws into `axes`, or into new ones, and returns them; a history 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,11 @@ from drillsweep.quantity import Unit, quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#b5568c", "#b57b00", "#56b4e9")
+"""Colours of lines, those of the web page: for colour-blind readers too (after Okabe and Ito)."""
+DASHES = ("-", "--", ":", "-.", (0, (8, 4)), (0, (8, 4, 1, 4)))
+"""Dashes that go with them, so that colour is not all that tells lines apart."""
 
 
 def orbit(
@@ -43,7 +49,7 @@ def orbit(
     axes = axes or _new_axes()
     # Clockwise on the picture: from the bottom to the left.
     shown = _shown("radius")
-    axes.plot(-shown.of(across), -shown.of(down), linewidth=0.6)
+    axes.plot(-shown.of(across), -shown.of(down), linewidth=0.6, color=PALETTE[0])
     angle = np.linspace(0.0, 2.0 * np.pi, 361)
     radius = shown.of(clearance)
     axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="black", linewidth=1.0)
@@ -87,19 +93,17 @@ def history(
     )[1]
     axes: list[Axes] = list(panels[:, 0])
     shown = _shown("radius")
-    for name in (name for name in table if name.startswith(("u_", "v_")) and "rate" not in name):
-        axes[0].plot(table["time"], shown.of(table[name]), linewidth=0.6, label=name.replace("_", " "))
+    lateral = [name for name in table if name.startswith(("u_", "v_")) and "rate" not in name]
+    for order, name in enumerate(lateral):
+        axes[0].plot(table["time"], shown.of(table[name]), linewidth=0.6, label=_name(name), **_style(order))
     axes[0].set_ylabel(f"displacement [{shown.symbol}]")
     axes[0].legend(fontsize="small")
-    for panel, (name, column) in zip(axes[1:], columns.items(), strict=True):
-        known = quantity(name)
-        # Drillers read rotation speeds in rpm.
-        unit = known.field if known and name == "rotation_speed" else _shown(name)
-        panel.plot(rotation["time"], unit.of(rotation[column]), linewidth=0.8)
-        panel.set_ylabel(f"{name.replace('_', ' ')} [{unit.symbol}]")
+    for order, (panel, (name, column)) in enumerate(zip(axes[1:], columns.items(), strict=True)):
+        panel.plot(rotation["time"], _shown(name).of(rotation[column]), linewidth=0.8, color=PALETTE[order])
+        panel.set_ylabel(_title(name))
     if len(axes) > 1:
         axes[1].set_title(title)
-    axes[-1].set_xlabel("time [s]")
+    axes[-1].set_xlabel(_title("time"))
     return axes
 
 
@@ -129,13 +133,13 @@ def spectrum(
     shown = _shown("amplitude")
     amplitude = np.where(is_mean, np.nan, shown.of(table["amplitude"]))
     axes = axes or _new_axes()
-    axes.plot(table["frequency"], amplitude, linewidth=0.8)
+    axes.plot(table["frequency"], amplitude, linewidth=0.8, color=PALETTE[0])
     resolved = table.attributes.get("resolved_hz")
     last = np.max(np.abs(table["frequency"]))
     if resolved is not None and resolved < last:
         label = f"beyond what the step resolves (±{resolved:.3g} Hz)"
-        axes.axvspan(resolved, last, color="tab:orange", alpha=0.15, linewidth=0, label=label)
-        axes.axvspan(-last, -resolved, color="tab:orange", alpha=0.15, linewidth=0)
+        axes.axvspan(resolved, last, color=PALETTE[1], alpha=0.15, linewidth=0, label=label)
+        axes.axvspan(-last, -resolved, color=PALETTE[1], alpha=0.15, linewidth=0)
         axes.legend(fontsize="small")
     lines = [peak for peak in table.attributes["peaks"] if peak["whirl"] != "offset" and peak.get("is_resolved", True)]
     for line in lines[:peaks]:
@@ -146,7 +150,7 @@ def spectrum(
         axes.annotate(f"{line['frequency']:+.2f} Hz", (line["frequency"], np.max(amplitude[near])), **place)
     axes.axvline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("frequency [Hz], backward - and forward + whirl")
-    axes.set_ylabel(f"amplitude [{shown.symbol}]")
+    axes.set_ylabel(_title("amplitude"))
     axes.set_title(f"Full spectrum of node {table.attributes['node']} at {table.attributes['measured_depth']:.2f} m")
     return axes
 
@@ -161,19 +165,16 @@ def profile(
     axes = axes or _new_axes()
     lines = [points] if isinstance(points, Point) else list(points)
     shown = _shown(column)
-    colours = require("matplotlib", "plot").colormaps["viridis"]
     np = require("numpy", "plot")
     for number, point in enumerate(lines):
         table = point.profile()
         # Values belong to elements: steps over the elements' ends.
         depth = np.stack([table["measured_depth_top"], table["measured_depth_bottom"]], axis=1).ravel()
-        colour = colours(0.9 * number / max(len(lines) - 1, 1))
-        axes.plot(shown.of(table[column]).repeat(2), depth, linewidth=0.9, color=colour, label=_label(point.parameters))
+        values = shown.of(table[column]).repeat(2)
+        axes.plot(values, depth, linewidth=0.9, label=_label(point.parameters), **_style(number))
     axes.invert_yaxis()
-    known = quantity(column)
-    name = known.label if known else column.replace("_", " ")
-    axes.set_xlabel(f"{name} [{shown.symbol}]" if shown.symbol not in ("", "1") else name)
-    axes.set_ylabel("measured depth [m]")
+    axes.set_xlabel(_title(column))
+    axes.set_ylabel(_title("measured_depth"))
     if len(axes.lines) > 1:
         axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
@@ -184,8 +185,38 @@ def _shown(column: str) -> Unit:
     return known.shown if known else Unit("", 1.0)
 
 
+def _name(column: str) -> str:
+    """What the page calls a column, such as `u, node 49`."""
+    known = quantity(column)
+    if known is None:
+        return column.replace("_", " ")
+    node = None if "." in column else re.fullmatch(rf"{known.name}_(\d+)", column)
+    return f"{known.label}, node {node[1]}" if node else known.label
+
+
+def _title(column: str) -> str:
+    """The same with its unit in brackets, for an axis."""
+    symbol = _symbol(_shown(column))
+    return f"{_name(column)} [{symbol}]" if symbol else _name(column)
+
+
+def _symbol(unit: Unit) -> str:
+    """A unit as the page writes it, such as `kg/m³`; empty for ratios."""
+    raised = re.sub(r"(?<=[A-Za-z])[23]", lambda power: {"2": "\u00b2", "3": "\u00b3"}[power[0]], unit.symbol)
+    return "" if raised == "1" else "\u00b0" if raised == "deg" else raised.replace(" ", "\u00b7")
+
+
+def _style(order: int) -> dict[str, Any]:
+    """Colour and dashes of one of several lines."""
+    return {"color": PALETTE[order % len(PALETTE)], "linestyle": DASHES[order % len(DASHES)]}
+
+
 def _label(parameters: dict[str, float]) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in parameters.items())
+    """A point by its parameters, in the units shown."""
+    return ", ".join(
+        f"{_name(name)} {_shown(name).of(value):g} {_symbol(_shown(name))}".rstrip()
+        for name, value in parameters.items()
+    )
 
 
 def _new_axes() -> Any:

@@ -1,0 +1,107 @@
+"""A point's views and comparisons in a real browser: what stays true of points that lack something."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from drillsweep import Client, Sweep
+from service import SHORT
+from test_page import Opens, browser, drawn, named, opened, troubles, until
+
+__all__ = ["browser", "named", "opened", "troubles"]
+
+
+@pytest.fixture(scope="module")
+def summarized(client: Client) -> Sweep:
+    """A point of which only the summary is stored."""
+    axes = {"flow_rate": [0.012]}
+    return client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary", name="summary").wait(timeout=120.0)
+
+
+@pytest.fixture(scope="module")
+def elsewhere(client: Client) -> Sweep:
+    """A point that recorded other nodes than the preset's, and snapshots."""
+    changes = {**SHORT, "recording.nodes": [{"depth": 40.0}, {"depth": 195.0}], "recording.snapshots": {"rate_hz": 100}}
+    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.013]}, name="elsewhere").wait(timeout=120.0)
+
+
+def key(sweep: Sweep, ordinal: int = 1) -> str:
+    return f"{sweep.id}:{ordinal}"
+
+
+def names(page: Page, picture: str) -> list[str]:
+    """The lines that a picture has in its legend."""
+    read = "place => place.data.filter(trace => trace.showlegend).map(trace => trace.name)"
+    return list(drawn(page, picture).evaluate(read))
+
+
+@pytest.mark.parametrize(
+    ("view", "picture"),
+    [
+        ("profiles", "Profiles"),
+        ("orbit", "Orbits"),
+        ("history", "Histories"),
+        ("rotation", "Rotation and torque"),
+        ("spectrum", "Full spectra"),
+        ("well", "Well"),
+        ("energy", "Energy"),
+    ],
+)
+def test_a_comparison_draws_the_points_that_have_what_it_needs_and_says_what_others_lack(
+    opened: Opens, named: Sweep, summarized: Sweep, elsewhere: Sweep, troubles: list[str], view: str, picture: str
+) -> None:
+    points = ",".join([key(summarized), key(named, 2), key(elsewhere)])
+    page = opened(f"#/compare?points={points}&view={view}")
+    missing = page.get_by_role("status", name="What is missing")
+    expect(missing).to_contain_text(re.compile(r"^Point 1 is missing.*keep the summary only\."))
+    assert {name[0] for name in names(page, picture)} == {"2", "3"}
+    expect(missing.get_by_role("listitem").filter(has_text=re.compile("Point [23] "))).to_have_count(0)
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+def test_each_point_is_compared_at_its_recorded_node_nearest_to_the_depth(
+    opened: Opens, named: Sweep, elsewhere: Sweep
+) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(elsewhere)}&view=history")
+    drawn(page, "Histories")
+    depths = [
+        statistics["measured_depth"] for statistics in (sweep.point(1).statistics() for sweep in (named, elsewhere))
+    ]
+    page.get_by_label("Node nearest to").select_option(label="57.73 m")
+    nearest = [min(recorded, key=lambda depth: abs(depth - 57.73)) for recorded in depths]
+    assert nearest[0] != nearest[1]
+    shown = [f"at {float(f'{depth:.4g}'):g} m" for depth in nearest]
+    expect(page.get_by_text(re.compile(f"point 1 node 49 {shown[0]}; point 2 node \\d+ {shown[1]}"))).to_be_visible()
+    # Another view of the comparison keeps the depth.
+    page.get_by_role("link", name="Full spectra").click()
+    drawn(page, "Full spectra")
+    expect(page.get_by_text(re.compile(f"point 1 node 49 {shown[0]}"))).to_be_visible()
+
+
+def test_a_failed_point_of_a_comparison_says_why(opened: Opens, named: Sweep, client: Client) -> None:
+    # Without its wall the string is buckled by the weight on bit.
+    failed = client.run("paper-200m", set={**SHORT, "effects.contact": "off"}).wait(timeout=120.0)
+    error = failed.point(1).error
+    assert error is not None
+    page = opened(f"#/compare?points={key(named)},{key(failed)}&view=profiles")
+    drawn(page, "Profiles")
+    expect(page.get_by_text(f"it failed ({error.kind}): {error.reason}")).to_be_visible()
+
+
+def test_an_unknown_point_of_a_link_is_named_beside_the_others(
+    opened: Opens, named: Sweep, troubles: list[str]
+) -> None:
+    unknown = "01a00000-0000-7000-8000-000000000000:1"
+    page = opened(f"#/compare?points={key(named, 99)},{key(named)},{unknown}&view=energy")
+    drawn(page, "Energy")
+    expect(page.get_by_text(re.compile("Point 1 of the link was not found: .* has no point 99"))).to_be_visible()
+    expect(page.get_by_text(re.compile("Point 3 of the link was not found: there is no sweep"))).to_be_visible()
+    page.get_by_role("button", name="Take it out").first.click()
+    until(page, lambda: page.get_by_text("has no point 99").count() == 0)
+    expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(1)
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 404" not in text]

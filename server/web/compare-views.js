@@ -1,0 +1,200 @@
+// What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
+
+import { Problem } from "./api.js";
+import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { draw, inks } from "./plots.js";
+import { ledger } from "./point-energy.js";
+import { drawProfiles, tableOf } from "./point-profiles.js";
+import { displaced } from "./point-well.js";
+import { label, say, shown, title, unit } from "./units.js";
+
+/** Samples of a line. */
+const SHOWN = 6000;
+/** How many times a string's distance from the axis of its hole is drawn. */
+const EXAGGERATION = 100;
+
+/** @typedef {{number: number, id: string, ordinal: number, path: string, detail: any, name: string, colour: string, dash: string}} Compared */
+
+/**
+ * What a view is drawn with.
+ * @typedef {object} Comparison
+ * @property {Compared[]} points
+ * @property {URLSearchParams} query
+ * @property {string[]} profiles chosen quantities over depth
+ * @property {Record<string, any>} node asks each point for its recorded node that is nearest to the chosen depth
+ * @property {{from: number, to: number}} window [s]
+ * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
+ * @property {string[]} lacking sentences about what points lack, which a view adds to
+ * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
+ * @property {AbortSignal} signal
+ */
+
+/**
+ * @typedef {object} CompareView
+ * @property {string} name
+ * @property {string} table behind it
+ * @property {boolean} [isWindowed] whether it is of a recorded node over a window
+ * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
+ */
+
+/** @type {Record<string, CompareView>} */
+export const VIEWS = {
+  profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
+  orbit: { name: "Orbits", table: "orbit", isWindowed: true, draw: drawOrbits },
+  history: { name: "Histories", table: "orbit", isWindowed: true, draw: drawHistories },
+  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, draw: drawRotation },
+  spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, draw: drawSpectra },
+  well: { name: "Well", table: "statics", draw: drawWells },
+  energy: { name: "Energy", table: "energy", draw: drawEnergy },
+};
+
+/**
+ * Why a point has no result at all; nothing of one that has.
+ * @param {any} detail
+ */
+function withoutResult({ summary, state, error }) {
+  if (summary) return "";
+  if (error) return `it failed (${error.class}): ${error.reason}`;
+  return state === "cancelled" ? "it was cancelled" : `it is ${state}, without results yet`;
+}
+
+/**
+ * What a view needs of each point, of those that have it; what the others lack is said.
+ * @template T
+ * @param {Comparison} comparison
+ * @param {(point: Compared) => Promise<T>} read
+ * @param {string} [part] of the view that is drawn without them, where that is not all
+ * @returns {Promise<[Compared, T][]>}
+ */
+export async function each({ points, lacking, signal }, read, part = "") {
+  const found = await Promise.all(
+    points.map(async (point) => {
+      const nothing = withoutResult(point.detail);
+      if (nothing) return { point, lacks: `Point ${point.number} is missing: ${nothing}.` };
+      try {
+        return { point, value: await read(point) };
+      } catch (error) {
+        if (signal.aborted || !(error instanceof Problem) || error.status === 401) throw error;
+        return { point, lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.` };
+      }
+    }),
+  );
+  const sentences = found.flatMap(({ lacks }) => lacks ?? []);
+  lacking.push(...sentences.filter((sentence) => !lacking.includes(sentence)));
+  return found.flatMap(({ point, value, lacks }) => (lacks ? [] : [/** @type {[Compared, T]} */ ([point, value])]));
+}
+
+/** @param {Comparison} comparison @param {Compared} point @param {number} node @param {number} depth [m] */
+function noteNode({ nodes }, point, node, depth) {
+  nodes.set(point.number, `point ${point.number} node ${node} at ${say("measured_depth", depth)}`);
+}
+
+/** @param {Compared} point @param {number[]} time @param {(number | null)[]} values */
+function overTime(point, time, values) {
+  return { type: "scattergl", mode: "lines", name: point.name, showlegend: true, x: time, y: values, line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" };
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawQuantities(place, comparison) {
+  const { profiles } = comparison;
+  /** @type {Map<number, Record<string, any>>} */
+  const tables = new Map();
+  for (const name of new Set(profiles.map(tableOf))) {
+    const parts = profiles.filter((entry) => tableOf(entry) === name).map(label).join(", ");
+    const found = await each(comparison, (point) => comparison.table(point, name), parts);
+    for (const [point, table] of found) tables.set(point.number, { ...tables.get(point.number), [name]: table });
+  }
+  const drawable = comparison.points.filter((point) => tables.has(point.number));
+  return drawProfiles(place, profiles, drawable.map((point) => ({ ...point, table: (name) => tables.get(point.number)?.[tableOf(name)] })), comparison.signal);
+}
+
+/**
+ * The orbit of each point's node with what the equilibrium says of that node.
+ * @param {Comparison} comparison
+ */
+function orbits(comparison) {
+  return each(comparison, async (point) => {
+    const [orbit, { columns }] = await Promise.all([
+      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: SHOWN }),
+      comparison.table(point, "statics", { fields: "node,low_side_angle,clearance" }),
+    ]);
+    const row = Math.max(0, columns.node.indexOf(orbit.attributes.node));
+    noteNode(comparison, point, orbit.attributes.node, orbit.attributes.measured_depth);
+    return { orbit, lowSide: columns.low_side_angle[row], clearance: columns.clearance[row] };
+  });
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawOrbits(place, comparison) {
+  const found = await orbits(comparison);
+  const clearance = Math.max(...found.map(([, one]) => one.clearance));
+  const traces = found.map(([point, { orbit, lowSide }]) => orbitTrace(orbit, lowSide, { color: point.colour }, point.name));
+  const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
+  if (!found.length) return draw(place, [], {}, comparison.signal);
+  return draw(place, [holeTrace(clearance), ...traces], { ...orbitLayout(isZoomed, traces, clearance), legend: { orientation: "v" } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawHistories(place, comparison) {
+  const direction = comparison.query.get("direction") ?? "up";
+  const found = await orbits(comparison);
+  const traces = found.map(([point, { orbit, lowSide }]) => {
+    const { time, u, v, radius } = orbit.columns;
+    const seen = seenDownhole(u, v, lowSide);
+    return overTime(point, time, shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up));
+  });
+  return draw(place, traces, { ...timeLayout(comparison), yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, comparison.signal);
+}
+
+/**
+ * An axis of time; with another window a zoom is taken back.
+ * @param {Comparison} comparison
+ */
+function timeLayout({ window }) {
+  return { shows: window, xaxis: { title: "time [s]" } };
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawRotation(place, comparison) {
+  const quantity = comparison.query.get("quantity") === "torque" ? "torque" : "rotation_speed";
+  const found = await each(comparison, async (point) => {
+    const { columns } = await comparison.table(point, "statistics", { ...comparison.node, fields: "node,measured_depth" });
+    const [node] = columns.node;
+    const name = `${quantity}_${node}`;
+    const history = await comparison.table(point, "history", { node, ...comparison.window, fields: `time,${name}`, max_points: SHOWN, decimation: "minmax" });
+    noteNode(comparison, point, node, columns.measured_depth[0]);
+    return overTime(point, history.columns.time, shown(name, history.columns[name]));
+  });
+  return draw(place, found.map(([, trace]) => trace), { ...timeLayout(comparison), yaxis: { title: title(quantity), quantity } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawSpectra(place, comparison) {
+  const found = await each(comparison, async (point) => {
+    const spectrum = await comparison.table(point, "spectrum", { ...comparison.node, ...comparison.window, window: "hann" });
+    noteNode(comparison, point, spectrum.attributes.node, spectrum.attributes.measured_depth);
+    return spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name);
+  });
+  return draw(place, found.map(([, trace]) => trace), spectrumLayout(null, comparison.query.get("amplitude") === "log"), comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawWells(place, comparison) {
+  const found = await each(comparison, async (point) => (await comparison.table(point, "statics")).columns);
+  const traces = found.map(([point, statics]) => {
+    const path = displaced(statics, { north: statics.north, east: statics.east, down: statics.true_vertical_depth }, EXAGGERATION);
+    return { type: "scatter3d", mode: "lines", name: point.name, showlegend: true, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line: { color: point.colour, width: 5 }, hoverinfo: "name" };
+  });
+  const { soft, line } = inks();
+  const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
+  return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawEnergy(place, comparison) {
+  const found = await each(comparison, async (point) => ledger((await comparison.table(point, "energy")).columns));
+  const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
+  const { symbol } = unit("kinetic");
+  const traces = found.map(([point, one]) => ({ type: "bar", name: point.name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: point.colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
+  return draw(place, traces, { barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, comparison.signal);
+}

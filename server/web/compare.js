@@ -2,7 +2,8 @@
 
 import { get, Problem } from "./api.js";
 import { VIEWS } from "./compare-views.js";
-import { choice, fill, h } from "./dom.js";
+import { comparedIn, MOST, rememberComparison } from "./comparison.js";
+import { choice, debounced, fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, DASHES, LINES } from "./plots.js";
@@ -11,7 +12,10 @@ import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
 import { say } from "./units.js";
 
-const MOST = 6;
+/** How long typing must rest before sweeps are looked for. */
+const REST_MS = 200;
+/** Sweeps that are offered at once. */
+const OFFERED = 100;
 /** Depths that differ by less are one [m]. */
 const SAME_DEPTH = 1e-3;
 
@@ -20,10 +24,12 @@ const SAME_DEPTH = 1e-3;
 /** @type {import("./main.js").View} */
 export async function show(main, route, signal) {
   const { query } = route;
-  const keys = [...new Set((query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key)))].slice(0, MOST);
+  const keys = comparedIn(query);
+  rememberComparison(query);
   const view = Object.keys(VIEWS).find((name) => name === query.get("view")) ?? "profiles";
   const { isWindowed } = VIEWS[view];
-  const [{ sweeps }, ...asked] = await Promise.all([get("/v1/sweeps", { limit: 100 }, signal), ...keys.map((key, order) => pointOf(key, order, signal))]);
+  const [listed, ...asked] = await Promise.all([get("/v1/sweeps", { limit: OFFERED }, signal), ...keys.map((key, order) => pointOf(key, order, signal))]);
+  const { sweeps } = listed;
   const points = asked.flatMap(({ point }) => (point ? [point] : []));
   const unknown = asked.flatMap(({ problem }) => (problem ? [problem] : []));
   const to = (/** @type {string[]} */ chosen, shownView = view) => link(["compare"], { ...Object.fromEntries(currentRoute().query), points: chosen.join(","), view: shownView });
@@ -38,16 +44,38 @@ export async function show(main, route, signal) {
 
   let chosenSweep = points.at(-1)?.id ?? sweeps[0]?.id ?? "";
   const ordinal = h("input", { type: "number", min: 1, value: (points.at(-1)?.ordinal ?? 0) + 1, style: "width:6rem" });
+  const offer = h("span", { class: "controls" });
+  const found = h("span", { class: "small soft", role: "status" });
+  /** Offers sweeps to take a point of. @param {{sweeps: any[], next?: string | null}} page @param {string} name that was looked for */
+  const offerSweeps = ({ sweeps: answered, next }, name) => {
+    // Those of the points here are at hand, however old they are.
+    const own = name ? [] : [...new Set(points.map((point) => point.id))].filter((id) => !answered.some((sweep) => sweep.id === id)).map((id) => ({ id, name: null }));
+    const offered = [...answered, ...own];
+    if (!offered.some((sweep) => sweep.id === chosenSweep)) chosenSweep = offered[0]?.id ?? "";
+    fill(offer, choice("Sweep", offered.map((sweep) => [sweep.id, sweep.name ?? nameOf(sweep.id)]), chosenSweep, (value) => (chosenSweep = value)));
+    found.textContent = offered.length === 0 ? (name ? `No sweep has ${name} in its name.` : "There are no sweeps yet.") : next ? `The newest ${answered.length} are offered; search for others.` : "";
+  };
+  let searches = 0;
+  const look = async () => {
+    const mine = ++searches;
+    const name = search.value.trim();
+    const page = await get("/v1/sweeps", { limit: OFFERED, name }, signal);
+    if (mine === searches) offerSweeps(page, name);
+  };
+  const search = h("input", { type: "search", oninput: debounced(() => attend(look(), signal), REST_MS), style: "width:12rem" });
   const adding = h(
     "form",
     { class: "controls", onsubmit: (/** @type {Event} */ event) => {
       event.preventDefault();
       if (chosenSweep && Number(ordinal.value) >= 1) go(to([...keys, `${chosenSweep}:${ordinal.value}`]));
     } },
-    choice("Sweep", sweeps.map((/** @type {any} */ sweep) => [sweep.id, nameOf(sweep.id)]), chosenSweep, (value) => (chosenSweep = value)),
+    h("label", { class: "field" }, h("span", {}, "Search sweeps"), search),
+    offer,
     h("label", { class: "field" }, h("span", {}, "Point"), ordinal),
     h("button", { type: "submit", disabled: keys.length >= MOST }, keys.length >= MOST ? `At most ${MOST}` : "Add"),
+    found,
   );
+  offerSweeps(listed, "");
 
   const place = canvas(VIEWS[view].name, view, "tall");
   const controls = h("div", { class: "controls" });
@@ -72,6 +100,7 @@ export async function show(main, route, signal) {
   function change(choices) {
     for (const [name, value] of Object.entries(choices)) query.set(name, value);
     keep(choices);
+    rememberComparison(currentRoute().query);
     drawTabs();
     drawControls();
     attend(redraw(), signal);

@@ -2,6 +2,7 @@
 
 import { get, Problem } from "./api.js";
 import { Biases } from "./bias.js";
+import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
 import { lines, tableLines } from "./lines.js";
 import { about } from "./point-about.js";
@@ -69,7 +70,7 @@ export async function show(main, route, signal) {
         "div",
         { class: "head" },
         h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, parameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "")),
-        h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), h("a", { class: "button", href: link(["compare"], { points: `${id}:${ordinal}`, view: "profiles" }) }, "Compare")),
+        h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), waysToCompare(`${id}:${ordinal}`).map(({ text, href }) => h("a", { class: "button", href }, text))),
       ),
       current.error && h("div", { class: "panel", role: "alert" }, h("h2", { class: "wrong" }, `Failed: ${current.error.class}`), h("p", {}, current.error.reason), h("p", { class: "soft" }, [typeof current.error.time === "number" && `at ${say("time", current.error.time)}`, current.error.node && `node ${current.error.node}`].filter(Boolean).join(", "))),
     );

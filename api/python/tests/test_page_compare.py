@@ -1,11 +1,11 @@
-"""A point's views and comparisons in a real browser: what stays true of points that lack something."""
+"""Comparisons of points in a real browser: what points lack, and how points are found and kept."""
 
 from __future__ import annotations
 
 import re
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT
@@ -105,3 +105,48 @@ def test_an_unknown_point_of_a_link_is_named_beside_the_others(
     expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(1)
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+def test_a_sweep_that_is_not_among_the_newest_is_found_by_its_name(
+    opened: Opens, named: Sweep, elsewhere: Sweep
+) -> None:
+    page = opened("#/nowhere")
+
+    def newest(route: Route) -> None:
+        """The list as if it had a page more, without one sweep."""
+        answer = route.fetch()
+        listed = answer.json()
+        listed["sweeps"] = [sweep for sweep in listed["sweeps"] if sweep["id"] != elsewhere.id]
+        route.fulfill(response=answer, json={**listed, "next": "more"})
+
+    page.route("**/v1/sweeps?limit=100", newest)
+    page.goto(page.url.replace("#/nowhere", f"#/compare?points={key(named)}&view=energy"))
+    drawn(page, "Energy")
+    sweeps = page.get_by_role("combobox", name="Sweep", exact=True)
+    expect(page.get_by_text(re.compile("The newest \\d+ are offered"))).to_be_visible()
+    assert "elsewhere" not in sweeps.locator("option").all_text_contents()
+    page.get_by_role("searchbox", name="Search sweeps").fill("ELSEW")
+    expect(sweeps.locator("option")).to_have_text(["elsewhere"])
+    page.get_by_label("Point", exact=True).fill("1")
+    page.get_by_role("button", name="Add").click()
+    expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(2)
+    page.get_by_role("searchbox", name="Search sweeps").fill("no such sweep")
+    expect(page.get_by_text("No sweep has no such sweep in its name.")).to_be_visible()
+
+
+def test_a_point_is_added_to_the_comparison_that_was_opened_last(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}/points/1?view=energy")
+    drawn(page, "Energy by account")
+    page.get_by_role("link", name="Compare", exact=True).last.click()
+    drawn(page, "Profiles")
+    page.get_by_role("link", name="Energy", exact=True).click()
+    drawn(page, "Energy")
+    page.goto(page.url.partition("#")[0] + f"#/sweeps/{named.id}/points/2?view=energy")
+    page.get_by_role("link", name="Add to the comparison of 1").click()
+    expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(2)
+    # As it was left.
+    assert [name[0] for name in names(page, "^Energy$")] == ["1", "2"]
+    page.goto(page.url.partition("#")[0] + f"#/sweeps/{named.id}/points/2?view=energy")
+    expect(page.get_by_role("link", name="Back to the comparison")).to_be_visible()
+    page.get_by_role("link", name="New comparison").click()
+    expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(1)

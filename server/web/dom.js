@@ -35,13 +35,31 @@ export function append(parent, children) {
 }
 
 /**
- * Puts children in the place of those that an element has.
+ * Puts children in the place of those that an element has. Where one of these had the keyboard's focus, its equivalent has it after: the
+ * element of the same tag and name, or else the one at the same place among those of its tag where as many are there.
  * @param {Element} parent
  * @param {(Child | Child[])[]} children
  */
 export function fill(parent, ...children) {
+  const focused = document.activeElement;
+  const before = focused && focused !== parent && parent.contains(focused) ? { name: nameOf(focused), all: [...parent.querySelectorAll(focused.localName)] } : null;
   parent.replaceChildren();
   append(parent, children);
+  if (!focused || !before) return;
+  const after = [...parent.querySelectorAll(focused.localName)];
+  const sameName = after.filter((element) => nameOf(element) === before.name);
+  const samePlace = after.length === before.all.length ? after[before.all.indexOf(focused)] : undefined;
+  const equivalent = parent.contains(focused) ? focused : sameName.length === 1 ? sameName[0] : (samePlace ?? sameName[0]);
+  if (equivalent instanceof HTMLElement) equivalent.focus({ preventScroll: true });
+}
+
+/**
+ * What a control is called by those who do not see it.
+ * @param {Element} element
+ */
+function nameOf(element) {
+  const labels = /** @type {HTMLInputElement} */ (element).labels;
+  return element.getAttribute("aria-label") ?? labels?.[0]?.textContent ?? element.textContent;
 }
 
 /**

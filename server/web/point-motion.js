@@ -58,23 +58,26 @@ export function motion(context) {
   /** @param {string} name @param {string} value */
   const set = (name, value) => context.keep({ [name]: value });
 
-  function drawControls() {
+  /** The fields of the window; they stay, so that the keyboard's focus goes on from them. */
+  const [fromBox, toBox] = ["From", "To"].map((name) => h("input", { type: "number", min: 0, max: duration, step: "any", style: "width:7rem", "aria-label": `${name} [s]`, onchange: () => choose(Number(fromBox.value), Number(toBox.value)) }));
+
+  function fillWindow() {
     const { from, to } = span();
-    const entry = (/** @type {string} */ name, /** @type {number} */ value) => {
-      const box = h("input", { type: "number", min: 0, max: duration, step: "any", value: Number(value.toFixed(3)), style: "width:7rem", onchange: () => {
-        const limits = { from: span().from, to: span().to, [name]: Number(box.value) };
-        choose(limits.from, limits.to);
-      } });
-      return h("label", { class: "field" }, h("span", {}, `${name === "from" ? "From" : "To"} [s]`), box);
-    };
+    fromBox.value = String(Number(from.toFixed(3)));
+    toBox.value = String(Number(to.toFixed(3)));
+  }
+
+  function drawControls() {
+    fillWindow();
+    const entry = (/** @type {string} */ name, /** @type {HTMLInputElement} */ box) => h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
     fill(
       controls,
       choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth)]), query.get("node") ?? "0", (value) => {
         set("node", value);
         attend(redraw(), signal);
       }),
-      entry("from", from),
-      entry("to", to),
+      entry("From", fromBox),
+      entry("To", toBox),
       choice("Orbit shows", [["motion", "the motion"], ["hole", "the whole hole"]], isZoomed() ? "motion" : "hole", (value) => {
         set("zoom", value);
         void drawOrbit();
@@ -123,7 +126,7 @@ export function motion(context) {
       return;
     }
     if (mine !== generation) return;
-    drawControls();
+    fillWindow();
     await Promise.all([drawHistory(), drawWindow(), drawRotation(place().node)]);
   }
 

@@ -1,6 +1,7 @@
 // The lines that made a view, for curl, Python, MATLAB and the command line.
 
 import { fill, h } from "./dom.js";
+import { session } from "./session.js";
 
 /**
  * @typedef {object} Lines
@@ -21,7 +22,8 @@ export function lines(make, about = "Lines that made this view") {
   const body = h("div", {});
   const draw = () => {
     const made = make();
-    fill(body, LANGUAGES.flatMap(([key, name]) => (made[key] ? [h("h2", {}, name), snippet(made[key] ?? "", name)] : [])));
+    const shown = LANGUAGES.flatMap(([key, name]) => (made[key] ? [h("h2", {}, name), snippet(made[key] ?? "", name)] : []));
+    fill(body, shown.length ? shown : h("p", { class: "soft" }, "This view shows no data."));
   };
   const details = h("details", { class: "lines", ontoggle: () => details.open && draw() }, h("summary", {}, `${about}: curl, Python, MATLAB`), body);
   details.addEventListener("redraw", () => details.open && draw());
@@ -57,20 +59,65 @@ export function python(value) {
 }
 
 /**
+ * A request behind a view.
+ * @typedef {object} Asked
+ * @property {string} path from `/v1`
+ * @property {Record<string, any>} [query] what is absent or empty is left out
+ * @property {string} [name] of the variable or file that takes the answer; needed where a view has several
+ * @property {boolean} [isDocument] whether the answer is a document and no table
+ */
+
+/**
  * Lines that read a table of the service and show what the view shows.
  * @param {string} path of the table, from `/v1`
- * @param {Record<string, string | number | null | undefined>} query
+ * @param {Record<string, any>} query
  * @param {string} [pythonLines] with the client, in place of those that only read
  * @returns {Lines}
  */
 export function tableLines(path, query, pythonLines) {
-  const server = location.origin;
-  const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
-  const text = new URLSearchParams([...pairs.map(([name, value]) => [name, String(value)]), ["format", "csv"]]).toString();
-  const arguments_ = pairs.map(([name, value]) => `, "${name}", ${typeof value === "number" ? value : `"${String(value).replaceAll('"', '""')}"`}`).join("");
-  return {
-    curl: `curl -s ${shell(`${server}${path}?${text.replaceAll("%2C", ",")}`)}`,
-    python: pythonLines,
-    matlab: `csv = weboptions(ContentType="table", Timeout=90);   % with tokens: HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]\ntable = webread("${server}${path}"${arguments_}, "format", "csv", csv);`,
-  };
+  return requestLines([{ path, query }], pythonLines);
+}
+
+/**
+ * Lines that read everything that a view shows: one answer goes to the standard output, several to a file each.
+ * @param {Asked[]} asked
+ * @param {string} [pythonLines] with the client
+ * @returns {Lines}
+ */
+export function requestLines(asked, pythonLines) {
+  const hasToken = session().tokens_required;
+  const curl = asked.map((one) => {
+    const text = new URLSearchParams(pairsOf(one).map(([name, value]) => [name, String(value)])).toString();
+    const header = hasToken ? '-H "Authorization: Bearer $DRILLSWEEP_TOKEN" ' : "";
+    const file = asked.length > 1 ? ` -o ${one.name}.${one.isDocument ? "json" : "csv"}` : "";
+    return `curl -fsS ${header}${shell(`${location.origin}${one.path}${text && `?${text.replaceAll("%2C", ",")}`}`)}${file}`;
+  });
+  const kinds = [...new Set(asked.map(optionsOf))];
+  const options = kinds.map((kind) => `${kind} = weboptions(ContentType="${kind === "csv" ? "table" : "json"}", Timeout=90${hasToken ? ', HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]' : ""});`);
+  const reads = asked.map((one) => {
+    const arguments_ = pairsOf(one).map(([name, value]) => `, "${name}", ${typeof value === "number" ? value : `"${String(value).replaceAll('"', '""')}"`}`).join("");
+    return `${one.name ?? "table"} = webread("${location.origin}${one.path}"${arguments_}, ${optionsOf(one)});`;
+  });
+  return { curl: curl.join("\n"), python: pythonLines, matlab: [...options, ...reads].join("\n") };
+}
+
+/** @param {Asked} one @returns {[string, any][]} */
+function pairsOf({ query = {}, isDocument }) {
+  const given = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+  return isDocument ? given : [...given, ["format", "csv"]];
+}
+
+/** What MATLAB's lines call the options of such a request. @param {Asked} one */
+function optionsOf({ isDocument }) {
+  return isDocument ? "json" : "csv";
+}
+
+/**
+ * Arguments of the Python client for a recorded node and a window.
+ * @param {Record<string, any>} which `node`, or `depth` and `nearest`
+ * @param {{from: number, to: number} | null} [window] [s]
+ */
+export function pythonNode(which, window) {
+  const node = which.node !== undefined ? `node=${which.node}` : `depth=${which.depth}, nearest=True`;
+  return window ? `${node}, time=(${window.from}, ${window.to})` : node;
 }

@@ -38,7 +38,10 @@ export function about(context) {
     draw: async () => {
       await Promise.all([drawEffects(), drawFiles()]);
     },
-    request: () => ({ table: "statics", query: {}, python: "print(point.summary)\nprint(point.provenance)" }),
+    request: () => ({
+      asked: [{ table: "", isDocument: true }, { table: "plan", isDocument: true }, { table: "artifacts", isDocument: true }],
+      python: "summary, provenance = point.summary, point.provenance\nplan = point.plan()\nprint(summary, provenance, plan[\"effects\"], sep=\"\\n\")",
+    }),
   };
 }
 

@@ -49,6 +49,6 @@ export function energy(context) {
   return {
     element: h("div", {}, h("h2", {}, "By account"), h("figure", {}, bars, caption), h("h2", {}, "Over time"), h("figure", {}, curves)),
     draw: redraw,
-    request: () => ({ table: "energy", query: {}, python: "energy = point.energy().to_pandas()" }),
+    request: () => ({ asked: [{ table: "energy" }], python: "energy = point.energy().to_pandas()" }),
   };
 }

@@ -3,6 +3,7 @@
 import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
+import { pythonNode } from "./lines.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
@@ -331,10 +332,20 @@ export function motion(context) {
     element: nodes.length ? h("div", {}, controls, wrong, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),
     draw: nodes.length ? redraw : async () => {},
     request: () => {
-      const { from, to } = span();
-      const asked = selector();
-      const which = asked.node !== undefined ? `node=${asked.node}` : `depth=${asked.depth}, nearest=True`;
-      return { table: "orbit", query: { ...asked, from, to }, python: `plot.orbit(point, ${which}, time=(${from}, ${to}))\nplot.spectrum(point, ${which}, time=(${from}, ${to}), window="${weighting()}")` };
+      if (!nodes.length) return null;
+      const window = span();
+      const [whole, cut] = [pythonNode(selector()), pythonNode(selector(), window)];
+      const ofWindow = { ...selector(), ...window };
+      return {
+        asked: [
+          { table: "history", query: selector() },
+          { table: "orbit", query: ofWindow },
+          { table: "spectrum", query: { ...ofWindow, window: weighting() } },
+          { table: "statistics", query: ofWindow },
+          { table: "modes", query: { to_hz: 20 }, isDocument: true },
+        ],
+        python: `history = point.history(${whole}).to_pandas()\norbit = point.orbit(${cut}).to_pandas()\nspectrum = point.spectrum(${cut}, window="${weighting()}").to_pandas()\nstatistics = point.statistics(${cut}).to_pandas()\nmodes = point.modes(to_hz=20)["modes"]\nplot.orbit(point, ${cut})\nplot.spectrum(point, ${cut}, window="${weighting()}")`,
+      };
     },
   };
 }

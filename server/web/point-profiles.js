@@ -1,6 +1,7 @@
 // Quantities over depth, side by side with one depth cursor.
 
 import { fill, h } from "./dom.js";
+import { python } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, draw, inks, LINES } from "./plots.js";
 import { label, meaning, say, shown, title } from "./units.js";
@@ -138,8 +139,29 @@ export function profiles(context) {
   return {
     element: h("div", {}, ticks.element, h("figure", {}, place), reading),
     draw: redraw,
-    request: () => ({ table: "profile", query: { fields: ["measured_depth_top", "measured_depth_bottom", ...ticks.names().filter((name) => tableOf(name) === "profile")].join(",") }, python: `plot.profile(point, "${ticks.names()[0]}")` }),
+    request: () => {
+      const asked = profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
+      const drawn = ticks.names().find((name) => tableOf(name) === "profile");
+      return { asked, python: [...asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))), ...(drawn ? [`plot.profile(point, "${drawn}")`] : [])].join("\n") };
+    },
   };
+}
+
+/**
+ * The tables that have some quantities, each with these and the depths that they are over.
+ * @param {string[]} names
+ */
+export function profileTables(names) {
+  return [...new Set(names.map(tableOf))].map((table) => ({ table, fields: [...(table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"]), ...names.filter((name) => tableOf(name) === table)] }));
+}
+
+/**
+ * A line of Python that takes columns of a table of `point`.
+ * @param {string} table
+ * @param {string[]} columns
+ */
+export function pythonColumns(table, columns) {
+  return `${table} = point.${table}().to_pandas()[${python(columns)}]`;
 }
 
 /** @param {string} name */

@@ -2,6 +2,7 @@
 
 import { Problem } from "./api.js";
 import { choice, fill, h } from "./dom.js";
+import { pythonNode } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, logTicks, SCALE } from "./plots.js";
 import { say, shown, title, unit } from "./units.js";
@@ -63,36 +64,73 @@ export function spectrogram(context) {
       return;
     }
     if (mine !== generation) return;
-    const { windows, resolution, window_s, node, measured_depth, resolved_hz } = table.attributes;
-    const bins = table.columns.time.length / windows;
-    const frequency = table.columns.frequency.slice(0, bins);
-    const time = Array.from({ length: windows }, (_, index) => table.columns.time[index * bins]);
-    // As wide as the line that the window makes of a mean.
-    const isMean = frequency.map((/** @type {number} */ value) => Math.abs(value) < 2.5 * resolution);
-    const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) => (isMean[bin] ? Array(windows).fill(null) : time.map((_, index) => table.columns.amplitude[index * bins + bin])));
-    const most = rows.flat().reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.max(a, b ?? 0), 0) || 1;
-    const z = rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row).map((value) => (value === null || !isLog() ? value : Math.log10(Math.max(value, 1e-12)))));
-    const top = Number(shown("amplitude", [most])[0]);
-    const [least, largest] = isLog() ? [Math.log10(top * DEPTH), Math.log10(top)] : [0, top];
-    const { soft } = inks();
+    const { node, measured_depth } = table.attributes;
     place.setAttribute("aria-label", `Spectrogram of node ${node} at ${say("measured_depth", measured_depth)}`);
-    fill(caption, `Node ${node} at ${say("measured_depth", measured_depth)}: ${windows} windows of ${say("time", window_s)}, resolution ${say("frequency", resolution)}. Positive frequencies are forward whirl; the mean position about 0 is left out.`, resolved_hz && resolved_hz < Number(range()) ? ` Dotted: beyond it the time steps do not resolve, ${say("frequency", resolved_hz)}.` : "");
-    const limits = resolved_hz && resolved_hz < Number(range()) ? [resolved_hz, -resolved_hz] : [];
-    await draw(
-      place,
-      [{ type: "heatmap", x: time, y: frequency, z, zmin: least, zmax: largest, colorscale: SCALE, customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)), colorbar: { ...colourBar(title("amplitude")), ...(isLog() ? logTicks(least, largest) : {}) }, hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>` }],
-      { xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
-      context.signal,
-    );
+    fill(caption, describe(table, Number(range())));
+    await drawSpectrogram(place, table, { isLog: isLog(), range: Number(range()), most: largestOf(table) }, context.signal);
   }
 
   return {
     element: nodes.length ? h("div", { class: "panel" }, controls, wrong, h("figure", {}, place, caption)) : h("p", { class: "panel empty" }, "This point recorded no node."),
     draw: nodes.length ? redraw : async () => {},
     request: () => {
+      if (!nodes.length) return null;
       const { range_hz, window_s, ...which } = /** @type {any} */ (asks());
-      const node = which.node !== undefined ? `node=${which.node}` : `depth=${which.depth}, nearest=True`;
-      return { table: "spectrogram", query: asks(), python: `spectrogram = point.spectrogram(${node}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()` };
+      return { asked: [{ table: "spectrogram", query: asks() }], python: `spectrogram = point.spectrogram(${pythonNode(which)}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()` };
     },
   };
+}
+
+/**
+ * The lines of a spectrogram that lie about zero, as wide as the line that the window makes of a mean, are the mean position.
+ * @param {number} frequency
+ * @param {any} table
+ */
+function isMeanAt(frequency, table) {
+  return Math.abs(frequency) < 2.5 * table.attributes.resolution;
+}
+
+/**
+ * The highest amplitude without the mean position [m].
+ * @param {any} table
+ */
+export function largestOf(table) {
+  const { amplitude, frequency } = table.columns;
+  return amplitude.reduce((/** @type {number} */ most, /** @type {number} */ value, /** @type {number} */ row) => (isMeanAt(frequency[row], table) ? most : Math.max(most, value)), 0) || 1;
+}
+
+/**
+ * What a spectrogram is of.
+ * @param {any} table
+ * @param {number} range [Hz]
+ */
+export function describe(table, range) {
+  const { windows, resolution, window_s, node, measured_depth, resolved_hz } = table.attributes;
+  return `Node ${node} at ${say("measured_depth", measured_depth)}: ${windows} windows of ${say("time", window_s)}, resolution ${say("frequency", resolution)}. Positive frequencies are forward whirl; the mean position about 0 is left out.${resolved_hz && resolved_hz < range ? ` Dotted: beyond it the time steps do not resolve, ${say("frequency", resolved_hz)}.` : ""}`;
+}
+
+/**
+ * @param {HTMLElement} place
+ * @param {any} table
+ * @param {{isLog: boolean, range: number, most: number}} how `range` [Hz] is that of the frequencies, `most` [m] the end of the colours
+ * @param {AbortSignal} signal
+ */
+export async function drawSpectrogram(place, table, { isLog, range, most }, signal) {
+  const { windows, resolved_hz } = table.attributes;
+  const bins = table.columns.time.length / windows;
+  const frequency = table.columns.frequency.slice(0, bins);
+  const time = Array.from({ length: windows }, (_, index) => table.columns.time[index * bins]);
+  const isMean = frequency.map((/** @type {number} */ value) => isMeanAt(value, table));
+  const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) => (isMean[bin] ? Array(windows).fill(null) : time.map((_, index) => table.columns.amplitude[index * bins + bin])));
+  const z = rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row).map((value) => (value === null || !isLog ? value : Math.log10(Math.max(value, 1e-12)))));
+  const top = Number(shown("amplitude", [most])[0]);
+  const [least, largest] = isLog ? [Math.log10(top * DEPTH), Math.log10(top)] : [0, top];
+  const { soft } = inks();
+  const limits = resolved_hz && resolved_hz < range ? [resolved_hz, -resolved_hz] : [];
+  await draw(
+    place,
+    [{ type: "heatmap", x: time, y: frequency, z, zmin: least, zmax: largest, colorscale: SCALE, customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)), colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) }, hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>` }],
+    { xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
+    signal,
+  );
 }

@@ -271,7 +271,7 @@ export function string(context) {
     draw: redraw,
     request: () => {
       const { from, to } = recording.snapshots ? span() : { from: 0, to: duration };
-      return { table: "snapshots", query: { from, to, fields: "time,node,u,v,normal_force" }, python: `snapshots = point.snapshots(time=(${from}, ${to})).to_pandas()\nsnapshots.pivot(index="node", columns="time", values="normal_force")` };
+      return { asked: [{ table: "snapshots", query: { from, to, fields: "time,node,u,v,normal_force" } }], python: `snapshots = point.snapshots(time=(${from}, ${to})).to_pandas()\nsnapshots.pivot(index="node", columns="time", values="normal_force")` };
     },
   };
 }

@@ -3,7 +3,7 @@
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, SCALE } from "./plots.js";
-import { QUANTITIES, tableOf } from "./point-profiles.js";
+import { pythonColumns, QUANTITIES, tableOf } from "./point-profiles.js";
 import { label, say, shown, title, unit } from "./units.js";
 import { nodeFrames } from "./well-frames.js";
 
@@ -53,7 +53,14 @@ export function well(context) {
   return {
     element: h("div", {}, controls, h("figure", {}, place, caption)),
     draw: redraw,
-    request: () => ({ table: "statics", query: {}, python: `statics = point.statics().to_pandas()` }),
+    request: () => {
+      const [name, table] = [colour(), tableOf(colour())];
+      const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
+      const statics = [...space, ...(table === "statics" ? [name] : [])];
+      const depth = table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
+      const asked = [{ table: "statics", query: { fields: [...new Set(statics)].join(",") } }, ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }])];
+      return { asked, python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n") };
+    },
   };
 }
 

@@ -4,7 +4,7 @@ import { get, Problem } from "./api.js";
 import { Biases } from "./bias.js";
 import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
-import { lines, tableLines } from "./lines.js";
+import { lines, requestLines } from "./lines.js";
 import { about } from "./point-about.js";
 import { energy } from "./point-energy.js";
 import { motion } from "./point-motion.js";
@@ -29,8 +29,11 @@ import { say } from "./units.js";
  */
 
 /**
- * A view of a point, and the request behind what it shows.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, request: () => {table: string, query: Record<string, any>, python: string}}} PointPart
+ * A view of a point, and the requests behind what it shows; none where it shows nothing of the service's.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, request: () => PartRequest | null}} PointPart
+ *
+ * A table is a path from that of the point; that of the point itself is empty.
+ * @typedef {{asked: {table: string, query?: Record<string, any>, isDocument?: boolean, name?: string}[], python: string}} PartRequest
  */
 
 /** @type {[string, string, (context: PointContext) => PointPart][]} */
@@ -43,6 +46,15 @@ const PARTS = [
   ["energy", "Energy", energy],
   ["about", "Effects, accuracy, downloads", about],
 ];
+
+/**
+ * The requests of a part with their paths from `/v1`.
+ * @param {string} path of the point
+ * @param {PartRequest} request
+ */
+export function askedOf(path, { asked }) {
+  return asked.map(({ table, name, ...rest }) => ({ ...rest, path: table ? `${path}/${table}` : path, name: name ?? (table || "point") }));
+}
 
 /** How often a point that is not final yet is looked at. */
 const POLL_MS = 3000;
@@ -95,9 +107,10 @@ export async function show(main, route, signal) {
 
   const query = new URLSearchParams(route.query);
   const taken = lines(() => {
-    const { table, query: asks, python } = part.request();
+    const request = part.request();
+    if (!request) return {};
     const start = `from drillsweep import Client, plot\n\npoint = Client("${location.origin}").sweep("${id}").point(${ordinal})\n`;
-    return tableLines(`${path}/${table}`, asks, start + python);
+    return requestLines(askedOf(path, request), start + request.python);
   });
   /** @type {PointContext} */
   const context = {

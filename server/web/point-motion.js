@@ -16,6 +16,39 @@ const LEAST = 8;
 /** How long a window that is dragged must rest before the service is asked for it. */
 const REST_MS = 100;
 
+/** Statistics of a window, and what the page calls them. @type {[string, string][]} */
+export const STATISTICS = [
+  ["orbit_radius_rms", "Orbit size (rms about the mean)"],
+  ["orbit_mean_radius", "Mean radius"],
+  ["orbit_radius_deviation", "Deviation of the radius"],
+  ["orbit_largest_radius", "Largest radius"],
+  ["orbit_smallest_radius", "Smallest radius"],
+  ["orbit_offset", "Offset of the mean position"],
+];
+/** Part of a run within which the ends of two windows count as the same: the link rounds them. */
+const SAME = 1e-4;
+
+/**
+ * The window of a scenario's statistics, which verifying looks at: its own, or the last third of the run.
+ * @param {any} scenario
+ * @returns {{from: number, to: number}} [s]
+ */
+export function verifiedWindow({ recording, duration }) {
+  return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
+}
+
+/**
+ * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
+ * @param {import("./point.js").PointContext} context
+ * @param {{from: number, to: number}} window [s]
+ * @returns {(name: string) => string}
+ */
+export function biasOver({ point, bias }, { from, to }) {
+  const verified = verifiedWindow(point.scenario);
+  const isVerified = [from - verified.from, to - verified.to].every((apart) => Math.abs(apart) <= SAME * point.scenario.duration);
+  return isVerified ? bias : () => "";
+}
+
 /**
  * @param {import("./point.js").PointContext} context
  * @returns {import("./point.js").PointPart}
@@ -47,7 +80,7 @@ export function motion(context) {
     return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
   };
   const span = () => {
-    const usual = recording.orbit_window ?? { from: duration / 3, to: duration };
+    const usual = verifiedWindow(point.scenario);
     const from = Number(query.get("from") ?? usual.from);
     const to = Number(query.get("to") ?? usual.to);
     return from >= 0 && to > from ? { from, to: Math.min(to, duration) } : { from: usual.from, to: usual.to };
@@ -107,7 +140,7 @@ export function motion(context) {
     const last = Math.min(duration, Math.max(from, to));
     if ((last - first) * recording.rate_hz < LEAST) return void drawOrbit();
     context.keep({ from: String(Number(first.toFixed(4))), to: String(Number(last.toFixed(4))) });
-    drawControls();
+    fillWindow();
     void drawWindow();
   }
 
@@ -127,7 +160,7 @@ export function motion(context) {
       return;
     }
     if (mine !== generation) return;
-    fillWindow();
+    drawControls();
     await Promise.all([drawHistory(), drawWindow(), drawRotation(place().node)]);
   }
 
@@ -264,9 +297,8 @@ export function motion(context) {
   function drawStatistics() {
     const { from, to } = span();
     const { columns, attributes } = windowed.statistics;
-    // Verified are the statistics of the scenario's own window.
-    const isVerified = from === recording.orbit_window?.from && to === recording.orbit_window?.to;
-    showStatistics(from, to, (name) => say(name, columns[name][0]) + (isVerified ? context.bias(`${name}_${columns.node[0]}`) : ""), String(attributes.samples));
+    const bias = biasOver(context, span());
+    showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${columns.node[0]}`), String(attributes.samples));
   }
 
   /**
@@ -277,12 +309,7 @@ export function motion(context) {
   function showStatistics(from, to, value, samples) {
     const facts = [
       ["Window", `${say("time", from)} to ${say("time", to)}`],
-      ["Orbit size (rms about the mean)", value("orbit_radius_rms")],
-      ["Mean radius", value("orbit_mean_radius")],
-      ["Deviation of the radius", value("orbit_radius_deviation")],
-      ["Largest radius", value("orbit_largest_radius")],
-      ["Smallest radius", value("orbit_smallest_radius")],
-      ["Offset of the mean position", value("orbit_offset")],
+      ...STATISTICS.map(([name, text]) => [text, value(name)]),
       ["Clearance", say("clearance", place().clearance)],
       ["Samples", samples],
     ];

@@ -1,6 +1,7 @@
 // What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
 
 import { Problem } from "./api.js";
+import { drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { draw, inks } from "./plots.js";
 import { ledger } from "./point-energy.js";
@@ -34,6 +35,9 @@ const EXAGGERATION = 100;
  * @property {string} name
  * @property {string} table behind it
  * @property {boolean} [isWindowed] whether it is of a recorded node over a window
+ * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
+ * @property {boolean} [isTable] whether it is a table in place of a picture
+ * @property {boolean} [isDocument] whether the service answers with a document in place of a table
  * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
  */
 
@@ -41,11 +45,15 @@ const EXAGGERATION = 100;
 export const VIEWS = {
   profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
   orbit: { name: "Orbits", table: "orbit", isWindowed: true, draw: drawOrbits },
-  history: { name: "Histories", table: "orbit", isWindowed: true, draw: drawHistories },
-  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, draw: drawRotation },
+  history: { name: "Histories", table: "orbit", isWindowed: true, hasTime: true, draw: drawHistories },
+  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, hasTime: true, draw: drawRotation },
   spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, draw: drawSpectra },
+  statistics: { name: "Statistics", table: "statistics", isWindowed: true, isTable: true, draw: drawStatistics },
   well: { name: "Well", table: "statics", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
+  modes: { name: "Modes", table: "modes", isTable: true, isDocument: true, draw: drawModes },
+  effects: { name: "Effects", table: "plan", isTable: true, isDocument: true, draw: drawEffects },
+  cost: { name: "Cost", table: "", isTable: true, isDocument: true, draw: drawCost },
 };
 
 /**
@@ -85,7 +93,7 @@ export async function each({ points, lacking, signal }, read, part = "") {
 }
 
 /** @param {Comparison} comparison @param {Compared} point @param {number} node @param {number} depth [m] */
-function noteNode({ nodes }, point, node, depth) {
+export function noteNode({ nodes }, point, node, depth) {
   nodes.set(point.number, `point ${point.number} node ${node} at ${say("measured_depth", depth)}`);
 }
 
@@ -147,11 +155,11 @@ async function drawHistories(place, comparison) {
 }
 
 /**
- * An axis of time; with another window a zoom is taken back.
+ * An axis of time across which a window is dragged; with another window a zoom is taken back.
  * @param {Comparison} comparison
  */
 function timeLayout({ window }) {
-  return { shows: window, xaxis: { title: "time [s]" } };
+  return { shows: window, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]" } };
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */

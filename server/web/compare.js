@@ -1,10 +1,11 @@
 // Up to six points in one picture, of whatever a point has pictures of.
 
 import { get, Problem } from "./api.js";
+import { dragWindow } from "./brush.js";
 import { VIEWS } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
-import { lines, tableLines } from "./lines.js";
+import { lines, shell, tableLines } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, DASHES, LINES } from "./plots.js";
 import { quantityTicks } from "./point-profiles.js";
@@ -14,6 +15,8 @@ import { say } from "./units.js";
 
 /** How long typing must rest before sweeps are looked for. */
 const REST_MS = 200;
+/** Part of the shortest run below which a window that is dragged was a click. */
+const LEAST = 1e-3;
 /** Sweeps that are offered at once. */
 const OFFERED = 100;
 /** Depths that differ by less are one [m]. */
@@ -27,7 +30,7 @@ export async function show(main, route, signal) {
   const keys = comparedIn(query);
   rememberComparison(query);
   const view = Object.keys(VIEWS).find((name) => name === query.get("view")) ?? "profiles";
-  const { isWindowed } = VIEWS[view];
+  const { isWindowed, isTable, isDocument, hasTime } = VIEWS[view];
   const [listed, ...asked] = await Promise.all([get("/v1/sweeps", { limit: OFFERED }, signal), ...keys.map((key, order) => pointOf(key, order, signal))]);
   const { sweeps } = listed;
   const points = asked.flatMap(({ point }) => (point ? [point] : []));
@@ -77,7 +80,7 @@ export async function show(main, route, signal) {
   );
   offerSweeps(listed, "");
 
-  const place = canvas(VIEWS[view].name, view, "tall");
+  const place = isTable ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall");
   const controls = h("div", { class: "controls" });
   const lacking = h("ul", { class: "lacking", role: "status", "aria-label": "What is missing" });
   const caption = h("figcaption", {});
@@ -89,9 +92,10 @@ export async function show(main, route, signal) {
     return Number.isFinite(asked) ? asked : depths[0];
   };
   const node = () => ({ depth: depth(), nearest: true });
+  /** The end of the shortest run [s]. */
+  const shortest = () => Math.min(...points.map((point) => point.detail.scenario.duration));
   const window_ = () => {
-    const durations = points.map((point) => point.detail.scenario.duration);
-    const last = Math.min(...durations);
+    const last = shortest();
     const [from, to] = [Number(query.get("from") ?? last / 3), Math.min(last, Number(query.get("to") ?? last))];
     return from >= 0 && to > from ? { from, to } : { from: last / 3, to: last };
   };
@@ -125,6 +129,7 @@ export async function show(main, route, signal) {
       choice("Node nearest to", depths.map((entry) => [String(entry), say("measured_depth", entry)]), String(nearest), set("depth")),
       time("from", from),
       time("to", to),
+      h("button", { onclick: () => change({ from: "0", to: String(shortest()) }) }, "Whole run"),
       view === "orbit" && choice("Shows", [["motion", "the motion"], ["hole", "the whole hole"]], query.get("zoom") ?? "motion", set("zoom")),
       view === "spectrum" && choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], query.get("amplitude") ?? "linear", set("amplitude")),
       view === "history" && choice("Shows", [["up", "from the low side up"], ["across", "across the hole"], ["radius", "distance from the axis"]], query.get("direction") ?? "up", set("direction")),
@@ -133,6 +138,7 @@ export async function show(main, route, signal) {
   }
 
   let generation = 0;
+  let isDraggable = false;
 
   async function redraw() {
     const mine = ++generation;
@@ -153,9 +159,13 @@ export async function show(main, route, signal) {
     place.hidden = !isRecorded;
     if (isRecorded) await VIEWS[view].draw(place, comparison);
     if (mine !== generation || signal.aborted) return;
+    if (hasTime && isRecorded && !isDraggable) {
+      isDraggable = true;
+      dragWindow(place, () => {}, (range) => range && range[1] - range[0] > LEAST * shortest() && change({ from: range[0].toFixed(4), to: range[1].toFixed(4) }), signal);
+    }
     fill(lacking, comparison.lacking.map((sentence) => h("li", {}, sentence)));
     const shownNodes = [...comparison.nodes.entries()].sort(([a], [b]) => a - b).map(([, text]) => text);
-    fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`);
+    fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, hasTime && " Drag across the picture to choose a window; the other views follow.");
   }
 
   const { table: shownTable } = VIEWS[view];
@@ -170,13 +180,14 @@ export async function show(main, route, signal) {
 
   function pythonLines() {
     const window = `depth=${depth()}, nearest=True, time=(${window_().from}, ${window_().to})`;
+    if (isDocument) return shownTable ? `documents = [point.${shownTable}() for point in points]` : "documents = [point.provenance for point in points]";
     if (view === "profiles") return `plot.profile(points, "${ticks.names()[0]}")`;
     if (view === "orbit" || view === "spectrum") return `for point in points:\n    plot.${view}(point, ${window})`;
     return `tables = [point.${shownTable}(${isWindowed ? window : ""}) for point in points]`;
   }
   const taken = lines(() => ({
-    matlab: points.map(matlabOf).join("\n"),
-    curl: points.map((point) => tableLines(`${point.path}/${shownTable}`, asks()).curl).join("\n"),
+    matlab: isDocument ? undefined : points.map(matlabOf).join("\n"),
+    curl: points.map((point) => (isDocument ? `curl -s ${shell(location.origin + point.path + (shownTable && `/${shownTable}`))}` : tableLines(`${point.path}/${shownTable}`, asks()).curl)).join("\n"),
     python: `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n${pythonLines()}`,
   }));
   drawTabs();

@@ -34,7 +34,7 @@ export function about(context) {
   }
 
   return {
-    element: h("div", { class: "half" }, accuracyPart(context), costPart(point), effects, files, summaryPart(context), provenancePart(point)),
+    element: h("div", { class: "half" }, accuracyPart(context), factsPart("What it cost", costFacts(point)), effects, files, summaryPart(context), provenancePart(point)),
     draw: async () => {
       await Promise.all([drawEffects(), drawFiles()]);
     },
@@ -70,8 +70,12 @@ function accuracyPart({ point, bias }) {
   return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
 }
 
-/** @param {any} point */
-function costPart(point) {
+/**
+ * What a run took of time, and how it was solved.
+ * @param {any} point
+ * @returns {[string, string][]}
+ */
+export function costFacts(point) {
   const { provenance = {} } = point;
   /** @type {[string, string][]} */
   const facts = [];
@@ -85,7 +89,7 @@ function costPart(point) {
   add("Steps", provenance.steps);
   add("Steps from", provenance.shortest_step, (value) => `${duration(value)} to ${duration(provenance.longest_step ?? value)}`);
   add("Steps taken back", provenance.rejected_steps);
-  return factsPart("What it cost", facts);
+  return facts;
 }
 
 /** @param {import("./point.js").PointContext} context */

@@ -13,20 +13,24 @@ const SAMPLED = 50_000;
 
 /**
  * @param {import("./point.js").PointContext} context
- * @param {(time: number) => void} onTime where the reader points on the map
+ * @param {((time: number) => void) | null} onTime where the reader points on the map
+ * @param {{heading: string, key: string}} [named] where there are several
  */
-export function contactMap(context, onTime) {
-  const place = canvas("Contact force over depth and time", "contacts");
+export function contactMap(context, onTime, named) {
+  const place = canvas(`Contact force over depth and time${named ? `, point ${named.heading}` : ""}`, named?.key ?? "contacts");
   const caption = h("figcaption", {});
   return {
-    element: h("div", { class: "panel" }, h("h2", {}, "Contacts"), h("figure", {}, place, caption)),
-    /** @param {import("./snapshots.js").Frames} frames with the normal force @param {any} statics columns of the table */
-    async draw(frames, statics) {
+    element: h("div", { class: "panel" }, h("h2", {}, named?.heading ?? "Contacts"), h("figure", {}, place, caption)),
+    /**
+     * @param {import("./snapshots.js").Frames} frames with the normal force
+     * @param {any} statics columns of the table
+     * @param {number} [most] the force at the end of the scale of colours [N]
+     */
+    async draw(frames, statics, most = largestShown(frames.columns.normal_force)) {
       const every = Math.ceil(frames.count / COLUMNS);
       const { time, force } = largest(frames, every);
-      const most = largestShown(frames.columns.normal_force);
       const size = unit("normal_force").size;
-      caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND} Select a place to see the string at that time.`;
+      caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND}${onTime ? " Select a place to see the string at that time." : ""}`;
       const shape = await draw(
         place,
         [{ type: "heatmap", x: time, y: shown("measured_depth", statics.measured_depth), z: force.map((row) => row.map((value) => value / size)), zmin: 0, zmax: most / size, colorscale: SCALE, colorbar: colourBar(title("normal_force")), hovertemplate: `%{x:.2f} s, %{y:.1f} ${unit("measured_depth").symbol}: %{z:.4~g} ${unit("normal_force").symbol}<extra></extra>` }],
@@ -34,7 +38,7 @@ export function contactMap(context, onTime) {
         context.signal,
       );
       shape.removeAllListeners?.("plotly_click");
-      shape.on?.("plotly_click", (/** @type {any} */ event) => onTime(Number(event.points[0].x)));
+      if (onTime) shape.on?.("plotly_click", (/** @type {any} */ event) => onTime(Number(event.points[0].x)));
     },
   };
 }

@@ -1,35 +1,118 @@
-// Rotation speed and torque over time at both ends of the string, from the snapshots.
+// Rotation speed and torque over time at both ends of the string: from the snapshots, or else from the histories of the nodes at the ends.
 
+import { Problem } from "./api.js";
 import { h } from "./dom.js";
+import { python } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
-import { frames } from "./snapshots.js";
+import { frames, snapshotsOf } from "./snapshots.js";
 import { shown, title } from "./units.js";
 
 /** Nodes of all snapshots together from which the lines are taken. */
 const TAKEN = 300_000;
+/** Samples of a history in a picture. */
+const SHOWN = 4000;
+const QUANTITIES = ["rotation_speed", "torque"];
+
+/** What to record for these lines. */
+export const RECORD_ENDS = "Rotation speed and torque at the bit need snapshots (recording.snapshots), or the node at the bit among those that are recorded (recording.nodes).";
+
+/**
+ * One quantity at one end, in served units.
+ * @typedef {{end: "bit" | "top", node: number, quantity: string, time: number[], values: (number | null)[]}} EndLine
+ */
+
+/**
+ * Rotation speed and torque at bit and top, as far as they were recorded; where the bit is not, none.
+ * @param {import("./point.js").PointContext} context
+ * @param {{from: number, to: number}} window [s]
+ * @returns {Promise<{lines: EndLine[], source: "snapshots" | "history" | ""}>}
+ */
+export async function endsOf(context, window) {
+  const there = await snapshotsOf(context);
+  if (there?.names.includes("torque")) return { lines: await fromSnapshots(context, window, there.nodes), source: "snapshots" };
+  const lines = await fromHistory(context, window);
+  return { lines, source: lines.length ? "history" : "" };
+}
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @param {{from: number, to: number}} window
+ * @param {number} nodes
+ * @returns {Promise<EndLine[]>}
+ */
+async function fromSnapshots(context, window, nodes) {
+  const { count, first, interval, columns } = await frames(context, QUANTITIES, window, nodes, TAKEN);
+  const time = Array.from({ length: count }, (_, frame) => first + frame * interval);
+  return QUANTITIES.flatMap((quantity) => /** @type {["bit" | "top", number][]} */ ([["bit", nodes], ["top", 1]]).map(([end, node]) => ({ end, node, quantity, time, values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]) })));
+}
+
+/**
+ * @param {import("./point.js").PointContext} context
+ * @param {{from: number, to: number}} window
+ * @returns {Promise<EndLine[]>}
+ */
+async function fromHistory(context, window) {
+  try {
+    const [statics, recorded] = await Promise.all([context.table("statics", { fields: "node" }), context.table("statistics", { fields: "node" })]);
+    const [top, bit] = [statics.columns.node[0], statics.columns.node.at(-1)];
+    if (!recorded.columns.node.includes(bit)) return [];
+    const ends = /** @type {["bit" | "top", number][]} */ ([["bit", bit], ["top", top]]).filter(([, node]) => recorded.columns.node.includes(node));
+    const found = await Promise.all(ends.map(async ([end, node]) => {
+      const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
+      const { columns } = await context.table("history", { node, ...window, fields: ["time", ...names].join(","), max_points: SHOWN, decimation: "minmax" });
+      return QUANTITIES.map((quantity, index) => ({ end, node, quantity, time: columns.time, values: columns[names[index]] }));
+    }));
+    return found.flat();
+  } catch (error) {
+    // Without histories, or without torsion, there are none.
+    if (error instanceof Problem && error.status !== 401) return [];
+    throw error;
+  }
+}
+
+/**
+ * The requests behind lines from histories.
+ * @param {EndLine[]} lines
+ * @returns {import("./point.js").PartRequest}
+ */
+export function endsRequest(lines) {
+  const nodes = [...new Set(lines.map(({ node }) => node))];
+  const columns = (/** @type {number} */ node) => ["time", ...QUANTITIES.map((quantity) => `${quantity}_${node}`)];
+  return {
+    asked: nodes.map((node) => ({ table: "history", name: `history_${node}`, query: { node, fields: columns(node).join(",") } })),
+    python: nodes.map((node) => `history_${node} = point.history(node=${node}).to_pandas()[${python(columns(node))}]`).join("\n"),
+  };
+}
 
 /** @param {import("./point.js").PointContext} context */
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation");
+  const caption = h("figcaption", {});
   return {
-    element: h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, h("figcaption", {}, "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. At the bit the torque on bit is constant."))),
-    /** @param {{from: number, to: number}} window [s] @param {number} nodes */
-    async draw(window, nodes) {
-      const { count, first, interval, columns } = await frames(context, ["rotation_speed", "torque"], window, nodes, TAKEN);
-      const time = Array.from({ length: count }, (_, frame) => first + frame * interval);
-      const at = (/** @type {string} */ name, /** @type {number} */ node) => shown(name, Array.from({ length: count }, (_, frame) => columns[name][frame * nodes + node]));
-      const line = (/** @type {string} */ name, /** @type {number} */ node, /** @type {string} */ text, /** @type {any} */ more) => ({ type: "scattergl", mode: "lines", x: time, y: at(name, node), name: text, hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>", ...more });
+    element: h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption)),
+    /**
+     * Draws what there is.
+     * @param {{from: number, to: number}} window [s]
+     * @returns {Promise<EndLine[]>}
+     */
+    async draw(window) {
+      const { lines, source } = await endsOf(context, window);
+      if (!lines.length) return lines;
+      const has = (/** @type {string} */ end) => lines.some((line) => line.end === end);
+      const colours = { bit: { rotation_speed: LINES[0], torque: LINES[1] }, top: { rotation_speed: LINES[5], torque: LINES[3] } };
+      caption.textContent = `From the ${source === "snapshots" ? "snapshots" : "recorded history"}. ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}At the bit the torque on bit is constant.`;
       await draw(
         place,
-        [
-          line("rotation_speed", nodes - 1, "speed, bit", { line: { color: LINES[0], width: 1.2 } }),
-          line("rotation_speed", 0, "speed, top", { line: { color: LINES[5], width: 1.2 } }),
-          line("torque", nodes - 1, "torque, bit", { yaxis: "y2", line: { color: LINES[1], width: 1.2 } }),
-          line("torque", 0, "torque, top", { yaxis: "y2", line: { color: LINES[3], width: 1.2 } }),
-        ],
-        { showlegend: true, xaxis: { title: "time [s]", anchor: "y2" }, yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] }, yaxis2: { title: title("torque"), quantity: "torque", domain: [0, 0.46], anchor: "x" } },
+        lines.map(({ end, quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`, line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 }, hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>" })),
+        { showlegend: true, ...twoPanels() },
         context.signal,
       );
+      return lines;
     },
   };
+}
+
+/** Rotation speed above torque over one axis of time. */
+export function twoPanels() {
+  return { xaxis: { title: "time [s]", anchor: "y2" }, yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] }, yaxis2: { title: title("torque"), quantity: "torque", domain: [0, 0.46], anchor: "x" } };
 }

@@ -61,7 +61,7 @@ export function withoutSnapshots({ point, path }) {
   return h(
     "div",
     { class: "panel empty" },
-    h("p", {}, "This point recorded no snapshots of the whole string, so that its motion cannot be shown."),
+    h("p", {}, "This point recorded no snapshots of the whole string: its motion and the map of its contacts over depth and time need them."),
     h("p", {}, "Add to the changes of a request: ", h("code", {}, `"recording.snapshots": ${asked}`), "; on the command line: ", h("code", {}, `--set recording.snapshots='${asked}'`), "."),
     h("p", {}, h("a", { class: "button", href: link(["new"], { request: JSON.stringify({ name: `Snapshots of ${sweep.slice(-8)}, point ${point.ordinal}`, scenario, axes: {} }) }) }, "Compute this point with snapshots")),
   );

@@ -27,16 +27,43 @@ const DOT = 4.5;
  * @property {(node: number) => boolean} [isMarked] whether a node has a dot
  */
 
+/** From where the string is seen: angles [rad], how near, and the shift as a part of the picture's width and height. */
+const USUAL = { azimuth: 0.7, elevation: 0.35, size: 1, right: 0, down: 0 };
+/** Digits of these in the link. */
+const DIGITS = 4;
+
+/**
+ * @param {string} text of the link, as `sayView` makes it
+ * @returns {typeof USUAL}
+ */
+export function readView(text) {
+  const numbers = text.split(":").map(Number);
+  if (!text || numbers.length !== 5 || !numbers.every(Number.isFinite) || !(numbers[2] > 0)) return { ...USUAL };
+  const [azimuth, elevation, size, right, down] = numbers;
+  return { azimuth, elevation: Math.max(-Math.PI / 2, Math.min(Math.PI / 2, elevation)), size, right, down };
+}
+
+/**
+ * A view as the link holds it; empty of the usual one.
+ * @param {typeof USUAL} view
+ */
+export function sayView(view) {
+  const text = [view.azimuth, view.elevation, view.size, view.right, view.down].map((value) => Number(value.toFixed(DIGITS))).join(":");
+  return text === Object.values(USUAL).join(":") ? "" : text;
+}
+
 /**
  * A picture that is turned by dragging or the arrow keys, and brought nearer by the wheel or + and -.
  * @param {string} name
+ * @param {typeof USUAL} view from where the string is seen at first
+ * @param {(view: typeof USUAL) => void} onView told when the reader has turned it
  * @param {AbortSignal} signal
  */
-export function stringScene(name, signal) {
+export function stringScene(name, view, onView, signal) {
   const canvas = h("canvas", { class: "scene", role: "application", tabindex: "0", "aria-label": name, "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home" });
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const usual = { azimuth: 0.7, elevation: 0.35, size: 1, shift: [0, 0] };
-  const view = { ...usual, shift: [...usual.shift] };
+  const screen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  /** What draws at present. @type {import("./svg-pen.js").Pen} */
+  let pen = screen;
   /** @type {Scene | undefined} */
   let scene;
   let isDue = false;
@@ -65,15 +92,17 @@ export function stringScene(name, signal) {
     if (!held) return;
     const [x, y] = [event.clientX - held.x, event.clientY - held.y];
     held = { x: event.clientX, y: event.clientY };
-    if (event.shiftKey) view.shift = [view.shift[0] + x, view.shift[1] + y];
-    else turn(-x * 0.008, y * 0.008);
-    later();
+    if (event.shiftKey) {
+      view.right += x / canvas.clientWidth;
+      view.down += y / canvas.clientHeight;
+    } else turn(-x * 0.008, y * 0.008);
+    changed();
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = null));
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
     view.size *= event.deltaY < 0 ? NEARER : 1 / NEARER;
-    later();
+    changed();
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
     /** @type {Record<string, () => void>} */
@@ -84,13 +113,18 @@ export function stringScene(name, signal) {
       ArrowDown: () => turn(0, -TURN),
       "+": () => (view.size *= NEARER),
       "-": () => (view.size /= NEARER),
-      Home: () => Object.assign(view, usual, { shift: [...usual.shift] }),
+      Home: () => Object.assign(view, USUAL),
     };
     if (!keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
-    later();
+    changed();
   });
+
+  function changed() {
+    later();
+    onView(view);
+  }
 
   /** @param {number} azimuth @param {number} elevation */
   function turn(azimuth, elevation) {
@@ -106,15 +140,20 @@ export function stringScene(name, signal) {
       canvas.width = Math.round(width * scale);
       canvas.height = Math.round(height * scale);
     }
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
-    pen.clearRect(0, 0, width, height);
+    screen.setTransform(scale, 0, 0, scale, 0, 0);
+    screen.clearRect(0, 0, width, height);
+    drawAll(scene, width, height);
+    drawn += 1;
+    canvas.dataset.drawn = String(drawn);
+  }
+
+  /** @param {Scene} scene @param {number} width @param {number} height */
+  function drawAll(scene, width, height) {
     const project = projection(scene, width, height);
     drawHole(scene, project);
     if (scene.rest) drawLine(scene, scene.rest, project);
     drawString(scene, project);
     drawCompass(height);
-    drawn += 1;
-    canvas.dataset.drawn = String(drawn);
   }
 
   /**
@@ -141,7 +180,7 @@ export function stringScene(name, signal) {
     const [x0, y0] = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
     return (/** @type {Vector} */ place) => {
       const [x, y] = seen(place);
-      return [width / 2 + view.shift[0] + size * (x - x0), height / 2 + view.shift[1] + size * (y - y0)];
+      return [width * (0.5 + view.right) + size * (x - x0), height * (0.5 + view.down) + size * (y - y0)];
     };
   }
 
@@ -260,6 +299,18 @@ export function stringScene(name, signal) {
     },
     /** Draws at once, in the frame of a caller. */
     paint,
+    /** Draws anew, seen from elsewhere. */
+    turned: later,
+    /**
+     * Draws what is shown with another pen, as a file has it.
+     * @param {import("./svg-pen.js").Pen} other
+     */
+    drawWith(other) {
+      if (!scene) return;
+      pen = other;
+      drawAll(scene, canvas.clientWidth, canvas.clientHeight);
+      pen = screen;
+    },
   };
 }
 

@@ -1,0 +1,280 @@
+"""A point and points compared in a real browser: lines that make a view again, biases, the keyboard, saved pictures."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import parse_qs
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from drillsweep import Client, Sweep
+from service import SHORT, Service
+from test_page import MINUS, Opens, browser, drawn, opened, troubles, until
+from test_page_motion import clock, pixels, recorded, scene, trace
+from test_tokens import make_token
+
+__all__ = ["browser", "opened", "recorded", "troubles"]
+
+
+@pytest.fixture(scope="module")
+def ends(client: Client) -> Sweep:
+    """A point whose recorded nodes are those at the top and at the bit."""
+    changes = SHORT | {"recording.nodes": [{"node": 1}, {"node": 297}]}
+    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="ends").wait(timeout=120.0)
+
+
+def focused(page: Page) -> str:
+    """The name of what has the keyboard's focus."""
+    read = "() => { const at = document.activeElement; return at.getAttribute('aria-label') ?? at.textContent; }"
+    return str(page.evaluate(read))
+
+
+def test_the_keyboards_focus_stays_where_controls_are_made_anew(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion")
+    drawn(page, "Orbit of node")
+    page.get_by_label("From [s]").focus()
+    page.keyboard.press("Control+A")
+    page.keyboard.type("0.2")
+    page.keyboard.press("Enter")
+    until(page, lambda: "from=0.2" in page.url)
+    assert focused(page) == "From [s]"
+    page.keyboard.press("Tab")
+    assert focused(page) == "To [s]"
+    page.keyboard.press("Control+A")
+    page.keyboard.type("0.4")
+    page.keyboard.press("Tab")
+    until(page, lambda: "to=0.4" in page.url)
+    assert focused(page) == "Orbit shows"
+    page.get_by_label("Node", exact=True).focus()
+    page.keyboard.press("ArrowDown")
+    until(page, lambda: "node=1" in page.url)
+    drawn(page, "Orbit of node 49")
+    assert focused(page) == "Node"
+    units = page.get_by_role("button", name="Units: SI. Switch")
+    units.focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="Units: field. Switch")).to_be_focused()
+    page = opened(f"#/sweeps/{sweep.id}?view=map")
+    drawn(page, "over flow rate")
+    colour = page.get_by_label("Colour", exact=True)
+    before = colour.input_value()
+    colour.focus()
+    page.keyboard.press("ArrowDown")
+    until(page, lambda: colour.input_value() != before)
+    until(page, lambda: f"colour={colour.input_value()}" in page.url)
+    expect(colour).to_be_focused()
+
+
+def shown_lines(page: Page) -> dict[str, str]:
+    """The lines that made a view, by language."""
+    details = page.locator("details.lines")
+    if details.get_attribute("open") is None:
+        details.locator("summary").click()
+    expect(details.locator("pre").first).to_be_visible()
+    return dict(zip(details.locator("h2").all_text_contents(), details.locator("pre").all_text_contents(), strict=True))
+
+
+def run_curl(lines: str, directory: Path, token: str = "") -> dict[str, list[str]]:
+    """The columns of each answer of the lines, run by a shell; those of a document are its keys."""
+    directory.mkdir()
+    environment = {**os.environ, "DRILLSWEEP_TOKEN": token}
+    command = ["sh", "-e", "-c", lines]
+    result = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, f"{lines}\n{result.stderr}"
+    answers = {path.stem: path.read_text() for path in directory.iterdir()} or {"": result.stdout}
+    return {name: columns_of(text) for name, text in answers.items()}
+
+
+def columns_of(text: str) -> list[str]:
+    if text.startswith("{"):
+        return list(json.loads(text))
+    rows = list(csv.reader(io.StringIO("".join(line for line in text.splitlines(True) if not line.startswith("#")))))
+    assert len(rows) > 1, text
+    return rows[0]
+
+
+def run_python(lines: str, token: str = "") -> dict[str, list[str]]:
+    """The columns of each table that the lines make, in a process of their own."""
+    tell = (
+        "\nimport json, pandas"
+        "\nfound = {name: value for name, value in globals().items()}"
+        "\nfor name, value in list(found.items()):"
+        "\n    if isinstance(value, list): found |= {f'{name}[{at}]': one for at, one in enumerate(value)}"
+        "\nprint('\\n' + json.dumps({name: [str(column) for column in value.columns]"
+        " for name, value in found.items() if isinstance(value, pandas.DataFrame)}))"
+    )
+    environment = {**os.environ, "MPLBACKEND": "Agg", "DRILLSWEEP_TOKEN": token}
+    command = [sys.executable, "-c", lines + tell]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, f"{lines}\n{result.stderr}"
+    return dict(json.loads(result.stdout.splitlines()[-1]))
+
+
+PROFILE = ["measured_depth_top", "measured_depth_bottom"]
+ORBIT = ["time", "u", "v", "radius"]
+SPACE = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"]
+STATISTICS = ["node", "measured_depth", "orbit_radius_rms"]
+LINES_OF_A_POINT = {
+    "profiles": {"profile": [*PROFILE, "friction_coefficient"], "contacts": ["measured_depth", "largest_normal_force"]},
+    "profiles&profiles=largest_normal_force,stick_time": {
+        "contacts": ["measured_depth", "largest_normal_force", "stick_time"]
+    },
+    "motion&node=1&from=0.2&to=0.4": {
+        "history": ["time", "u_49", "rotation_speed_49", "torque_49"],
+        "orbit": ORBIT,
+        "spectrum": ["frequency", "amplitude"],
+        "statistics": STATISTICS,
+    },
+    "spectrogram&node=1&range=50": {"spectrogram": ["time", "frequency", "amplitude"]},
+    "string": {"snapshots": ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"]},
+    "well": {"statics": [*SPACE, "normal_force"]},
+    "well&colour=friction_coefficient": {"statics": SPACE, "profile": [*PROFILE, "friction_coefficient"]},
+    "energy": {"energy": ["time", "kinetic", "stored", "residual"]},
+}
+"""By view of a point: the tables that its pictures are made of, with columns that they show."""
+
+
+def assert_lines_run(page: Page, expected: dict[str, list[str]], directory: Path, token: str = "") -> None:
+    lines = shown_lines(page)
+    found = run_curl(lines["curl"], directory, token)
+    for name, columns in expected.items():
+        assert set(columns) <= set(found[name if len(found) > 1 else ""]), (name, found)
+    tables = run_python(lines["Python"], token)
+    for name, columns in expected.items():
+        assert set(columns) <= set(tables[name]), (name, tables)
+    for name in expected:
+        assert re.search(rf"^{re.escape(name) if len(found) > 1 else 'table'} = webread", lines["MATLAB"], re.MULTILINE)
+
+
+@pytest.mark.parametrize("view", LINES_OF_A_POINT)
+def test_the_lines_of_a_view_read_what_it_shows(opened: Opens, recorded: Sweep, view: str, tmp_path: Path) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view={view}")
+    drawn(page, ".")
+    expected = {name if name != "point" else "": columns for name, columns in LINES_OF_A_POINT[view].items()}
+    if len(expected) == 1 and "motion" not in view:
+        (name,) = expected
+        lines = shown_lines(page)
+        assert set(expected[name]) <= set(run_curl(lines["curl"], tmp_path / "curl")[""])
+        assert set(expected[name]) <= set(run_python(lines["Python"])[name])
+    else:
+        assert_lines_run(page, expected, tmp_path / "curl")
+
+
+def test_the_lines_of_effects_and_downloads_read_them(opened: Opens, sweep: Sweep, tmp_path: Path) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=about")
+    lines = shown_lines(page)
+    found = run_curl(lines["curl"], tmp_path / "curl")
+    assert {"summary", "provenance"} <= set(found["point"])
+    assert "effects" in found["plan"]
+    assert "artifacts" in found["artifacts"]
+    run_python(lines["Python"])
+
+
+def test_lines_carry_the_token_where_one_is_needed(opened: Opens, troubles: list[str], tmp_path: Path) -> None:
+    token = make_token(tmp_path, "submit")
+    service = Service("up", "--workers", "1", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    try:
+        with Client(service.server, token=token) as client:
+            sweep = client.run("paper-200m", set=SHORT).wait(timeout=120.0)
+        page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy", service.server)
+        page.get_by_label("Token").fill(token)
+        page.get_by_role("dialog").get_by_role("button", name="Log in").click()
+        drawn(page, "Energy by account")
+        lines = shown_lines(page)
+        assert "kinetic" in run_curl(lines["curl"], tmp_path / "curl", token)[""]
+        assert "kinetic" in run_python(lines["Python"], token)["energy"]
+        assert 'HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]' in lines["MATLAB"]
+        page.close()
+    finally:
+        service.stop()
+    troubles[:] = [text for text in troubles if "status of 401" not in text]
+
+
+def said(bias: float) -> str:
+    """A relative bias as the page writes it."""
+    sign = "+" if bias > 0 else MINUS
+    return "below 0.01 %" if abs(bias) < 1e-4 else f"{sign}{float(f'{abs(100 * bias):.2g}'):g} %"
+
+
+def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Opens, client: Client) -> None:
+    changes = SHORT | {"recording.orbit_window": None}
+    verified = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, verify=1).wait(timeout=180.0)
+    bias = float(verified.verification()["bias_orbit_radius_rms_10"][0])
+    page = opened(f"#/sweeps/{verified.id}/points/1?view=motion")
+    size = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    expect(size).to_contain_text(f"(bias {said(bias)})")
+    # It is the last third of the run, as that of the summary.
+    summary = verified.point(1).summary
+    assert summary is not None
+    value = float(str(size.text_content()).partition(" ")[0])
+    assert value == pytest.approx(1e3 * summary["orbit_radius_rms_10"], rel=1e-3)
+    page.get_by_role("button", name="Whole run").click()
+    expect(size).not_to_contain_text("bias")
+
+
+def test_the_link_holds_the_time_and_the_view_of_the_string(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&exaggerate=300")
+    picture = scene(page)
+    drawn(page, "Rotation speed and torque")
+    page.get_by_label("Time", exact=True).fill("0.25")
+    picture.focus()
+    for key in ("ArrowLeft", "ArrowUp", "ArrowUp", "+"):
+        page.keyboard.press(key)
+    until(page, lambda: {"time", "turn"} <= set(parse_qs(page.url.partition("?")[2])))
+    expected = pixels(picture)
+    other = opened(f"#{page.url.partition('#')[2]}")
+    again = scene(other)
+    drawn(other, "Rotation speed and torque")
+    until(other, lambda: pixels(again) == expected)
+    assert clock(other) == clock(page) == pytest.approx(0.25)
+    # The usual view is no part of the link.
+    page.keyboard.press("Home")
+    until(page, lambda: "turn=" not in page.url)
+    assert pixels(picture) != expected
+
+
+def test_the_string_is_saved_as_it_is_shown(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&colour=torque&time=0.2")
+    picture = scene(page)
+    drawn(page, "Rotation speed and torque")
+    saved = {}
+    for format in ("PNG", "SVG"):
+        with page.expect_download() as download:
+            page.get_by_role("button", name=f"Save the string as {format}").click()
+        assert download.value.suggested_filename == f"string-in-motion-0.20-s.{format.lower()}"
+        saved[format] = download.value.path().read_bytes()
+    assert saved["PNG"].startswith(b"\x89PNG\r\n")
+    width = int.from_bytes(saved["PNG"][16:20], "big")
+    assert width == 2 * int(picture.evaluate("canvas => canvas.clientWidth"))
+    drawing = saved["SVG"].decode()
+    assert drawing.startswith("<svg")
+    assert "torque [kN·m]" in drawing
+    assert "0.20 s" in drawing
+    # A stroke for each element of the string, whose colours differ.
+    assert len(set(re.findall(r'stroke="(rgb[^"]+)"', drawing))) > 10
+
+
+def test_without_snapshots_rotation_is_drawn_from_the_history_of_the_bit(
+    opened: Opens, ends: Sweep, sweep: Sweep, tmp_path: Path
+) -> None:
+    page = opened(f"#/sweeps/{ends.id}/points/1?view=string")
+    picture = drawn(page, "Rotation speed and torque at bit and top")
+    expect(page.get_by_text(re.compile("its motion and the map of its contacts .* need them"))).to_be_visible()
+    expect(page.get_by_text(re.compile("^From the recorded history"))).to_be_visible()
+    history = ends.point(1).history(node=297)
+    shown = [trace(picture, number)["y"] for number in range(4)]
+    assert shown[0] == pytest.approx(list(history["rotation_speed_297"]))
+    assert shown[1] == pytest.approx([force / 1e3 for force in history["torque_297"]])
+    expected = {f"history_{node}": ["time", f"rotation_speed_{node}", f"torque_{node}"] for node in (1, 297)}
+    assert_lines_run(page, expected, tmp_path / "curl")
+    # Where neither was recorded, the page says what to record.
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=string")
+    expect(page.get_by_text("or the node at the bit among those that are recorded (recording.nodes)")).to_be_visible()

@@ -1,0 +1,108 @@
+// What points are compared by in numbers and words: a row a fact, a column a point.
+
+import { get } from "./api.js";
+import { Biases } from "./bias.js";
+import { each, noteNode } from "./compare-views.js";
+import { fill, h } from "./dom.js";
+import { costFacts } from "./point-about.js";
+import { label, say } from "./units.js";
+
+/** @typedef {import("./compare-views.js").Comparison} Comparison */
+/** @typedef {import("./compare-views.js").Compared} Compared */
+
+/** Statistics of a window, as the service calls them. */
+const STATISTICS = ["orbit_radius_rms", "orbit_mean_radius", "orbit_radius_deviation", "orbit_largest_radius", "orbit_smallest_radius", "orbit_offset", "peak_to_peak_u", "peak_to_peak_v"];
+/** Modes are looked for up to this frequency [Hz]. */
+const MODES_HZ = 20;
+
+/**
+ * @param {HTMLElement} place
+ * @param {string} name of the table
+ * @param {Compared[]} points
+ * @param {[string, (string | HTMLElement | null)[]][]} rows what each is of, and its cells
+ */
+function drawTable(place, name, points, rows) {
+  const heads = points.map((point) => h("th", { scope: "col" }, h("span", { style: `color:${point.colour}`, "aria-hidden": "true" }, "━ "), point.name));
+  const body = rows.map(([text, cells]) => h("tr", {}, h("th", { scope: "row" }, text), cells.map((cell) => h("td", {}, cell ?? "–"))));
+  fill(place, points.length > 0 && h("table", { "aria-label": name }, h("thead", {}, h("tr", {}, h("td", {}), heads)), h("tbody", {}, body)));
+}
+
+/**
+ * Rows of facts that have a name each, in the order in which points bring them.
+ * @template T
+ * @param {[Compared, [string, T][]][]} found
+ * @returns {[string, (T | null)[]][]}
+ */
+function rowsOf(found) {
+  const names = [...new Set(found.flatMap(([, facts]) => facts.map(([name]) => name)))];
+  const maps = found.map(([, facts]) => new Map(facts));
+  return names.map((name) => [name, maps.map((facts) => facts.get(name) ?? null)]);
+}
+
+/** Statistics of the orbit over the window, with the bias of those that verifying looks at. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawStatistics(place, comparison) {
+  const { signal, window } = comparison;
+  /** @type {Map<string, Promise<Biases>>} */
+  const biases = new Map();
+  const biasesOf = (/** @type {string} */ id) => {
+    const known = biases.get(id) ?? loadBiases(id, signal);
+    biases.set(id, known);
+    return known;
+  };
+  const found = await each(comparison, async (point) => {
+    const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
+    const [node] = columns.node;
+    noteNode(comparison, point, node, columns.measured_depth[0]);
+    const beside = isVerified(point.detail.scenario, window) ? (/** @type {string} */ name) => bias.beside(`${name}_${node}`, point.ordinal) : () => "";
+    /** @type {[string, string][]} */
+    const facts = STATISTICS.filter((name) => columns[name]).map((name) => [label(name), say(name, columns[name][0]) + beside(name)]);
+    return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);
+  });
+  drawTable(place, "Statistics", found.map(([point]) => point), rowsOf(found));
+}
+
+/**
+ * @param {string} id of a sweep
+ * @param {AbortSignal} signal
+ */
+async function loadBiases(id, signal) {
+  const biases = new Biases();
+  await biases.load(await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal), signal);
+  return biases;
+}
+
+/**
+ * Whether a window is the one whose statistics verifying looks at: the scenario's own, or else the last third of the run.
+ * @param {any} scenario
+ * @param {{from: number, to: number}} window [s]
+ */
+function isVerified({ recording, duration }, { from, to }) {
+  const usual = recording.orbit_window ?? { from: (2 * duration) / 3, to: duration };
+  return Math.abs(from - usual.from) <= 1e-4 * duration && Math.abs(to - usual.to) <= 1e-4 * duration;
+}
+
+/** Which effects take part, and why. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawEffects(place, comparison) {
+  const found = await each(comparison, async (point) => {
+    const plan = await get(`${point.path}/plan`, {}, comparison.signal);
+    return plan.effects.map((/** @type {any} */ effect) => [effect.effect.replaceAll("_", " "), h("span", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off"), h("span", { class: "small soft" }, ` ${effect.reason}`))]);
+  });
+  drawTable(place, "Effects", found.map(([point]) => point), rowsOf(found));
+}
+
+/** Modes about the equilibrium, from the lowest. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawModes(place, comparison) {
+  const found = await each(comparison, async (point) => {
+    const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.signal);
+    return modes
+      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.frequency_hz - b.frequency_hz)
+      .map((/** @type {any} */ mode, /** @type {number} */ index) => [String(index + 1), `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`]);
+  });
+  drawTable(place, "Modes", found.map(([point]) => point), rowsOf(found));
+}
+
+/** What the runs cost. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawCost(place, comparison) {
+  const found = await each(comparison, async (point) => costFacts(point.detail));
+  drawTable(place, "Cost", found.map(([point]) => point), rowsOf(found));
+}

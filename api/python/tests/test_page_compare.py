@@ -154,9 +154,10 @@ def test_a_point_is_added_to_the_comparison_that_was_opened_last(opened: Opens, 
 
 def cells(page: Page, name: str, row: str) -> list[str]:
     """What a table of a comparison says in a row, by point."""
-    found = page.get_by_role("table", name=name, exact=True).get_by_role("row").filter(has_text=row)
-    expect(found.first).to_be_visible(timeout=30_000)
-    return found.first.get_by_role("cell").all_text_contents()
+    head = page.get_by_role("rowheader", name=row, exact=True)
+    found = page.get_by_role("table", name=name, exact=True).get_by_role("row").filter(has=head)
+    expect(found).to_be_visible(timeout=30_000)
+    return found.get_by_role("cell").all_text_contents()
 
 
 def test_statistics_effects_modes_and_cost_are_compared_in_tables(
@@ -173,10 +174,11 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
     shown = cells(page, "Modes", "1")
     assert [float(text.split(" Hz")[0]) for text in (shown[0], shown[-1])] == pytest.approx(lowest, rel=1e-3)
     page.get_by_role("link", name="Effects", exact=True).click()
-    effects = [{effect["effect"]: effect["active"] for effect in point.plan()["effects"]} for point in has]
-    friction = cells(page, "Effects", "wall friction" if "wall_friction" in effects[0] else next(iter(effects[0])).replace("_", " "))
-    name = "wall_friction" if "wall_friction" in effects[0] else next(iter(effects[0]))
-    assert friction[0].startswith("on" if effects[0][name] else "off")
+    plans = [{effect["effect"]: effect for effect in point.plan()["effects"]} for point in has]
+    for name in plans[0]:
+        shown = cells(page, "Effects", name.replace("_", " "))
+        said = [f"{'on' if plan[name]['active'] else 'off'} {plan[name]['reason']}" for plan in plans]
+        assert [shown[0], shown[-1]] == said
     page.get_by_role("link", name="Cost", exact=True).click()
     assert cells(page, "Cost", "Elements")[0] == str((has[0].provenance or {})["elements"])
     # The browser writes of every answer that refuses.
@@ -185,7 +187,9 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
 
 def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=history&from=0&to=0.5")
-    box = drawn(page, "Histories").locator(".nsewdrag").first.bounding_box()
+    picture = drawn(page, "Histories").locator(".nsewdrag").first
+    picture.scroll_into_view_if_needed()
+    box = picture.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()

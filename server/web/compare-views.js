@@ -1,6 +1,7 @@
 // What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
 
 import { Problem } from "./api.js";
+import { drawBits, drawContactMaps, drawSpectrograms, drawStrings } from "./compare-many.js";
 import { drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { draw, inks } from "./plots.js";
@@ -24,6 +25,7 @@ const EXAGGERATION = 100;
  * @property {string[]} profiles chosen quantities over depth
  * @property {Record<string, any>} node asks each point for its recorded node that is nearest to the chosen depth
  * @property {{from: number, to: number}} window [s]
+ * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
  * @property {string[]} lacking sentences about what points lack, which a view adds to
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
@@ -34,9 +36,10 @@ const EXAGGERATION = 100;
  * @typedef {object} CompareView
  * @property {string} name
  * @property {string} table behind it
- * @property {boolean} [isWindowed] whether it is of a recorded node over a window
+ * @property {boolean} [isWindowed] whether it is of a window
+ * @property {boolean} [isOfNode] whether it is of a recorded node
  * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
- * @property {boolean} [isTable] whether it is a table in place of a picture
+ * @property {"table" | "several"} [kind] what it is where it is not one picture
  * @property {boolean} [isDocument] whether the service answers with a document in place of a table
  * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
  */
@@ -44,16 +47,20 @@ const EXAGGERATION = 100;
 /** @type {Record<string, CompareView>} */
 export const VIEWS = {
   profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
-  orbit: { name: "Orbits", table: "orbit", isWindowed: true, draw: drawOrbits },
-  history: { name: "Histories", table: "orbit", isWindowed: true, hasTime: true, draw: drawHistories },
-  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, hasTime: true, draw: drawRotation },
-  spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, draw: drawSpectra },
-  statistics: { name: "Statistics", table: "statistics", isWindowed: true, isTable: true, draw: drawStatistics },
+  orbit: { name: "Orbits", table: "orbit", isWindowed: true, isOfNode: true, draw: drawOrbits },
+  history: { name: "Histories", table: "orbit", isWindowed: true, isOfNode: true, hasTime: true, draw: drawHistories },
+  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, isOfNode: true, hasTime: true, draw: drawRotation },
+  spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, isOfNode: true, draw: drawSpectra },
+  statistics: { name: "Statistics", table: "statistics", isWindowed: true, isOfNode: true, kind: "table", draw: drawStatistics },
+  spectrogram: { name: "Spectrograms", table: "spectrogram", isWindowed: true, isOfNode: true, kind: "several", draw: drawSpectrograms },
+  bit: { name: "Rotation at the bit", table: "history", isWindowed: true, hasTime: true, draw: drawBits },
+  string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
+  contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
   well: { name: "Well", table: "statics", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
-  modes: { name: "Modes", table: "modes", isTable: true, isDocument: true, draw: drawModes },
-  effects: { name: "Effects", table: "plan", isTable: true, isDocument: true, draw: drawEffects },
-  cost: { name: "Cost", table: "", isTable: true, isDocument: true, draw: drawCost },
+  modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
+  effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },
+  cost: { name: "Cost", table: "", kind: "table", isDocument: true, draw: drawCost },
 };
 
 /**

@@ -2,13 +2,14 @@
 
 import { get, Problem } from "./api.js";
 import { dragWindow } from "./brush.js";
+import { RANGES, rangeOf } from "./compare-many.js";
 import { VIEWS } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
-import { lines, shell, tableLines } from "./lines.js";
+import { lines, python, pythonNode, requestLines } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, DASHES, LINES } from "./plots.js";
-import { quantityTicks } from "./point-profiles.js";
+import { profileTables, quantityTicks } from "./point-profiles.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
 import { say } from "./units.js";
@@ -30,7 +31,7 @@ export async function show(main, route, signal) {
   const keys = comparedIn(query);
   rememberComparison(query);
   const view = Object.keys(VIEWS).find((name) => name === query.get("view")) ?? "profiles";
-  const { isWindowed, isTable, isDocument, hasTime } = VIEWS[view];
+  const { isWindowed, isOfNode, kind, isDocument, hasTime } = VIEWS[view];
   const [listed, ...asked] = await Promise.all([get("/v1/sweeps", { limit: OFFERED }, signal), ...keys.map((key, order) => pointOf(key, order, signal))]);
   const { sweeps } = listed;
   const points = asked.flatMap(({ point }) => (point ? [point] : []));
@@ -80,13 +81,13 @@ export async function show(main, route, signal) {
   );
   offerSweeps(listed, "");
 
-  const place = isTable ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall");
+  const place = kind === "several" ? h("div", {}) : kind === "table" ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall");
   const controls = h("div", { class: "controls" });
   const lacking = h("ul", { class: "lacking", role: "status", "aria-label": "What is missing" });
   const caption = h("figcaption", {});
   const tabs = h("nav", { class: "tabs", "aria-label": "What is compared" });
   const ticks = quantityTicks(query.get("profiles") ?? "friction_coefficient,eccentricity,effective_tension,largest_normal_force", (names) => change({ profiles: names.join(",") }));
-  const depths = isWindowed ? await recordedDepths(points, signal) : [];
+  const depths = isOfNode ? await recordedDepths(points, signal) : [];
   const depth = () => {
     const asked = Number(query.get("depth") ?? depths[Number(query.get("node") ?? 0)] ?? depths[0]);
     return Number.isFinite(asked) ? asked : depths[0];
@@ -126,12 +127,14 @@ export async function show(main, route, signal) {
     const nearest = depths.reduce((best, entry) => (Math.abs(entry - depth()) < Math.abs(best - depth()) ? entry : best), depths[0]);
     fill(
       controls,
-      choice("Node nearest to", depths.map((entry) => [String(entry), say("measured_depth", entry)]), String(nearest), set("depth")),
+      isOfNode && choice("Node nearest to", depths.map((entry) => [String(entry), say("measured_depth", entry)]), String(nearest), set("depth")),
       time("from", from),
       time("to", to),
       h("button", { onclick: () => change({ from: "0", to: String(shortest()) }) }, "Whole run"),
       view === "orbit" && choice("Shows", [["motion", "the motion"], ["hole", "the whole hole"]], query.get("zoom") ?? "motion", set("zoom")),
       view === "spectrum" && choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], query.get("amplitude") ?? "linear", set("amplitude")),
+      view === "spectrogram" && choice("Frequencies up to", RANGES.map((text) => [text, `${text} Hz`]), String(rangeOf({ query })), set("range")),
+      view === "spectrogram" && choice("Amplitude", [["log", "logarithmic"], ["linear", "linear"]], query.get("amplitude") === "linear" ? "linear" : "log", set("amplitude")),
       view === "history" && choice("Shows", [["up", "from the low side up"], ["across", "across the hole"], ["radius", "distance from the axis"]], query.get("direction") ?? "up", set("direction")),
       view === "rotation" && choice("Shows", [["rotation_speed", "rotation speed"], ["torque", "torque"]], query.get("quantity") ?? "rotation_speed", set("quantity")),
     );
@@ -149,12 +152,21 @@ export async function show(main, route, signal) {
       profiles: ticks.names(),
       node: node(),
       window: window_(),
+      keep: (choices) => {
+        for (const [name, value] of Object.entries(choices)) {
+          if (value === null) query.delete(name);
+          else query.set(name, value);
+        }
+        keep(choices);
+        rememberComparison(currentRoute().query);
+        drawTabs();
+      },
       table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, signal),
       lacking: [],
       nodes: new Map(),
       signal,
     };
-    const isRecorded = !isWindowed || depths.length > 0;
+    const isRecorded = !isOfNode || depths.length > 0;
     if (!isRecorded) comparison.lacking.push("No point here has a recorded node.");
     place.hidden = !isRecorded;
     if (isRecorded) await VIEWS[view].draw(place, comparison);
@@ -169,27 +181,28 @@ export async function show(main, route, signal) {
   }
 
   const { table: shownTable } = VIEWS[view];
-  const asks = () => (isWindowed ? { depth: depth(), nearest: "true", ...window_() } : {});
 
-  /** @param {Compared} point @param {number} order */
-  function matlabOf(point, order) {
-    const [options, read] = (tableLines(`${point.path}/${shownTable}`, asks()).matlab ?? "").split("\n");
-    const own = read.replace("table =", `point${order + 1} =`);
-    return order === 0 ? `${options}\n${own}` : own;
+  /** The requests behind the view for one point: tables with what is asked of each. @param {Compared} point @returns {{table: string, query: Record<string, any>}[]} */
+  function requestsOf(point) {
+    if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
+    // At the bit the snapshots come before the history.
+    const table = view === "bit" && point.detail.scenario.recording.snapshots ? "snapshots" : shownTable;
+    return [{ table, query: { ...(isOfNode ? { depth: depth(), nearest: true } : {}), ...(isWindowed ? window_() : {}) } }];
   }
 
   function pythonLines() {
-    const window = `depth=${depth()}, nearest=True, time=(${window_().from}, ${window_().to})`;
+    const window = isOfNode ? pythonNode(node(), window_()) : isWindowed ? `time=(${window_().from}, ${window_().to})` : "";
+    if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => `${table} = [point.${table}().to_pandas()[${python(fields)}] for point in points]`).join("\n");
     if (isDocument) return shownTable ? `documents = [point.${shownTable}() for point in points]` : "documents = [point.provenance for point in points]";
-    if (view === "profiles") return `plot.profile(points, "${ticks.names()[0]}")`;
     if (view === "orbit" || view === "spectrum") return `for point in points:\n    plot.${view}(point, ${window})`;
-    return `tables = [point.${shownTable}(${isWindowed ? window : ""}) for point in points]`;
+    if (view === "bit") return points.map((point) => `point${point.number} = client.sweep("${point.id}").point(${point.ordinal}).${requestsOf(point)[0].table}(${window}).to_pandas()`).join("\n");
+    return `tables = [point.${shownTable}(${window}).to_pandas() for point in points]`;
   }
-  const taken = lines(() => ({
-    matlab: isDocument ? undefined : points.map(matlabOf).join("\n"),
-    curl: points.map((point) => (isDocument ? `curl -s ${shell(location.origin + point.path + (shownTable && `/${shownTable}`))}` : tableLines(`${point.path}/${shownTable}`, asks()).curl)).join("\n"),
-    python: `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n${pythonLines()}`,
-  }));
+  const taken = lines(() => {
+    const asked = points.flatMap((point) => requestsOf(point).map(({ table, query: asks }) => ({ path: table ? `${point.path}/${table}` : point.path, query: asks, name: `point${point.number}${view === "profiles" ? `_${table}` : ""}`, isDocument })));
+    const start = `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n`;
+    return requestLines(asked, start + pythonLines());
+  });
   drawTabs();
   fill(
     main,

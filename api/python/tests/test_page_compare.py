@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
+from typing import Literal
 
+import numpy as np
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
-from service import SHORT
-from test_page import Opens, browser, drawn, named, opened, troubles, until
+from service import SHORT, Service
+from test_page import REFUSED, Opens, browser, drawn, named, opened, troubles, until
+from test_tokens import make_token
 
 __all__ = ["browser", "named", "opened", "troubles"]
 
@@ -204,3 +209,85 @@ def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Op
     page.get_by_role("button", name="Whole run").click()
     expect(start).to_have_value("0")
     expect(end).to_have_value("0.5")
+
+
+def test_snapshots_are_compared_side_by_side(
+    opened: Opens, named: Sweep, elsewhere: Sweep, troubles: list[str]
+) -> None:
+    points = f"{key(elsewhere)},{key(named)}"
+    page = opened(f"#/compare?points={points}&view=contacts")
+    shown = drawn(page, "Contact force over depth and time, point 1").evaluate("place => place.data[0].z")
+    snapshots = elsewhere.point(1).snapshots(fields=["normal_force"])
+    force = snapshots["normal_force"].reshape(-1, snapshots.attributes["nodes"])
+    np.testing.assert_allclose(np.array(shown), force.T / 1e3, rtol=1e-6)
+    missing = page.get_by_role("status", name="What is missing")
+    expect(missing).to_contain_text(re.compile(r"Point 2 is missing: .*recording\.snapshots"))
+    page.get_by_role("link", name="Strings in motion").click()
+    picture = page.get_by_role("application", name=re.compile("The string moving in its hole, 1:"))
+    expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
+    expect(missing).to_contain_text("Point 2 is missing")
+    page.get_by_role("link", name="Rotation at the bit").click()
+    bit = elsewhere.point(1).snapshots(node=int(elsewhere.point(1).statics()["node"][-1]), time=(0.5 / 3, 0.5))
+    speed = drawn(page, "Rotation at the bit").evaluate("place => [...place.data[0].y]")
+    np.testing.assert_allclose(speed, bit["rotation_speed"], rtol=1e-6)
+    expect(missing).to_contain_text(re.compile(r"Point 2 is missing: .*recording\.snapshots"))
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrogram&depth=57.73&range=50")
+    scales = [
+        drawn(page, f"Spectrogram, point {number}").evaluate("place => [place.data[0].zmin, place.data[0].zmax]")
+        for number in (1, 2)
+    ]
+    assert scales[0] == scales[1]
+    own = [named.point(number).spectrogram(node=49, range_hz=50, time=(0.5 / 3, 0.5)) for number in (1, 2)]
+    most = max(
+        float(table["amplitude"][abs(table["frequency"]) >= 2.5 * table.attributes["resolution"]].max())
+        for table in own
+    )
+    assert 10 ** scales[0][1] == pytest.approx(1e3 * most, rel=1e-6)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_no_view_of_a_comparison_keeps_anybody_out(
+    opened: Opens, server: str, named: Sweep, elsewhere: Sweep, theme: Literal["light", "dark"], troubles: list[str]
+) -> None:
+    page = opened("", color_scheme=theme)
+    views = ["profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string"]
+    views += ["contacts", "well", "energy", "modes", "effects", "cost"]
+    links = [f"#/compare?points={key(named)},{key(elsewhere)}&view={view}" for view in views]
+    links += [f"#/sweeps/{elsewhere.id}/points/1?view={view}" for view in ("string", "spectrogram")]
+    links += [f"#/sweeps/{named.id}/points/1?view=string"]
+    for view in links:
+        page.goto("about:blank")
+        page.goto(f"{server}/{view}")
+        page.locator("main h1").wait_for()
+        page.wait_for_load_state("networkidle")
+        for details in page.locator("main details").all():
+            details.evaluate("details => { details.open = true }")
+        found = Axe().run(page)
+        assert found.violations_count == 0, f"{view}\n{found.generate_report()}"
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_dialog_that_asks_for_a_token_keeps_nobody_out(
+    opened: Opens, troubles: list[str], tmp_path: Path, theme: Literal["light", "dark"]
+) -> None:
+    make_token(tmp_path, "read")
+    service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    try:
+        page = opened("", service.server, color_scheme=theme)
+        dialog = page.get_by_role("dialog")
+        dialog.get_by_label("Token").fill("not one of its tokens, but long enough")
+        dialog.get_by_role("button", name="Log in").click()
+        expect(dialog.get_by_role("alert")).not_to_be_empty()
+        found = Axe().run(page)
+        assert found.violations_count == 0, found.generate_report()
+        page.close()
+    finally:
+        service.stop()
+    troubles[:] = [text for text in troubles if not REFUSED.search(text)]

@@ -83,7 +83,7 @@ export async function show(main, route, signal) {
 
   const place = kind === "several" ? h("div", {}) : kind === "table" ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall");
   const controls = h("div", { class: "controls" });
-  const lacking = h("ul", { class: "lacking", role: "status", "aria-label": "What is missing" });
+  const lacking = h("div", { class: "lacking", role: "status", "aria-label": "What is missing" });
   const caption = h("figcaption", {});
   const tabs = h("nav", { class: "tabs", "aria-label": "What is compared" });
   const ticks = quantityTicks(query.get("profiles") ?? "friction_coefficient,eccentricity,effective_tension,largest_normal_force", (names) => change({ profiles: names.join(",") }));
@@ -175,7 +175,7 @@ export async function show(main, route, signal) {
       isDraggable = true;
       dragWindow(place, () => {}, (range) => range && range[1] - range[0] > LEAST * shortest() && change({ from: range[0].toFixed(4), to: range[1].toFixed(4) }), signal);
     }
-    fill(lacking, comparison.lacking.map((sentence) => h("li", {}, sentence)));
+    fill(lacking, comparison.lacking.map((sentence) => h("p", {}, sentence)));
     const shownNodes = [...comparison.nodes.entries()].sort(([a], [b]) => a - b).map(([, text]) => text);
     fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, hasTime && " Drag across the picture to choose a window; the other views follow.");
   }

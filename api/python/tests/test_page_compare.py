@@ -14,6 +14,7 @@ from playwright.sync_api import Page, Route, expect
 from drillsweep import Client, Sweep
 from service import SHORT, Service
 from test_page import REFUSED, Opens, browser, drawn, named, opened, troubles, until
+from test_page_points import run_curl, run_python, shown_lines
 from test_tokens import make_token
 
 __all__ = ["browser", "named", "opened", "troubles"]
@@ -63,7 +64,7 @@ def test_a_comparison_draws_the_points_that_have_what_it_needs_and_says_what_oth
     missing = page.get_by_role("status", name="What is missing")
     expect(missing).to_contain_text(re.compile(r"^Point 1 is missing.*keep the summary only\."))
     assert {name[0] for name in names(page, picture)} == {"2", "3"}
-    expect(missing.get_by_role("listitem").filter(has_text=re.compile("Point [23] "))).to_have_count(0)
+    expect(missing.get_by_role("paragraph").filter(has_text=re.compile("Point [23] "))).to_have_count(0)
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
 
@@ -291,3 +292,35 @@ def test_the_dialog_that_asks_for_a_token_keeps_nobody_out(
     finally:
         service.stop()
     troubles[:] = [text for text in troubles if not REFUSED.search(text)]
+
+
+@pytest.mark.parametrize(
+    ("view", "columns"),
+    [
+        ("profiles&profiles=friction_coefficient", {"friction_coefficient"}),
+        ("profiles&profiles=stick_time", {"stick_time"}),
+        ("history&depth=57.73", {"time", "u", "v"}),
+        ("rotation&depth=57.73", {"time", "rotation_speed_49", "torque_49"}),
+        ("spectrum&depth=57.73", {"frequency", "amplitude"}),
+        ("spectrogram&depth=57.73", {"time", "frequency", "amplitude"}),
+        ("statistics&depth=57.73", {"node", "orbit_radius_rms"}),
+        ("well", {"north", "east", "true_vertical_depth"}),
+        ("energy", {"time", "kinetic"}),
+        ("modes", {"modes"}),
+        ("effects", {"effects"}),
+        ("cost", {"provenance"}),
+    ],
+)
+def test_the_lines_of_a_comparison_read_what_it_shows(
+    opened: Opens, named: Sweep, view: str, columns: set[str], tmp_path: Path
+) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view={view}")
+    expect(page.get_by_role("heading", level=1)).to_have_text("Compare points")
+    lines = shown_lines(page)
+    answers = run_curl(lines["curl"], tmp_path / "curl")
+    assert len(answers) == 2
+    assert all(columns <= set(found) for found in answers.values())
+    tables = run_python(lines["Python"])
+    is_table = view not in ("modes", "effects", "cost")
+    is_drawn = view.startswith("spectrum&")
+    assert not is_table or is_drawn or sum(columns <= set(found) for found in tables.values()) == 2

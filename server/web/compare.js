@@ -48,7 +48,7 @@ export async function show(main, route, signal) {
 
   let chosenSweep = points.at(-1)?.id ?? sweeps[0]?.id ?? "";
   const ordinal = h("input", { type: "number", min: 1, value: (points.at(-1)?.ordinal ?? 0) + 1, style: "width:6rem" });
-  const offer = h("span", { class: "controls" });
+  const offer = h("span", { style: "display:contents" });
   const found = h("span", { class: "small soft", role: "status" });
   /** Offers sweeps to take a point of. @param {{sweeps: any[], next?: string | null}} page @param {string} name that was looked for */
   const offerSweeps = ({ sweeps: answered, next }, name) => {

@@ -531,7 +531,7 @@ def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
         expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)
         page.get_by_text("Lines that made this view").click()
         expect(
-            page.get_by_text(re.compile("^csv = weboptions.*point1 = webread.*point3 = webread", re.DOTALL))
+            page.get_by_text(re.compile(r"^csv = weboptions.*point1\w* = webread.*point3\w* = webread", re.DOTALL))
         ).to_be_visible()
 
 

@@ -36,7 +36,7 @@ pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind}
 pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
     Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
-    ScenarioList, Session, Worker, WorkerList,
+    ScenarioFile, ScenarioFormat, ScenarioList, Session, Worker, WorkerList,
 };
 pub use sweep::{
     ColumnEntry, ColumnKind, ColumnList, PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList,
@@ -45,3 +45,4 @@ pub use sweep::{
 pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;
+pub use drillsweep_sim::scenario::ScenarioRequest;

@@ -1,9 +1,11 @@
 //! What the service says about itself.
 
-use drillsweep_sim::scenario::Scenario;
+use drillsweep_sim::scenario::{Scenario, ScenarioRequest};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
+
+use crate::problem::{FieldProblem, ProblemDetails};
 
 /// The bounds of what the service accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -80,6 +82,44 @@ pub struct ScenarioDetail {
     pub description: String,
     /// The scenario.
     pub scenario: Box<Scenario>,
+}
+
+/// The text of a scenario file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// What the text is written in.
+    pub format: ScenarioFormat,
+    /// The whole file: a scenario, or `preset` or `scenario` with changes in `set`.
+    pub text: String,
+}
+
+/// What a scenario file is written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ScenarioFormat {
+    /// TOML.
+    Toml,
+    /// JSON.
+    Json,
+}
+
+impl ScenarioFile {
+    /// What the file asks for. It is not validated yet.
+    ///
+    /// # Errors
+    /// The first place where the text is not of its format, or no scenario.
+    pub fn read(&self) -> Result<ScenarioRequest, Box<ProblemDetails>> {
+        let read = match self.format {
+            ScenarioFormat::Toml => ScenarioRequest::from_toml(&self.text),
+            ScenarioFormat::Json => ScenarioRequest::from_json(&self.text),
+        };
+        read.map_err(|problem| {
+            let (pointer, detail) = (Some("/text".to_owned()), problem.to_string());
+            let error = FieldProblem { pointer, parameter: None, got: None, detail };
+            Box::new(ProblemDetails::invalid_request(vec![error]))
+        })
+    }
 }
 
 /// The worker processes.

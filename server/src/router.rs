@@ -71,7 +71,7 @@ fn documented() -> OpenApiRouter<App> {
         .routes(routes!(scene::plan))
         .routes(routes!(scene::modes))
         .routes(routes!(cost::show))
-        .routes(routes!(scenarios::list))
+        .routes(routes!(scenarios::list, scenarios::read))
         .routes(routes!(scenarios::show))
         .routes(routes!(quantities::list))
         .routes(routes!(status::workers))

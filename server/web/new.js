@@ -10,12 +10,13 @@ import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "./session.js";
 import { settings } from "./settings.js";
 import { NoSurvey, surveyField } from "./survey.js";
-import { NoToml, readToml } from "./toml.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
 /** Characters of a request that a link may hold. */
 const LINKED = 4000;
 const SURVEY = "well.survey";
+/** Short names of parameters. @type {Record<string, string>} */
+const ALIASES = { flow_rate: "mud.flow_rate", mud_density: "mud.density" };
 /** Members of a request that the form has fields for, and its owner, who is the one who submits it; others are carried over as they are. */
 const FIELDS = ["name", "owner", "tags", "preset", "scenario", "set", "outputs", "design", "axes", "samples", "seed", "verify"];
 /** The choice that keeps what the request that the form begins with says of histories in part, for which there are no fields. */
@@ -29,7 +30,7 @@ export async function show(main, route, signal) {
   /** @type {{name: string, values: string}[]} */
   const axes = Object.entries(start.axes ?? (isGoneOnWith(route.query) ? {} : { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } })).map(([name, axis]) => ({ name, values: written(axis) }));
   /** @type {{name: string, values: string}[]} */
-  const changes = Object.entries(start.set ?? {}).filter(([name]) => name !== "accuracy" && name !== SURVEY).map(([name, value]) => ({ name, values: JSON.stringify(value) }));
+  const changes = Object.entries(start.set ?? {}).filter(([name, value]) => !(name === "accuracy" && typeof value === "string") && name !== SURVEY).map(([name, value]) => ({ name, values: JSON.stringify(value) }));
   const form = {
     preset: start.preset ?? (start.scenario ? "" : "paper-200m-damped"),
     scenario: start.scenario ? JSON.stringify(start.scenario, null, 2) : "",
@@ -134,16 +135,23 @@ export async function show(main, route, signal) {
   async function take() {
     const chosen = file.files?.[0];
     if (!chosen) return;
-    const text = await chosen.text();
+    const format = chosen.name.toLowerCase().endsWith(".json") ? "json" : "toml";
+    let asked;
     try {
-      const read = chosen.name.toLowerCase().endsWith(".json") ? parsed(text, "/file") : readToml(text);
-      scenario.value = JSON.stringify(read, null, 2);
+      asked = await send("POST", "/v1/scenarios", { format, text: await chosen.text() }, signal);
     } catch (error) {
-      if (!(error instanceof NoToml || error instanceof Unreadable)) throw error;
-      mark([{ pointer: "/file", detail: error instanceof NoToml ? `This is not TOML. ${error.message}` : error.message }]);
+      if (!(error instanceof Problem)) throw error;
+      mark((error.errors.length ? error.errors : [{ detail: error.message }]).map(({ detail }) => ({ pointer: "/file", detail })));
       return;
     }
-    await choose("");
+    changes.splice(0, changes.length, ...Object.entries(asked.set ?? {}).map(([name, value]) => ({ name, values: JSON.stringify(value) })));
+    drawRows(changesPart, changes, "set");
+    // What the file sets is not varied too.
+    const varied = axes.filter(({ name }) => !((ALIASES[name] ?? name) in (asked.set ?? {})));
+    axes.splice(0, axes.length, ...varied);
+    drawRows(axesPart, axes, "axes");
+    if (asked.scenario) scenario.value = JSON.stringify(asked.scenario, null, 2);
+    await choose(asked.preset ?? "");
   }
 
   /** Of the scenario whose fields are shown, what it was made from. */

@@ -19,7 +19,7 @@ pub(crate) fn note(
     response: &Response,
 ) {
     let is_dry_run = uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
-    if is_reading(method) || is_dry_run || !response.status().is_success() {
+    if is_reading(method) || is_dry_run || uri.path() == READS || !response.status().is_success() {
         return;
     }
     // Of what was made.
@@ -36,6 +36,9 @@ pub(crate) fn note(
         "changed"
     );
 }
+
+/// Reads a scenario file, which comes as a body.
+const READS: &str = "/v1/scenarios";
 
 /// Whether requests of this method change nothing.
 pub(crate) fn is_reading(method: &Method) -> bool {

@@ -1,11 +1,13 @@
-//! Preset scenarios.
+//! Preset scenarios, and scenario files.
 
 use axum::Json;
-use drillsweep_api::{ProblemKind, ScenarioDetail, ScenarioList, preset_detail, presets};
+use drillsweep_api::{
+    ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
+};
 
 use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
-use crate::answer::extract::Path;
+use crate::answer::extract::{self, Path};
 
 /// The preset scenarios
 #[utoipa::path(
@@ -17,6 +19,24 @@ use crate::answer::extract::Path;
 )]
 pub(crate) async fn list() -> Json<ScenarioList> {
     Json(presets())
+}
+
+/// Read a scenario file
+///
+/// For forms: the text of a file as commands take it, TOML or JSON, answered with what it asks for as a request says it, what the file
+/// leaves out filled in. Nothing is stored, and whether it can be simulated is what a dry run of a sweep says.
+#[utoipa::path(
+    post,
+    path = "/v1/scenarios",
+    tag = "scenarios",
+    operation_id = "read_scenario",
+    request_body = ScenarioFile,
+    responses((status = 200, description = "What the file asks for", body = ScenarioRequest), Problems)
+)]
+pub(crate) async fn read(
+    extract::Json { value: file, .. }: extract::Json<ScenarioFile>,
+) -> Result<Json<ScenarioRequest>> {
+    Ok(Json(file.read().map_err(|problem| *problem)?))
 }
 
 /// One preset scenario in full

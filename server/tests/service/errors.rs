@@ -123,6 +123,31 @@ async fn the_service_describes_itself() {
 }
 
 #[tokio::test]
+async fn a_scenario_file_is_read_in_either_format() {
+    let bench = Bench::new().await;
+    let read = async |format: &str, text: &str| {
+        bench.post("/v1/scenarios", json!({"format": format, "text": text})).await
+    };
+    let preset = bench.get("/v1/scenarios/paper-200m").await.json()["scenario"].clone();
+    assert_eq!(read("json", &preset.to_string()).await.json()["scenario"], preset);
+    let toml = include_str!("../../../sim/presets/paper-200m.toml");
+    assert_eq!(read("toml", toml).await.json()["scenario"], preset);
+    let changed = read("toml", "preset = \"paper-200m\"\n[set]\n\"mud.density\" = 1500.0").await.json();
+    assert_eq!(changed, json!({"preset": "paper-200m", "set": {"mud.density": 1500.0}}));
+    for (format, text, words) in [
+        ("toml", "name = ", "line 1"),
+        ("json", "{\"name\": 3", "not JSON"),
+        ("toml", "preset = \"paper-200m\"\nsets = 1", "sets"),
+    ] {
+        let answer = read(format, text).await;
+        let problem = answer.problem(422, "invalid-request");
+        assert_eq!(problem["errors"][0]["pointer"], "/text");
+        let detail = problem["errors"][0]["detail"].as_str().unwrap();
+        assert!(detail.contains(words), "{detail}");
+    }
+}
+
+#[tokio::test]
 async fn overlong_and_encoded_requests_are_refused_with_problems() {
     let bench = Bench::new().await;
     let long = format!("/v1/sweeps?name={}", "x".repeat(8 * 1024));

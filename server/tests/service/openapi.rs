@@ -62,6 +62,7 @@ fn every_route_is_documented() {
         "get /v1/sweeps/{id}/export",
         "post /v1/runs",
         "get /v1/scenarios",
+        "post /v1/scenarios",
         "get /v1/scenarios/{name}",
         "get /v1/quantities",
         "get /v1/workers",

@@ -36,10 +36,10 @@ impl Problem {
             return Self::new(path, found(got), format!("must be {}", in_words(expected)));
         }
         if let Some((name, choices)) = unknown(message, "variant") {
-            return Self::new(path, format!("\"{name}\""), format!("must be {}", listed(choices, "or")));
+            return Self::new(path, format!("\"{name}\""), format!("must be {}", listed(&choices, "or")));
         }
         if let Some((name, choices)) = unknown(message, "field") {
-            let message = format!("there is no field `{name}`; there are {}", listed(choices, "and"));
+            let message = format!("there is no field `{name}`; there are {}", listed(&choices, "and"));
             return Self::new(path, "", message);
         }
         let of_one_field = |prefix: &str| message.strip_prefix(prefix)?.strip_suffix('`');
@@ -61,7 +61,7 @@ fn unknown<'a>(message: &'a str, kind: &str) -> Option<(&'a str, Vec<&'a str>)> 
 }
 
 /// Names as a list that a person reads: "`a`, `b` and `c`".
-fn listed(names: Vec<&str>, last: &str) -> String {
+fn listed(names: &[&str], last: &str) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {
         None => "none".to_owned(),

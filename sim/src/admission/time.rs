@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn duration_is_a_multiple_of_the_recording_interval() {
         let found = problem("duration", |s| s.duration = 60.0004);
-        assert!(found.message.contains("0.001 s"), "{found}");
+        assert!(found.message.contains("1/1000 s"), "{found}");
         assert_eq!(warnings(|s| s.duration = 60.001), []);
     }
 

@@ -5,6 +5,7 @@ import { Biases } from "./bias.js";
 import { each, noteNode } from "./compare-views.js";
 import { fill, h } from "./dom.js";
 import { costFacts } from "./point-about.js";
+import { biasOver } from "./point-motion.js";
 import { label, say } from "./units.js";
 
 /** @typedef {import("./compare-views.js").Comparison} Comparison */
@@ -53,7 +54,7 @@ export async function drawStatistics(place, comparison) {
     const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
     const [node] = columns.node;
     noteNode(comparison, point, node, columns.measured_depth[0]);
-    const beside = isVerified(point.detail.scenario, window) ? (/** @type {string} */ name) => bias.beside(`${name}_${node}`, point.ordinal) : () => "";
+    const beside = biasOver(point.detail.scenario, window, (name) => bias.beside(`${name}_${node}`, point.ordinal));
     /** @type {[string, string][]} */
     const facts = STATISTICS.filter((name) => columns[name]).map((name) => [label(name), say(name, columns[name][0]) + beside(name)]);
     return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);
@@ -69,16 +70,6 @@ async function loadBiases(id, signal) {
   const biases = new Biases();
   await biases.load(await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal), signal);
   return biases;
-}
-
-/**
- * Whether a window is the one whose statistics verifying looks at: the scenario's own, or else the last third of the run.
- * @param {any} scenario
- * @param {{from: number, to: number}} window [s]
- */
-function isVerified({ recording, duration }, { from, to }) {
-  const usual = recording.orbit_window ?? { from: (2 * duration) / 3, to: duration };
-  return Math.abs(from - usual.from) <= 1e-4 * duration && Math.abs(to - usual.to) <= 1e-4 * duration;
 }
 
 /** Which effects take part, and why. @param {HTMLElement} place @param {Comparison} comparison */

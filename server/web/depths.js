@@ -1,16 +1,31 @@
 // The depths of the nodes that columns are of.
 
-import { get } from "./api.js";
+import { get, Problem } from "./api.js";
 import { label, say, unit } from "./units.js";
 
 /** Depths by node, of the first point of a sweep that has them. */
 export class Depths {
   /** @type {Map<number, number>} */
   #depths = new Map();
+  #isAsked = false;
 
-  /** Reads them, unless they are there already; where no point has kept its equilibrium, they stay unknown. @param {any} sweep @param {AbortSignal} signal */
+  /**
+   * Reads them once there is a result; where its equilibrium is not kept, or not any more, they stay unknown: names do without them.
+   * @param {any} sweep
+   * @param {AbortSignal} signal
+   */
   async load(sweep, signal) {
-    if (this.#depths.size || !sweep.counts.succeeded) return;
+    if (this.#isAsked || !sweep.counts.succeeded) return;
+    this.#isAsked = true;
+    try {
+      await this.#read(sweep, signal);
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+    }
+  }
+
+  /** @param {any} sweep @param {AbortSignal} signal */
+  async #read(sweep, signal) {
     const path = `/v1/sweeps/${encodeURIComponent(sweep.id)}/points`;
     const { points } = await get(path, { state: "succeeded", limit: 1 }, signal);
     if (!points[0]) return;

@@ -39,13 +39,13 @@ export function verifiedWindow({ recording, duration }) {
 
 /**
  * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
- * @param {import("./point.js").PointContext} context
+ * @param {any} scenario
  * @param {{from: number, to: number}} window [s]
- * @returns {(name: string) => string}
+ * @param {(name: string) => string} bias
  */
-export function biasOver({ point, bias }, { from, to }) {
-  const verified = verifiedWindow(point.scenario);
-  const isVerified = [from - verified.from, to - verified.to].every((apart) => Math.abs(apart) <= SAME * point.scenario.duration);
+export function biasOver(scenario, { from, to }, bias) {
+  const verified = verifiedWindow(scenario);
+  const isVerified = [from - verified.from, to - verified.to].every((apart) => Math.abs(apart) <= SAME * scenario.duration);
   return isVerified ? bias : () => "";
 }
 
@@ -297,7 +297,7 @@ export function motion(context) {
   function drawStatistics() {
     const { from, to } = span();
     const { columns, attributes } = windowed.statistics;
-    const bias = biasOver(context, span());
+    const bias = biasOver(point.scenario, span(), context.bias);
     showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${columns.node[0]}`), String(attributes.samples));
   }
 

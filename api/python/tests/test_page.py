@@ -28,6 +28,16 @@ GONE = re.compile(r"net::ERR_|502|Failed to load resource")
 REFUSED = re.compile("status of 40[13]")
 """What it writes of every answer that refuses."""
 MINUS = "\N{MINUS SIGN}"
+COMPARED = {
+    "profiles": "Profiles",
+    "orbit": "Orbits",
+    "history": "Histories",
+    "rotation": "Rotation and torque",
+    "spectrum": "Full spectra",
+    "well": "Well",
+    "energy": "Energy",
+}
+"""Views of a comparison that have one picture, and its name."""
 POINT_VIEWS = ["profiles", "motion", "well", "energy", "about"]
 
 
@@ -518,15 +528,7 @@ def test_a_hundred_thousand_points_are_shown(opened: Opens, client: Client) -> N
 
 def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
     keys = ",".join(f"{named.id}:{number}" for number in (1, 2, 8))
-    for view, picture in [
-        ("profiles", "Profiles"),
-        ("orbit", "Orbits"),
-        ("history", "Histories"),
-        ("rotation", "Rotation and torque"),
-        ("spectrum", "Full spectra"),
-        ("well", "Well"),
-        ("energy", "Energy"),
-    ]:
+    for view, picture in COMPARED.items():
         page = opened(f"#/compare?points={keys}&view={view}&node=1")
         drawn(page, picture)
         expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)

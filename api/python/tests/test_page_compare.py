@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
-from test_page import REFUSED, Opens, browser, drawn, named, opened, troubles, until
+from test_page import COMPARED, REFUSED, Opens, browser, drawn, named, opened, troubles, until
 from test_page_points import run_curl, run_python, shown_lines
 from test_tokens import make_token
 
@@ -46,15 +46,7 @@ def names(page: Page, picture: str) -> list[str]:
 
 @pytest.mark.parametrize(
     ("view", "picture"),
-    [
-        ("profiles", "Profiles"),
-        ("orbit", "Orbits"),
-        ("history", "Histories"),
-        ("rotation", "Rotation and torque"),
-        ("spectrum", "Full spectra"),
-        ("well", "Well"),
-        ("energy", "Energy"),
-    ],
+    COMPARED.items(),
 )
 def test_a_comparison_draws_the_points_that_have_what_it_needs_and_says_what_others_lack(
     opened: Opens, named: Sweep, summarized: Sweep, elsewhere: Sweep, troubles: list[str], view: str, picture: str

@@ -1,5 +1,7 @@
 //! What a handler answers when it cannot answer: a problem document.
 
+use std::time::Duration;
+
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
@@ -34,11 +36,17 @@ impl Error {
         Error::new(ProblemKind::Internal, "the service failed; its log has the reason under this request id")
     }
 
-    /// A failure that is expected to pass.
+    /// A failure that is expected to pass soon.
     pub(crate) fn unavailable(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
+        Self::unavailable_for(reason, Duration::from_secs(1))
+    }
+
+    /// A failure that is expected to pass after `wait`, which is told in whole seconds.
+    pub(crate) fn unavailable_for(reason: &(impl std::fmt::Display + ?Sized), wait: Duration) -> Self {
         tracing::warn!(%reason, "a request could not be served for the time being");
-        let error = Error::new(ProblemKind::Unavailable, "the service is busy; try again in a second");
-        Error { retry_after: Some(1), ..error }
+        let seconds = whole_seconds(wait);
+        let detail = format!("the service is busy; try again in {seconds} s");
+        Error { retry_after: Some(seconds), ..Error::new(ProblemKind::Unavailable, detail) }
     }
 
     /// The caller must say who they are.
@@ -47,9 +55,8 @@ impl Error {
     }
 
     /// The caller has had what they may have; another try may succeed after `wait`.
-    pub(crate) fn too_many(kind: ProblemKind, detail: impl Into<String>, wait: std::time::Duration) -> Self {
-        let seconds = u32::try_from(wait.as_secs_f64().ceil() as u64).unwrap_or(u32::MAX).max(1);
-        Error { retry_after: Some(seconds), ..Error::new(kind, detail) }
+    pub(crate) fn too_many(kind: ProblemKind, detail: impl Into<String>, wait: Duration) -> Self {
+        Error { retry_after: Some(whole_seconds(wait)), ..Error::new(kind, detail) }
     }
 
     /// Whether it is a problem of this kind.
@@ -61,6 +68,10 @@ impl Error {
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem
     }
+}
+
+fn whole_seconds(wait: Duration) -> u32 {
+    u32::try_from(wait.as_secs_f64().ceil() as u64).unwrap_or(u32::MAX).max(1)
 }
 
 impl From<Box<ProblemDetails>> for Error {

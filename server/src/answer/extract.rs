@@ -1,5 +1,7 @@
 //! Extractors that answer with problems naming what is wrong: the field, the parameter, what would be valid.
 
+use std::collections::HashSet;
+use std::fmt;
 use std::time::Duration;
 
 use axum::body::Bytes;
@@ -8,7 +10,7 @@ use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
 use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind};
-use serde::de::{DeserializeOwned, Error as _};
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 use tokio::time::timeout;
 
@@ -71,19 +73,77 @@ fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     if bytes.trim_ascii_start().starts_with(b"[") {
         return Err(malformed(String::new(), &serde_json::Error::custom("must be an object, not an array")));
     }
-    // What is given twice is only found here.
-    let twice = match serde_json::from_slice(bytes) {
-        Ok(value) => return Ok(value),
-        Err(error) => error,
-    };
+    let mut text = serde_json::Deserializer::from_slice(bytes);
+    if let Err(error) = serde_path_to_error::deserialize::<_, Unrepeated>(&mut text) {
+        let is_repeated = error.inner().is_data();
+        let pointer = if is_repeated { pointer(error.path()) } else { String::new() };
+        return Err(malformed(pointer, error.inner()));
+    }
+    if let Ok(value) = serde_json::from_slice(bytes) {
+        return Ok(value);
+    }
     // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
     let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
     write_whole(&mut body);
-    let read = serde_path_to_error::deserialize(body);
-    if read.is_ok() && twice.to_string().starts_with("duplicate field") {
-        return Err(malformed(String::new(), &twice));
+    serde_path_to_error::deserialize(body).map_err(|error| malformed(pointer(error.path()), error.inner()))
+}
+
+/// JSON in which no object has a member twice: maps would take the last, and the client could have meant the other.
+struct Unrepeated;
+
+impl<'de> Deserialize<'de> for Unrepeated {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Unrepeated)
     }
-    read.map_err(|error| malformed(pointer(error.path()), error.inner()))
+}
+
+impl<'de> Visitor<'de> for Unrepeated {
+    type Value = Self;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("JSON")
+    }
+
+    fn visit_unit<E>(self) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Self, A::Error> {
+        while entries.next_element::<Self>()?.is_some() {}
+        Ok(self)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Self, A::Error> {
+        let mut names = HashSet::new();
+        while let Some(name) = members.next_key::<String>()? {
+            if names.contains(&name) {
+                return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
+            }
+            names.insert(name);
+            members.next_value::<Self>()?;
+        }
+        Ok(self)
+    }
 }
 
 /// Writes whole numbers without a decimal point: to JSON Schema 2.0 is an integer, and some clients write integers so.

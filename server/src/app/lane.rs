@@ -1,7 +1,8 @@
 //! Work that takes cores and memory for a while: as much at once as there is, some more that waits, and what is beyond told to come back.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use axum::response::Response;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -15,18 +16,54 @@ use crate::answer::format::Answer;
 /// How long a request waits for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
 
+/// The longest that a refused client is told to stay away; places may be free long before.
+const LONGEST_ADVICE: Duration = Duration::from_secs(60);
+
 /// Memory, or places, for one kind of work. Requests that need none are not held up by those that do.
 pub(crate) struct Lane {
     units: Arc<Semaphore>,
     all: usize,
     waiting: Semaphore,
     turns: Arc<Semaphore>,
+    pace: Arc<Pace>,
 }
 
 /// Memory or a place, until it is dropped.
 pub(crate) struct Place {
-    permit: OwnedSemaphorePermit,
+    held: Held,
     turns: Arc<Semaphore>,
+}
+
+struct Held {
+    _permit: OwnedSemaphorePermit,
+    since: Instant,
+    pace: Arc<Pace>,
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.pace.note(self.since.elapsed());
+    }
+}
+
+/// How long work has lasted lately \[ms\], as a mean that forgets.
+#[derive(Default)]
+struct Pace(AtomicU64);
+
+impl Pace {
+    fn note(&self, lasted: Duration) {
+        /// The part of the latest in the mean is one of so many.
+        const MEMORY: u64 = 4;
+        let lasted = u64::try_from(lasted.as_millis()).unwrap_or(u64::MAX);
+        // One that is lost to another that ends at the same time changes no advice.
+        let mean = self.0.load(Ordering::Relaxed);
+        self.0.store(mean - mean / MEMORY + lasted / MEMORY, Ordering::Relaxed);
+    }
+
+    /// When a place is likely to be free again.
+    fn advice(&self) -> Duration {
+        Duration::from_millis(self.0.load(Ordering::Relaxed)).clamp(Duration::from_secs(1), LONGEST_ADVICE)
+    }
 }
 
 impl Lane {
@@ -37,17 +74,24 @@ impl Lane {
             all: units,
             waiting: Semaphore::new(waiting),
             turns: Arc::new(Semaphore::new(at_once.max(1))),
+            pace: Arc::default(),
         }
     }
 
     /// Takes so many units, or where there are fewer all of them, in the order of arrival. To be taken before anything large is loaded.
     pub(crate) async fn enter(&self, units: usize) -> Result<Place> {
         let units = u32::try_from(units.min(self.all).max(1)).unwrap_or(u32::MAX);
-        let place = |permit| Place { permit, turns: self.turns.clone() };
+        let place = |permit| Place {
+            held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
+            turns: self.turns.clone(),
+        };
         if let Ok(permit) = self.units.clone().try_acquire_many_owned(units) {
             return Ok(place(permit));
         }
-        let too_many = || Error::unavailable("more large answers are asked for than can be computed at once");
+        let too_many = || {
+            let reason = "more large answers are asked for than can be computed at once";
+            Error::unavailable_for(reason, self.pace.advice())
+        };
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
         match timeout(PATIENCE, self.units.clone().acquire_many_owned(units)).await {
             Ok(Ok(permit)) => Ok(place(permit)),
@@ -76,7 +120,7 @@ impl Place {
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
-        body::send(self.turns, self.permit, prepare).await
+        body::send(self.turns, self.held, prepare).await
     }
 }
 
@@ -114,5 +158,21 @@ mod tests {
         assert!(lane.enter(1).await.is_err());
         drop(all);
         assert_eq!(lane.units.available_permits(), 10);
+    }
+
+    #[test]
+    fn who_is_refused_is_told_to_come_back_when_work_of_late_would_have_ended() {
+        let pace = Pace::default();
+        assert_eq!(pace.advice(), Duration::from_secs(1), "before anything has ended");
+        for _ in 0..40 {
+            pace.note(Duration::from_secs(11));
+        }
+        assert_eq!(pace.advice().as_secs_f64().round(), 11.0);
+        pace.note(Duration::from_secs(7_000));
+        assert_eq!(pace.advice(), LONGEST_ADVICE);
+        for _ in 0..80 {
+            pace.note(Duration::from_millis(20));
+        }
+        assert_eq!(pace.advice(), Duration::from_secs(1), "as it was before");
     }
 }

@@ -206,6 +206,10 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         (r#"{"outputs": {"orbits": {"decimation": 1.5}}}"#, "/outputs/orbits/decimation", "a whole number"),
         (r#"{"design": "grad"}"#, "/design", "must be `grid`, `zip`"),
         (r#"{"preset": "a", "preset": "b"}"#, "", "`preset` is given twice"),
+        // Also beside a number that is read in another way, and where any name is a member.
+        (r#"{"priority": 2.0, "preset": "a", "preset": "b"}"#, "", "`preset` is given twice"),
+        (r#"{"axes": {"mud.density": {"values": [1]}, "mud.density": {"values": [2]}}}"#, "/axes", "twice"),
+        (r#"{"scenario": {"mud": {"density": 1, "density": 2}}}"#, "/scenario/mud", "twice"),
     ] {
         let request = json_request(Method::POST, "/v1/sweeps", body.to_owned());
         let problem = bench.send(request).await.problem(400, "malformed-body");

@@ -401,9 +401,11 @@ mod tests {
     use std::collections::BTreeSet;
     use std::os::unix::fs::FileExt;
 
-    use drillsweep_sim::scenario::{Effect, NodeChoice, Outputs, Snapshots, Switch, TimeWindow, preset};
+    use drillsweep_sim::scenario::{
+        Effect, NodeChoice, OrbitOutputs, Outputs, Snapshots, Switch, TimeWindow, preset,
+    };
     use drillsweep_sim::study::footprint::Footprint;
-    use drillsweep_table::quantity::{Name, tables};
+    use drillsweep_table::quantity::{Name, columns, tables};
     use drillsweep_table::{Column, Table, parquet};
 
     use super::*;
@@ -509,9 +511,11 @@ mod tests {
             let columns = table.columns.keys().map(|column| Name::parse(column).expect(column));
             let (by_node, once): (Vec<_>, Vec<_>) = columns.partition(|name| name.node.is_some());
             assert!(once.iter().map(|name| name.quantity).eq(layout.columns.iter().copied()), "{name}");
-            let nodes = by_node.chunks(layout.by_node.len().max(1));
-            for node in nodes {
-                assert!(node.iter().map(|name| name.quantity).eq(layout.by_node.iter().copied()), "{name}");
+            for node in by_node.chunk_by(|one, next| one.node == next.node) {
+                let rotation = [&columns::ROTATION_SPEED, &columns::TORQUE];
+                // Only the bit is recorded without having been asked for.
+                let expected = if node[0].node == Some(297) { &rotation[..] } else { layout.by_node };
+                assert!(node.iter().map(|name| name.quantity).eq(expected.iter().copied()), "{name}");
             }
         }
         for name in full.summary_row().keys() {
@@ -554,6 +558,38 @@ mod tests {
             for (resumed, whole) in resumed.artifacts.iter().zip(&whole.artifacts) {
                 assert_eq!(read(resumed), read(whole), "{} from {at} s", whole.name);
             }
+        }
+    }
+
+    #[test]
+    fn the_bits_rotation_and_torque_are_recorded_whatever_nodes_are() {
+        let of_bit = ["rotation_speed_297", "torque_297"];
+        let history = |nodes: &[u32], outputs: Outputs, torsion: bool| {
+            let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+            scenario.duration = 0.1;
+            scenario.recording.spectrum_windows = Some(Vec::new());
+            scenario.recording.orbit_window = None;
+            scenario.recording.nodes = nodes.iter().copied().map(NodeChoice::Node).collect();
+            scenario.recording.outputs = outputs;
+            if !torsion {
+                scenario.effects.torsion = Switch::Off;
+            }
+            let computed = compute(&scenario, &Control::new()).expect("runs");
+            read(computed.artifacts.iter().find(|artifact| artifact.name == "history").expect("is kept"))
+        };
+        let chosen = history(&[49, 297], Outputs::Full, true);
+        let beside = history(&[49], Outputs::Full, true);
+        for name in of_bit {
+            assert_eq!(beside.columns[name], chosen.columns[name], "{name}");
+        }
+        assert!(chosen.columns.contains_key("u_297") && !beside.columns.contains_key("u_297"));
+        let all = Outputs::Orbits(OrbitOutputs { nodes: None, window: None, decimation: 10 });
+        let some = OrbitOutputs { nodes: Some(vec![NodeChoice::Node(49)]), window: None, decimation: 10 };
+        assert!(history(&[49], all, true).columns.contains_key(of_bit[1]));
+        // Whoever chooses what is kept has that alone, and without torsion the bit turns as the drive does.
+        for without in [history(&[10, 49], Outputs::Orbits(some), true), history(&[49], Outputs::Full, false)]
+        {
+            assert!(!without.columns.contains_key(of_bit[0]), "{:?}", without.columns.keys());
         }
     }
 

@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 /// Bytes of a sample.
 const SAMPLE: usize = size_of::<f64>();
 
+/// What is kept of the bit beside the nodes.
+const OF_BIT: [Series; 2] = [Series::ThetaZRate, Series::Torque];
+
 /// Bytes of a value of a snapshot.
 const VALUE: usize = size_of::<f32>();
 
@@ -23,8 +26,8 @@ const MAGIC: &[u8; 8] = b"dsweepS1";
 
 /// Histories of a run's recorded nodes and snapshots of its string in a file without a name, which vanishes with the process.
 ///
-/// The file holds block after block; a block holds for each node and each series its samples in a row, and behind them for each series
-/// of the snapshots their values in a row, in single precision.
+/// The file holds block after block; a block holds for each node and each series its samples in a row, behind them those of the bit where
+/// it is recorded beside the nodes, and for each series of the snapshots their values in a row, in single precision.
 #[derive(Debug)]
 pub struct Spool {
     file: File,
@@ -35,6 +38,9 @@ pub struct Spool {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 struct Index {
     nodes: Vec<usize>,
+    /// The bit, where its rotation and torque are recorded beside the nodes.
+    #[serde(default)]
+    bit: Option<usize>,
     /// Samples of each block.
     blocks: Vec<usize>,
     /// Absent where there are no snapshots.
@@ -102,10 +108,11 @@ impl Spool {
     ///
     /// # Errors
     /// When the file cannot be written, or the block is of other nodes or series than the ones before it.
-    pub fn append(&mut self, Block { histories, snapshots }: Block<'_>) -> std::io::Result<()> {
+    pub fn append(&mut self, Block { histories, bit, snapshots }: Block<'_>) -> std::io::Result<()> {
         let nodes: Vec<usize> = histories.iter().map(|history| history.node).collect();
         if self.index.blocks.is_empty() {
             self.index.nodes = nodes;
+            self.index.bit = bit.map(|bit| bit.node);
             self.index.snapshots.series = snapshots.map_or(Vec::new(), |block| block.series.clone());
         } else if self.index.nodes != nodes {
             return Err(std::io::Error::other("a block of samples of other nodes"));
@@ -121,6 +128,14 @@ impl Spool {
                 self.file.write_all(&bytes)?;
             }
         }
+        // A run that was suspended by a program that did not record the bit goes on without it.
+        if let Some(bit) = bit.filter(|bit| self.index.bit == Some(bit.node)) {
+            for series in OF_BIT {
+                bytes.clear();
+                bytes.extend(bit.series(series).iter().flat_map(|value| value.to_le_bytes()));
+                self.file.write_all(&bytes)?;
+            }
+        }
         for values in snapshots.iter().flat_map(|block| &block.values) {
             bytes.clear();
             bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
@@ -129,6 +144,41 @@ impl Spool {
         self.index.blocks.push(samples);
         self.index.snapshots.blocks.push(snapshots.map_or(0, |block| block.count));
         Ok(())
+    }
+
+    /// The bit, from 0 at the top, where its rotation and torque are recorded beside the nodes.
+    pub fn bit(&self) -> Option<usize> {
+        self.index.bit
+    }
+
+    /// Some samples of the rate of twist \[rad/s\] or of the torque \[N m\] of the [bit](Self::bit).
+    ///
+    /// # Errors
+    /// When the file cannot be read, or another series is asked for or there is none of the bit.
+    pub fn read_bit(&self, series: Series, samples: Range<usize>) -> std::io::Result<Vec<f64>> {
+        let row = OF_BIT.iter().position(|of_bit| *of_bit == series).filter(|_| self.index.bit.is_some());
+        let row = row.ok_or_else(|| std::io::Error::other("a series of the bit that is not recorded"))?;
+        self.read_row(self.index.nodes.len() * Series::ALL.len() + row, samples)
+    }
+
+    /// Some samples of one of the rows of samples that each block has.
+    fn read_row(&self, row: usize, samples: Range<usize>) -> std::io::Result<Vec<f64>> {
+        let mut values = Vec::with_capacity(samples.len());
+        let mut bytes = Vec::new();
+        for place in self.index.places() {
+            let within = overlap(&samples, &place.samples);
+            if !within.is_empty() {
+                bytes.resize(within.len() * SAMPLE, 0);
+                let offset = (row * place.samples.len() + within.start) * SAMPLE;
+                self.file.read_exact_at(&mut bytes, place.start + offset as u64)?;
+                let (samples, _) = bytes.as_chunks::<SAMPLE>();
+                values.extend(samples.iter().copied().map(f64::from_le_bytes));
+            }
+        }
+        if values.len() != samples.len() {
+            return Err(std::io::Error::other("samples beyond the end of a recording"));
+        }
+        Ok(values)
     }
 
     /// The number of snapshots.
@@ -197,10 +247,11 @@ impl Index {
         let SnapshotIndex { series, nodes, blocks } = &self.snapshots;
         // A run that was suspended by a program without snapshots has none.
         let snapshots = blocks.iter().copied().chain(std::iter::repeat(0));
+        let rows = self.nodes.len() * Series::ALL.len() + self.bit.map_or(0, |_| OF_BIT.len());
         let (mut end, mut samples_before, mut snapshots_before) = (0, 0, 0);
         self.blocks.iter().zip(snapshots).map(move |(&samples, snapshots)| {
             let start = end;
-            let start_of_snapshots = start + (samples * self.nodes.len() * Series::ALL.len() * SAMPLE) as u64;
+            let start_of_snapshots = start + (samples * rows * SAMPLE) as u64;
             end = start_of_snapshots + (snapshots * series.len() * nodes * VALUE) as u64;
             let place = Place {
                 samples: samples_before..samples_before + samples,
@@ -227,23 +278,7 @@ impl Histories for Spool {
     }
 
     fn read(&self, index: usize, series: Series, samples: Range<usize>) -> std::io::Result<Cow<'_, [f64]>> {
-        let mut values = Vec::with_capacity(samples.len());
-        let mut bytes = Vec::new();
-        for place in self.index.places() {
-            let within = overlap(&samples, &place.samples);
-            if !within.is_empty() {
-                let row = index * Series::ALL.len() + series as usize;
-                bytes.resize(within.len() * SAMPLE, 0);
-                let offset = (row * place.samples.len() + within.start) * SAMPLE;
-                self.file.read_exact_at(&mut bytes, place.start + offset as u64)?;
-                let (samples, _) = bytes.as_chunks::<SAMPLE>();
-                values.extend(samples.iter().copied().map(f64::from_le_bytes));
-            }
-        }
-        if values.len() != samples.len() {
-            return Err(std::io::Error::other("samples beyond the end of a recording"));
-        }
-        Ok(Cow::Owned(values))
+        self.read_row(index * Series::ALL.len() + series as usize, samples).map(Cow::Owned)
     }
 }
 
@@ -334,7 +369,7 @@ mod tests {
     }
 
     fn of(histories: &[NodeHistory]) -> Block<'_> {
-        Block { histories, snapshots: None }
+        Block { histories, bit: None, snapshots: None }
     }
 
     /// Snapshots of three nodes with values that tell series, number and node apart, from `first` on.
@@ -355,7 +390,9 @@ mod tests {
         for (samples, taken) in parts {
             let taken = snapshots(taken.start, taken.len());
             let histories = block(samples.start, samples.len());
-            spool.append(Block { histories: &histories, snapshots: Some(&taken) }).unwrap();
+            spool
+                .append(Block { histories: &histories, bit: Some(&histories[0]), snapshots: Some(&taken) })
+                .unwrap();
         }
         assert_eq!((spool.samples(), spool.snapshot_count()), (60, 10));
         for range in [0..10, 0..0, 1..3, 2..9, 9..10] {
@@ -364,9 +401,12 @@ mod tests {
         }
         assert!(spool.snapshots(8..11).is_err());
         assert_eq!(*spool.read(1, Series::V, 30..50).unwrap(), block(0, 60)[1].v[30..50]);
+        assert_eq!(spool.read_bit(Series::ThetaZRate, 30..50).unwrap(), block(0, 60)[0].theta_z_rate[30..50]);
+        assert_eq!(spool.read_bit(Series::Torque, 0..60).unwrap(), block(0, 60)[0].torque);
+        assert!(spool.read_bit(Series::U, 0..1).is_err() && spool.read_bit(Series::Torque, 0..61).is_err());
         let other = SnapshotBlock::new(vec![SnapshotSeries::U]);
         let histories = block(60, 1);
-        assert!(spool.append(Block { histories: &histories, snapshots: Some(&other) }).is_err());
+        assert!(spool.append(Block { histories: &histories, bit: None, snapshots: Some(&other) }).is_err());
         assert!(spool.append(of(&histories)).is_err());
     }
 

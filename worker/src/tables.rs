@@ -252,13 +252,24 @@ fn history(
                 table.push(TORQUE.at_node(node + 1), column(Series::Torque, &|torque| torque)?);
             }
         }
+        // Whoever chooses nodes has those alone.
+        if let Some(bit) = histories.bit().filter(|_| nodes.is_none()) {
+            let column = |series, of: &dyn Fn(f64) -> f64| {
+                let values = histories.read_bit(series, samples.clone())?;
+                let values = values.iter().step_by(every).map(|&value| of(value) as f32).collect();
+                Ok::<_, std::io::Error>(Column::Single(values))
+            };
+            let speed = column(Series::ThetaZRate, &|rate| model.rotation_speed + rate)?;
+            table.push(ROTATION_SPEED.at_node(bit + 1), speed);
+            table.push(TORQUE.at_node(bit + 1), column(Series::Torque, &|torque| torque)?);
+        }
         Ok(table)
     };
     let all = match window {
         Some(window) => sample_range(window.from, window.to, records.rate_hz, histories.samples()),
         None => 0..histories.samples(),
     };
-    let width = size_of::<f64>() * tables::HISTORY.by_node.len() * kept_nodes.len().max(1);
+    let width = size_of::<f64>() * tables::HISTORY.by_node.len() * (kept_nodes.len() + 1);
     let every = *decimation as usize;
     let length = (PIECE_BYTES / width).next_multiple_of(every).max(every);
     let pieces = all.clone().step_by(length).map(|from| piece(from..(from + length).min(all.end)));

@@ -6,12 +6,22 @@ use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
 /// The nodes whose motion a history holds, from its column names, by number.
 pub fn recorded<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
-    let node = |name: &str| {
-        let name = Name::parse(name).filter(|name| name.quantity == &columns::U)?;
-        u32::try_from(name.node?).ok()
-    };
+    of_columns(names, |name| name.quantity == &columns::U)
+}
+
+/// The nodes of which a history holds anything, likewise: those, and the bit where its rotation and torque stand beside them.
+pub fn with_columns<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
+    of_columns(names, |_| true)
+}
+
+fn of_columns<'a>(
+    names: impl IntoIterator<Item = &'a str>,
+    is_wanted: impl Fn(&Name<'_>) -> bool,
+) -> Vec<u32> {
+    let node = |name: &str| u32::try_from(Name::parse(name).filter(&is_wanted)?.node?).ok();
     let mut nodes: Vec<u32> = names.into_iter().filter_map(node).collect();
     nodes.sort_unstable();
+    nodes.dedup();
     nodes
 }
 
@@ -138,8 +148,10 @@ mod tests {
 
     #[test]
     fn nodes_are_read_off_the_column_names() {
-        let columns = ["time", "u_282", "v_282", "u_rate_282", "u_10", "w_10", "theta_z_rate_10"];
+        let columns =
+            ["time", "u_282", "v_282", "u_rate_282", "u_10", "w_10", "theta_z_rate_10", "torque_297"];
         assert_eq!(recorded(columns), [10, 282]);
+        assert_eq!(with_columns(columns), [10, 282, 297]);
     }
 
     #[test]

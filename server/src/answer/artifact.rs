@@ -217,7 +217,12 @@ impl Recording {
 
     /// The columns of one node, out of the `layout` of the history, with the node that they are of.
     pub(crate) fn layout_of(&self, choice: Choice, mut layout: Table) -> Result<Table> {
-        let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(&layout)?)?;
+        let nodes = match choice {
+            // Nearest in depth is meant of the motion.
+            Choice::Nearest(_) => self.nodes(&layout)?,
+            Choice::Node(_) | Choice::At(_) => self.nodes_with_columns(&layout)?,
+        };
+        let Recorded { node, measured_depth, .. } = choice.among(&nodes)?;
         let is_wanted = |name: &str| {
             Name::parse(name).is_some_and(|name| match name.node {
                 Some(of) => of == node as usize,
@@ -306,13 +311,18 @@ impl Recording {
         Ok(node.zip(depths.last().copied()))
     }
 
-    /// Where the recorded nodes lie.
+    /// All nodes that the history has columns of.
+    fn nodes_with_columns(&self, layout: &Table) -> Result<Vec<Recorded>> {
+        nodes_among(&self.statics, node::with_columns(layout.columns.keys().map(String::as_str)))
+    }
+
+    /// Where the nodes lie that the history has columns of.
     pub(crate) fn places(&self, layout: &Table) -> Result<Vec<Place>> {
         let place = |recorded: Recorded| {
             let Recorded { node, measured_depth, .. } = recorded;
             Ok(Place { node, measured_depth, low_side: self.hole_at(node)?.low_side })
         };
-        self.nodes(layout)?.into_iter().map(place).collect()
+        self.nodes_with_columns(layout)?.into_iter().map(place).collect()
     }
 }
 

@@ -254,7 +254,7 @@ impl HistoryQuery {
 ///
 /// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...; where torsion is solved for
 /// also `rotation_speed_N`, the rotation imposed at the top and the rate of twist together \[rad/s\], and `torque_N`, the torque in the
-/// element above the node, at the first node below it \[N m\], negative where it opposes clockwise rotation. A picture shows u and v,
+/// element above the node, at the first node below it \[N m\], negative where it opposes clockwise rotation. Those two it has of the bit as well. A picture shows u and v,
 /// and where the string twists rotation speed \[rpm\] and torque at the bit, of the history or else of the snapshots; where neither has the
 /// bit, it says so and shows those of the lowest recorded node. Of a chosen node it shows what belongs to that node, and of `fields` these
 /// alone. The legend says at which depth and to which side. It shows 2,000,000 values at most.

@@ -506,7 +506,8 @@ pub struct Recording {
     /// it; a fixed step must divide the recording interval (of `esdirk4` it may also be that times a power of two).
     pub rate_hz: f64,
     /// Nodes whose histories are kept, each once; usual 1 to 10. Orbits, spectra and statistics exist for these only, and each
-    /// costs storage; with none, and no window, `auto` leaves the run in time out.
+    /// costs storage; with none, and no window, `auto` leaves the run in time out. Rotation speed and torque at the bit are kept beside
+    /// them where torsion is solved for.
     pub nodes: Vec<NodeChoice>,
     /// Half-open windows whose full spectra are summarised, of 8 samples at least, usual 5 to 20 s each; absent means the last sixth
     /// of the run, an empty list none. Frequencies are resolved to 1 over the length of a window; too long a one smears lines that

@@ -7,7 +7,7 @@ use crate::scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use crate::signal::sample_range;
 use crate::transient::{
     BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,
-    recorded_nodes,
+    bit_beside, recorded_nodes,
 };
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
@@ -29,6 +29,9 @@ const ROW_GROUP: u64 = 10_000;
 /// Columns of a history's table for each node, where torsion is solved for: the series, and the rotation speed that the rate of twist
 /// makes.
 const HISTORY_COLUMNS: u64 = Series::ALL.len() as u64 + 1;
+
+/// Those of the bit where it is recorded beside the nodes: rotation speed and torque.
+const BIT_COLUMNS: u64 = 2;
 
 /// Memory and storage of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -70,6 +73,8 @@ impl Footprint {
 /// What of a run grows with its duration.
 struct Recorded {
     nodes: u64,
+    /// Series of the bit, where it is recorded beside them.
+    of_bit: u64,
     samples: u64,
     /// Samples of the longest window.
     longest_window: u64,
@@ -82,7 +87,14 @@ impl Recorded {
     fn of(model: &Model) -> Self {
         let scenario = &model.scenario;
         if !model.effects.transient {
-            return Self { nodes: 0, samples: 0, longest_window: 0, spectrum_samples: 0, ledger_rows: 0 };
+            return Self {
+                nodes: 0,
+                of_bit: 0,
+                samples: 0,
+                longest_window: 0,
+                spectrum_samples: 0,
+                ledger_rows: 0,
+            };
         }
         let rate = scenario.recording.rate_hz;
         let samples = (scenario.duration * rate).round();
@@ -92,6 +104,7 @@ impl Recorded {
         let orbit = length(&scenario.orbit_window());
         Self {
             nodes: recorded_nodes(model).len() as u64,
+            of_bit: bit_beside(model).map_or(0, |_| BIT_COLUMNS),
             samples: samples as u64,
             longest_window: spectra.iter().map(length).fold(orbit, u64::max),
             spectrum_samples: spectra.iter().map(length).sum(),
@@ -101,10 +114,11 @@ impl Recorded {
 
     /// Bytes of memory at most.
     fn memory(&self) -> u64 {
-        let sample = (self.nodes * Series::ALL.len() as u64) * size_of::<f64>() as u64;
+        let of_bit = self.of_bit / BIT_COLUMNS * Series::ALL.len() as u64;
+        let sample = (self.nodes * Series::ALL.len() as u64 + of_bit) * size_of::<f64>() as u64;
         let block = (BLOCK_BYTES + sample).min(self.samples * sample);
         let row_group = LARGEST_ROW_GROUP.min(self.samples * sample);
-        let columns = 1 + self.nodes * HISTORY_COLUMNS;
+        let columns = 1 + self.nodes * HISTORY_COLUMNS + self.of_bit;
         let row_groups = (self.samples / ROW_GROUP).max(self.samples * sample / (2 * LARGEST_ROW_GROUP)) + 1;
         let window = if self.nodes > 0 { PER_WINDOW_SAMPLE * self.longest_window } else { 0 };
         // The rows are there once as they are made and once as columns.
@@ -163,20 +177,21 @@ fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
     let double = size_of::<f64>();
     let small = (model.elements.len() * OF_ELEMENTS + model.node_count() * OF_NODES) * double;
     let ledger = recorded.ledger_rows * size_of::<EnergyRow>() as u64;
-    let history = |nodes: u64, samples: u64| samples * (8 + nodes * HISTORY_COLUMNS * 4);
-    let Recorded { nodes, samples, .. } = *recorded;
+    let history = |columns: u64, samples: u64| samples * (8 + columns * 4);
+    let Recorded { nodes, of_bit, samples, .. } = *recorded;
+    let all = nodes * HISTORY_COLUMNS + of_bit;
     let of_motion = match &model.scenario.recording.outputs {
         Outputs::Summary => return 0,
         // Node, window and frequency, and two amplitudes in single precision.
         Outputs::Spectra => nodes * recorded.spectrum_samples * 40,
-        Outputs::Full => history(nodes, samples),
+        Outputs::Full => history(all, samples),
         Outputs::Orbits(part) => {
             let kept = part.window.map_or(samples, |window| {
                 let rate = model.scenario.recording.rate_hz;
                 sample_range(window.from, window.to, rate, samples as usize).len() as u64
             });
-            let nodes = part.nodes.as_ref().map_or(nodes, |nodes| nodes.len() as u64);
-            history(nodes, kept.div_ceil(u64::from(part.decimation)))
+            let columns = part.nodes.as_ref().map_or(all, |nodes| nodes.len() as u64 * HISTORY_COLUMNS);
+            history(columns, kept.div_ceil(u64::from(part.decimation)))
         }
     };
     small as u64 + ledger + of_motion

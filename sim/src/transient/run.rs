@@ -19,7 +19,7 @@ use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
-use super::{Outcome, Records, TransientEffort, recorded_nodes, resolved_hz, stability};
+use super::{Outcome, Records, TransientEffort, bit_beside, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::freedom::{DOFS, Freedoms, U, V};
 use crate::linalg::{Four, Lane, NodalField};
@@ -85,6 +85,8 @@ pub(super) struct Run<'m, const D: usize> {
     fastest: usize,
     /// Samples of the recorded nodes that were not handed over yet.
     block: Vec<NodeHistory>,
+    /// Those of the bit, where it is recorded beside them.
+    bit: Option<NodeHistory>,
     /// Present where snapshots are asked for.
     snapshots: Option<Recorder<D>>,
     progress: Progress<D>,
@@ -95,6 +97,8 @@ pub(super) struct Run<'m, const D: usize> {
 pub struct Block<'a> {
     /// Samples of the recorded nodes.
     pub histories: &'a [NodeHistory],
+    /// As many of the bit, where its rotation and torque are recorded beside them: [`bit_beside`](super::bit_beside).
+    pub bit: Option<&'a NodeHistory>,
     /// Snapshots; absent where none are asked for.
     pub snapshots: Option<&'a SnapshotBlock>,
 }
@@ -264,6 +268,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 .into_iter()
                 .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
                 .collect(),
+            bit: bit_beside(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
             snapshots: Recorder::new(model, of_a_step),
         };
         run.start()?;
@@ -372,9 +377,10 @@ impl<'m, const D: usize> Run<'m, D> {
         let snapshots = self.snapshots.as_ref().map(Recorder::block);
         let has_samples = self.block.first().is_some_and(|first| !first.u.is_empty());
         if has_samples || snapshots.is_some_and(|snapshots| snapshots.count > 0) {
-            keep(Block { histories: &self.block, snapshots }).map_err(TransientError::Histories)?;
+            keep(Block { histories: &self.block, bit: self.bit.as_ref(), snapshots })
+                .map_err(TransientError::Histories)?;
         }
-        self.block.iter_mut().for_each(NodeHistory::clear);
+        self.block.iter_mut().chain(&mut self.bit).for_each(NodeHistory::clear);
         self.snapshots.iter_mut().for_each(Recorder::clear);
         Ok(())
     }
@@ -443,7 +449,7 @@ impl<'m, const D: usize> Run<'m, D> {
         if self.progress.ticks == 0 {
             let state = &self.progress.state;
             let motion = |node: usize| (state.displacement.node(node), state.velocity.node(node));
-            for history in &mut self.block {
+            for history in self.block.iter_mut().chain(&mut self.bit) {
                 push(history, self.model, self.system.freedoms, &self.rest, motion);
             }
             if let Some(snapshots) = &mut self.snapshots {
@@ -476,7 +482,7 @@ impl<'m, const D: usize> Run<'m, D> {
                     _ => (end[0], end[1]),
                 }
             };
-            for history in &mut self.block {
+            for history in self.block.iter_mut().chain(&mut self.bit) {
                 push(history, self.model, self.system.freedoms, &self.rest, motion);
             }
             if let Some(snapshots) = &mut self.snapshots {
@@ -637,7 +643,8 @@ fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
 
 /// Samples of a block of the model's recorded nodes.
 fn block_samples(model: &Model) -> u64 {
-    let bytes = (recorded_nodes(model).len() * Series::ALL.len() * size_of::<f64>()) as u64;
+    let nodes = recorded_nodes(model).len() + usize::from(bit_beside(model).is_some());
+    let bytes = (nodes * Series::ALL.len() * size_of::<f64>()) as u64;
     (BLOCK_BYTES / bytes.max(1)).clamp(1, BLOCK_SAMPLES)
 }
 

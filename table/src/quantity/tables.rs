@@ -67,7 +67,7 @@ pub static STATICS: Layout = Layout {
     by_node: &[],
 };
 
-/// The recorded motion; the last two columns of each node where torsion is solved for.
+/// The recorded motion; the last two columns of each node where torsion is solved for, and then also those of the bit.
 pub static HISTORY: Layout = Layout {
     name: "history",
     columns: &[&TIME],

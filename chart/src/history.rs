@@ -6,7 +6,8 @@ use drillsweep_table::quantity::{Name, Quantity, Variant, units};
 use drillsweep_table::{Column, Table};
 
 use crate::picture::{Drawing, Line, LinePlot};
-use crate::shown::{Shown, node_of, numbers, shown_in, with_unit, words};
+use crate::place::{Place, at_place, grouped};
+use crate::shown::{Shown, node_of, numbers, shown_in, with_unit};
 
 /// The columns of a history that its picture shows, out of its `layout`: the time, and u and v, and rotation speed and torque of the lowest
 /// node, or the `fields` that are given.
@@ -20,17 +21,6 @@ pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Tab
     let mut names: Vec<String> = lines.map(str::to_owned).collect();
     names.push(TIME.name.to_owned());
     layout.select(&names).map_err(|missing| Box::new(ProblemDetails::no_such_column(layout, &missing)))
-}
-
-/// Where a recorded node lies, for the legend of its history.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Place {
-    /// Number of the node, 1 at the top.
-    pub node: u32,
-    /// Measured depth \[m\].
-    pub measured_depth: f64,
-    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
-    pub low_side: Option<f64>,
 }
 
 /// The lowest node of a string, and what snapshots tell of its rotation.
@@ -60,7 +50,7 @@ pub fn history(
 ) -> Result<Drawing, Box<ProblemDetails>> {
     let names = lines_of_history(table, fields);
     let shown = Shown::of(table, &names)?;
-    let y_label = shown.label();
+    let y_label = shown.label(places);
     let rotation = match fields {
         Some(_) => Rotation::default(),
         None => Rotation::of(table, places, bit),
@@ -184,54 +174,6 @@ fn varies(table: &Table, name: &str) -> bool {
     values.is_some_and(|values| values.iter().any(|value| *value != values[0]))
 }
 
-/// What a column of a node is, where the node lies, and which way it moves.
-fn at_place(name: &str, places: &[Place]) -> String {
-    let Some(parsed) = Name::parse(name) else { return words(name) };
-    let Some(place) = places.iter().find(|place| Some(place.node as usize) == parsed.node) else {
-        return words(name);
-    };
-    let what = parsed.quantity.label;
-    let direction = direction(parsed.quantity, place.low_side);
-    format!("{what} at {} m MD{direction}", grouped(place.measured_depth))
-}
-
-/// Which way a lateral displacement or speed counts, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
-/// e1 on the low side e2 is on the left.
-fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
-    /// Directions this near to one that has a name bear it \[deg\].
-    const NEAR: f64 = 1.0;
-    let own = match quantity {
-        quantity if quantity == &U || quantity == &U_RATE => 0.0,
-        quantity if quantity == &V || quantity == &V_RATE => 90.0,
-        quantity if quantity == &W || quantity == &W_RATE => return ", axial, downhole".to_owned(),
-        _ => return String::new(),
-    };
-    let Some(low_side) = low_side else {
-        return format!(", lateral, along {}", if own == 0.0 { "e1" } else { "e2" });
-    };
-    // From the low side to the left, within half a turn either way.
-    let angle = (own - low_side.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
-    let towards = match angle.abs() {
-        off if off < NEAR => "to the low side".to_owned(),
-        off if off > 180.0 - NEAR => "to the high side".to_owned(),
-        off => {
-            let side = if angle > 0.0 { "left" } else { "right" };
-            if (off - 90.0).abs() < NEAR {
-                format!("to the {side}")
-            } else {
-                format!("{off:.0}° {side} of the low side")
-            }
-        }
-    };
-    format!(", lateral, {towards}")
-}
-
-/// A depth in metres to the decimetre, whole ones from 1000 m on with their thousands apart.
-fn grouped(depth: f64) -> String {
-    let whole = depth.round() as i64;
-    if whole >= 1000 { format!("{} {:03}", whole / 1000, whole % 1000) } else { format!("{depth:.1}") }
-}
-
 fn lines_of_history<'t>(table: &'t Table, fields: Option<&'t [String]>) -> Vec<&'t str> {
     let is_lateral =
         |name: &&str| Name::parse(name).is_some_and(|name| name.quantity == &U || name.quantity == &V);
@@ -248,27 +190,6 @@ mod tests {
 
     fn column(values: &[f64]) -> Column {
         Column::Number(values.to_vec())
-    }
-
-    #[test]
-    fn legends_say_where_a_node_is_and_which_way_it_moves() {
-        let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
-        let label = |name, low_side: Option<f64>| at_place(name, &place(low_side.map(f64::to_radians)));
-        // Seen down the hole with the low side down, a turn from u to v is clockwise: from down to the left.
-        for (name, low_side, words) in [
-            ("u_10", Some(0.0), "u at 3 412 m MD, lateral, to the low side"),
-            ("u_10", Some(180.0), "u at 3 412 m MD, lateral, to the high side"),
-            ("v_10", Some(0.0), "v at 3 412 m MD, lateral, to the left"),
-            ("v_10", Some(90.0), "v at 3 412 m MD, lateral, to the low side"),
-            ("u_10", Some(90.0), "u at 3 412 m MD, lateral, to the right"),
-            ("v_10", Some(-120.0), "v at 3 412 m MD, lateral, 150° right of the low side"),
-            ("u_10", None, "u at 3 412 m MD, lateral, along e1"),
-            ("w_10", Some(0.0), "w at 3 412 m MD, axial, downhole"),
-            ("u_11", Some(0.0), "u 11"),
-        ] {
-            assert_eq!(label(name, low_side), words);
-        }
-        assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
     }
 
     /// A history of node 10, which turns as the drive does, and of node 49.

@@ -8,15 +8,17 @@ mod cost;
 mod history;
 mod orbit;
 pub mod picture;
+mod place;
 mod profile;
 mod shown;
 mod spectrum;
 mod sweep;
 
 pub use cost::work_precision;
-pub use history::{Bit, Place, history, shown_of_history};
+pub use history::{Bit, history, shown_of_history};
 pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};
+pub use place::Place;
 pub use profile::profile;
 pub use shown::caption;
 pub use spectrum::spectrum;

@@ -40,7 +40,7 @@ pub fn profile(
     };
     let plot = LinePlot {
         title: title.to_owned(),
-        x_label: shown.label(),
+        x_label: shown.label(&[]),
         y_label: with_unit(MEASURED_DEPTH.name),
         lines: shown.columns.into_iter().map(line).collect(),
         vertical: VerticalAxis::Depth,

@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use serde_json::Value;
 
 use crate::picture::axis::three_digits;
+use crate::place::{Place, at_place};
 
 /// Columns that are shown on one axis, in its unit.
 pub(crate) struct Shown<'t> {
@@ -47,10 +48,10 @@ impl<'t> Shown<'t> {
         Ok(Shown { columns, unit })
     }
 
-    /// What stands at the axis.
-    pub(crate) fn label(&self) -> String {
+    /// What stands at the axis; a column of one of the `places` says where that is.
+    pub(crate) fn label(&self, places: &[Place]) -> String {
         let name = match self.columns.as_slice() {
-            [(only, _)] => words(only),
+            [(only, _)] => at_place(only, places),
             several => common_words(several.iter().map(|(name, _)| *name)),
         };
         match self.unit {

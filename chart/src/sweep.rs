@@ -7,6 +7,7 @@ use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 
 use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
+use crate::place::{Place, at_place};
 use crate::shown::{Shown, amount, axis, numbers, with_unit, words};
 
 /// What of a sweep is shown, and how.
@@ -16,6 +17,8 @@ pub struct SweepView {
     pub spacing: Spacing,
     /// Parameters that are held, with their values in the units of the table.
     pub slice: Vec<(String, f64)>,
+    /// Where the nodes lie that the columns are of, as far as that is one place in the whole sweep.
+    pub places: Vec<Place>,
 }
 
 /// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
@@ -55,12 +58,12 @@ pub fn sweep(
     if axes.len() < 2 && texts.is_none() {
         let names: Vec<&str> = fields.iter().map(String::as_str).collect();
         let shown = Shown::of(table, &names)?;
-        let y_label = shown.label();
+        let y_label = shown.label(&view.places);
         let line = |(name, values): (&str, Vec<f64>)| {
             let mut points: Vec<[f64; 2]> =
                 xs.iter().zip(pick(values)).map(|(x, value)| [*x, value]).collect();
             points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            Line { name: words(name), points, is_marked: true }
+            Line { name: at_place(name, &view.places), points, is_marked: true }
         };
         let plot = LinePlot {
             title: title.to_owned(),
@@ -80,11 +83,11 @@ pub fn sweep(
         Some(texts) => {
             let texts: Vec<Option<&str>> = rows.iter().map(|row| texts[*row].as_deref()).collect();
             let (kinds, values) = kinds(&texts);
-            (kinds, values, words(first))
+            (kinds, values, at_place(first, &view.places))
         }
         None => {
             let mut shown = Shown::of(table, &[first.as_str()])?;
-            let value_label = shown.label();
+            let value_label = shown.label(&view.places);
             let (_, values) = shown.columns.swap_remove(0);
             (Vec::new(), pick(values), value_label)
         }
@@ -261,7 +264,7 @@ mod tests {
         )
         .unwrap()
         .svg();
-        assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms 49 [mm]"));
+        assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms, node 49 [mm]"));
         assert!(map.contains("flow rate [m3/s]") && map.contains("mud density [kg/m3]"));
         let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), &none, "", &SweepView::default())
             .unwrap()

@@ -7,7 +7,11 @@ use super::{
 };
 
 const TITLE_SIZE: f64 = 17.0;
+const TITLE_ROW: f64 = 22.0;
 const SUBTITLE_SIZE: f64 = 12.5;
+const SUBTITLE_ROW: f64 = 15.0;
+/// Lines of a title, or of what stands below it, before it is cut: names of sweeps may be of any length.
+const MOST_LINES: usize = 3;
 const LEGEND_SIZE: f64 = 13.0;
 const LEGEND_ROW: f64 = 22.0;
 /// The length of the sample of a series' line in the legend.
@@ -40,27 +44,28 @@ impl Entry {
     }
 }
 
-/// Adds the title, cut to one line, and gives what it became and where it ends; an empty one takes no room.
+/// Adds the title, in as many lines as it needs up to [`MOST_LINES`], and gives its text and where it ends; an empty one takes no room.
 pub(super) fn title(shapes: &mut Vec<Shape>, title: &str, left: f64, right: f64) -> (String, f64) {
-    let title = text::line(title, TITLE_SIZE, Weight::Bold, right - left);
-    if title.is_empty() {
-        return (title, 12.0);
+    let lines = text::lines(title, TITLE_SIZE, Weight::Bold, right - left, MOST_LINES);
+    let mut bottom = 12.0;
+    for (number, line) in lines.iter().enumerate() {
+        let baseline = 34.0 + number as f64 * TITLE_ROW;
+        let heading = Text::new(line.clone(), [left, baseline], Anchor::Start, TITLE_SIZE, Colour::TEXT);
+        shapes.push(Shape::Text(Text { weight: Weight::Bold, ..heading }));
+        bottom = baseline + 12.0;
     }
-    let baseline = 34.0;
-    let heading = Text::new(title.clone(), [left, baseline], Anchor::Start, TITLE_SIZE, Colour::TEXT);
-    shapes.push(Shape::Text(Text { weight: Weight::Bold, ..heading }));
-    (title, baseline + 12.0)
+    (lines.join(" "), bottom)
 }
 
-/// Adds a line of smaller text below the title and gives where it ends; an empty one takes no room.
+/// Adds smaller text below the title, in lines likewise, and gives where it ends; an empty one takes no room.
 pub(super) fn subtitle(shapes: &mut Vec<Shape>, subtitle: &str, left: f64, right: f64, top: f64) -> f64 {
-    let subtitle = text::line(subtitle, SUBTITLE_SIZE, Weight::Regular, right - left);
-    if subtitle.is_empty() {
-        return top;
+    let mut bottom = top;
+    for line in text::lines(subtitle, SUBTITLE_SIZE, Weight::Regular, right - left, MOST_LINES) {
+        let at = [left, bottom + 7.0];
+        shapes.push(Shape::Text(Text::new(line, at, Anchor::Start, SUBTITLE_SIZE, Colour::QUIET_TEXT)));
+        bottom += SUBTITLE_ROW;
     }
-    let at = [left, top + 7.0];
-    shapes.push(Shape::Text(Text::new(subtitle, at, Anchor::Start, SUBTITLE_SIZE, Colour::QUIET_TEXT)));
-    top + 15.0
+    bottom
 }
 
 /// Adds the legend, in as many rows as it needs, and gives where it ends.

@@ -126,14 +126,36 @@ pub(super) fn plain_of_superscript(character: char) -> Option<char> {
 /// spaces, characters that XML does not allow the replacement character, and what is too long ends in an
 /// ellipsis.
 pub(super) fn line(text: &str, size: f64, weight: Weight, max_width: f64) -> String {
-    let words: Vec<&str> =
-        text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|w| !w.is_empty()).collect();
-    let line = words.join(" ").replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}");
-    if room(&line, size, weight) <= max_width {
-        return line;
+    cut(&words(text).join(" "), size, weight, max_width)
+}
+
+/// The same in at most so many lines, which break between words; none of a text without words.
+pub(super) fn lines(text: &str, size: f64, weight: Weight, max_width: f64, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words(text) {
+        let may_break = lines.len() < most;
+        match lines.last_mut() {
+            Some(line) if !may_break || room(&format!("{line} {word}"), size, weight) <= max_width => {
+                line.push(' ');
+                line.push_str(&word);
+            }
+            _ => lines.push(word),
+        }
+    }
+    lines.iter().map(|line| cut(line, size, weight, max_width)).collect()
+}
+
+fn words(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
+    words.map(|word| word.replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")).collect()
+}
+
+fn cut(line: &str, size: f64, weight: Weight, max_width: f64) -> String {
+    if room(line, size, weight) <= max_width {
+        return line.to_owned();
     }
     let room = max_width - room("…", size, weight);
-    let fitting = ends(&line, size, weight).take_while(|end| end * VIEWERS_FONT <= room).count();
+    let fitting = ends(line, size, weight).take_while(|end| end * VIEWERS_FONT <= room).count();
     let start: String = line.chars().take(fitting).collect();
     format!("{}…", start.trim_end())
 }
@@ -182,5 +204,19 @@ mod tests {
         assert_eq!(line(" two\n\twords \u{0} ", 12.0, Weight::Regular, 100.0), "two words");
         assert_eq!(line("a\u{ffff}", 12.0, Weight::Regular, 100.0), "a\u{fffd}");
         assert_eq!(line("anything", 12.0, Weight::Regular, 0.0), "…");
+    }
+    #[test]
+    fn text_breaks_between_words_and_is_cut_in_the_last_line() {
+        let set = |text: &str| lines(text, 12.0, Weight::Regular, 100.0, 3);
+        assert_eq!(set(" \t"), Vec::<String>::new());
+        assert_eq!(set("two words"), ["two words"]);
+        let words: Vec<String> = (0..10).map(|k| format!("word{k}")).collect();
+        let few = set(&words[..5].join(" "));
+        assert!(few.len() > 1 && few.join(" ") == words[..5].join(" "), "{few:?}");
+        let many = set(&words.join(" ").repeat(4));
+        assert!(many.len() == 3 && many[2].ends_with('…') && !many[1].ends_with('…'), "{many:?}");
+        assert!(many.iter().all(|line| room(line, 12.0, Weight::Regular) <= 100.0), "{many:?}");
+        let wide = set(&format!("a {} b", "w".repeat(100)));
+        assert!(wide[1].ends_with('…') && wide[2] == "b", "{wide:?}");
     }
 }

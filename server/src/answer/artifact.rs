@@ -326,6 +326,13 @@ impl Recording {
     }
 }
 
+/// Where nodes of a point lie, as far as its equilibrium tells; none where that is not kept, or not any more. Read by a thread that may
+/// wait.
+pub(crate) fn depths(statics: &Stored, nodes: &[u32]) -> Result<Vec<Place>> {
+    let place = |Recorded { node, measured_depth, .. }| Place { node, measured_depth, low_side: None };
+    Ok(nodes_among(statics, nodes.iter().copied())?.into_iter().map(place).collect())
+}
+
 /// The numbers of a column of a history.
 fn take(table: &mut Table, name: &str) -> Result<Vec<f64>> {
     match table.columns.swap_remove(name) {

@@ -16,20 +16,24 @@ use drillsweep_api::{
 use drillsweep_chart as chart;
 use drillsweep_store::{
     Addition, AppendOutcome, CachePolicy, ChangeOutcome, DeleteOutcome, NewSweep, NewVerification,
-    SubmitOutcome, SweepChanges, SweepFilter,
+    SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
+use drillsweep_table::quantity::{Name, tables};
+use indexmap::IndexSet;
 use jiff::Timestamp;
 use serde::Deserialize;
 use tokio::runtime::Handle;
 use tokio::time::Instant;
 use utoipa::{IntoParams, ToSchema};
 
+use crate::answer::artifact;
 use crate::answer::blocking::{blocking, to_the_end};
 use crate::answer::document::{Conditional, PictureResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{Answer, Format, PictureFormat};
 use crate::answer::records;
+use crate::answer::stored::Stored;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::guard::audit::Owner;
@@ -733,7 +737,7 @@ impl From<MapSpacing> for chart::Spacing {
 /// has chosen have the bias of each statistic against the reference, as `bias_orbit_radius_rms_49`; where biases exceed what the
 /// accuracy promises, the attribute `warnings` says so. A picture shows the columns in `fields` over the parameters that vary: lines
 /// over one of them, a map of the first column over two, with diamonds at verified points; with more, a slice. Words, such as `state`
-/// and `stable`, have a colour each.
+/// and `stable`, have a colour each. A column of a node is shown with its depth, where that is the same in all of the sweep.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/table",
@@ -750,10 +754,18 @@ pub(crate) async fn table(
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
     let spacing = spacing.unwrap_or_default().into();
-    let view = chart::SweepView { spacing, slice: slice.unwrap_or_default() };
+    let mut view = chart::SweepView { spacing, slice: slice.unwrap_or_default(), ..Default::default() };
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
+    let nodes = match format.is_picture() {
+        true => nodes_of(fields.as_deref().unwrap_or_default()),
+        false => Vec::new(),
+    };
+    let statics = match nodes.is_empty() {
+        true => None,
+        false => statics_of_first(&app, &id).await?,
+    };
     let runtime = Handle::current();
     place
         .answer(move || {
@@ -765,7 +777,13 @@ pub(crate) async fn table(
                 _ => PointsTable::default(),
             };
             let points = verified.points(table, &app.store, &id, &runtime)?;
-            let parameters = points.parameters().map(str::to_owned).collect();
+            let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
+            if let Some(statics) = statics
+                && !parameters.iter().any(|name| moves_nodes(name))
+            {
+                // A picture without depths is better than none.
+                view.places = artifact::depths(&statics, &nodes).unwrap_or_default();
+            }
             let mut table = points.finish();
             let findings = &verified.findings;
             if !findings.warnings.is_empty() {
@@ -777,6 +795,28 @@ pub(crate) async fn table(
             })
         })
         .await
+}
+
+/// The nodes that columns are of.
+fn nodes_of(fields: &[String]) -> Vec<u32> {
+    let node = |name: &String| u32::try_from(Name::parse(name)?.node?).ok();
+    fields.iter().filter_map(node).collect()
+}
+
+/// The equilibrium of the first point that has a result and has kept it.
+async fn statics_of_first(app: &App, id: &str) -> Result<Option<Stored>> {
+    let first = app.store.points(id, &[WorkState::Done], 0, 1).await?;
+    let ordinal = first.first().and_then(|point| u32::try_from(point.ordinal).ok());
+    match ordinal {
+        Some(n) => artifact::stored_if_any(&app.store, id, n, tables::STATICS.name).await,
+        None => Ok(None),
+    }
+}
+
+/// Whether a node of one number may lie elsewhere where this parameter has another value: the mesh follows from the string and its wall.
+fn moves_nodes(parameter: &str) -> bool {
+    let of_what = parameter.split(['.', '[']).next();
+    of_what.is_some_and(|of_what| ["string", "mesh", "contact"].contains(&of_what))
 }
 
 /// The columns of the table of a sweep, without their values

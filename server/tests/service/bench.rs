@@ -185,7 +185,8 @@ impl Bench {
                 blob: self.store.put_blob(bytes).await.unwrap(),
             });
         }
-        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual, "resolved_hz": 200.0});
+        let summary = json!({"steps": 10_000, "density_seen": scenario.mud.map(|mud| mud.density), "residual": residual, "resolved_hz": 200.0,
+            "orbit_radius_rms_49": 1e-3});
         let provenance = json!({"version": "bench"});
         let result = NewResult {
             summary_json: &summary.to_string(),

@@ -61,6 +61,26 @@ async fn results_are_shown_as_drawings_and_as_pixels() {
 }
 
 #[tokio::test]
+async fn a_map_says_at_which_depth_a_node_is_where_it_is_at_one() {
+    let bench = Bench::new().await;
+    let over = async |axes: serde_json::Value| {
+        let id = bench.submit(json!({"preset": "paper-200m", "axes": axes})).await;
+        bench.succeed().await;
+        bench.succeed().await;
+        bench
+            .get(&format!("/v1/sweeps/{id}/table?fields=orbit_radius_rms_49&format=svg"))
+            .await
+            .text()
+            .to_owned()
+    };
+    let flow = over(json!({"flow_rate": {"values": [0.02, 0.03]}})).await;
+    assert!(flow.contains(">orbit radius rms at 57.7 m MD [mm]<"), "{flow}");
+    // Of another mesh a number is another place.
+    let mesh = over(json!({"mesh.drillpipe": {"values": [1.5, 1.2]}})).await;
+    assert!(mesh.contains(">orbit radius rms, node 49 [mm]<"), "{mesh}");
+}
+
+#[tokio::test]
 async fn columns_can_be_chosen() {
     let (bench, path) = finished().await;
     let table = bench.get(&format!("{path}/table?fields=density_seen,ordinal")).await.json();

@@ -64,17 +64,18 @@ async fn the_table_of_a_sweep_has_a_row_for_every_point() {
             "density_seen": [1200.0, null],
             "residual": [1e-9, null],
             "resolved_hz": [200.0, null],
+            "orbit_radius_rms_49": [1e-3, null],
             "error": [null, "the state is not finite"],
             "error_time": [null, 1.25],
             "error_node": [null, 49],
         })
     );
     let csv = bench.get(&format!("{path}/table?format=csv")).await;
-    let header = "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,resolved_hz,error,error_time,error_node";
+    let header = "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,resolved_hz,orbit_radius_rms_49,error,error_time,error_node";
     assert_eq!(
         csv.text(),
         format!(
-            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,200.0,,,\n2,failed,1500.0,0.01,,,,,the state is not finite,1.25,49\n"
+            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,200.0,0.001,,,\n2,failed,1500.0,0.01,,,,,,the state is not finite,1.25,49\n"
         )
     );
     let whole = bench.get(&format!("{path}/table?format=parquet")).await;
@@ -202,7 +203,8 @@ async fn a_point_shows_its_summary_and_provenance() {
     let point = answer.json();
     assert_eq!(
         point["summary"],
-        json!({"steps": 10_000, "density_seen": 1200.0, "residual": 1e-9, "resolved_hz": 200.0})
+        json!({"steps": 10_000, "density_seen": 1200.0, "residual": 1e-9, "resolved_hz": 200.0,
+            "orbit_radius_rms_49": 1e-3})
     );
     assert_eq!(point["provenance"], json!({"version": "bench"}));
     assert_eq!(point["tables"], json!(["history", "profile", "statics"]));

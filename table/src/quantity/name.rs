@@ -104,15 +104,18 @@ impl<'n> Name<'n> {
 /// What pictures call the column.
 impl fmt::Display for Name<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}{}", self.variant.prefix().replace('_', " "), self.quantity.label)?;
+        if self.variant != Variant::Value {
+            write!(formatter, "{} of ", self.variant.prefix().trim_end_matches('_').replace('_', " "))?;
+        }
+        write!(formatter, "{}", self.quantity.label)?;
         if let Some(detail) = self.detail {
             write!(formatter, " {}", detail.replace('_', " "))?;
         }
         if let Some(node) = self.node {
-            write!(formatter, " {node}")?;
+            write!(formatter, ", node {node}")?;
         }
         match self.window {
-            Some(window) => write!(formatter, " w{window}"),
+            Some(window) => write!(formatter, ", window {window}"),
             None => Ok(()),
         }
     }
@@ -190,8 +193,8 @@ mod tests {
     fn labels_say_which_column() {
         let label = |name| Name::parse(name).unwrap().to_string();
         assert_eq!(label("friction_coefficient"), "friction coefficient C_f");
-        assert_eq!(label("spread_orbit_radius_rms_49"), "spread orbit radius rms 49");
-        assert_eq!(label("line_amplitude_49_w1"), "line amplitude 49 w1");
+        assert_eq!(label("spread_orbit_radius_rms_49"), "spread of orbit radius rms, node 49");
+        assert_eq!(label("line_amplitude_49_w1"), "line amplitude, node 49, window 1");
         assert_eq!(label("string.sections[1].length"), "section length");
         assert_eq!(label("cost_cpu_time_orbit_size_2_percent"), "cost cpu time orbit size 2 percent");
     }

@@ -1,0 +1,95 @@
+//! Where nodes lie in the well, in words.
+
+use drillsweep_table::quantity::columns::*;
+use drillsweep_table::quantity::{Name, Quantity};
+
+use crate::shown::words;
+
+/// Where a node lies, for what is said of its columns.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// Number of the node, 1 at the top.
+    pub node: u32,
+    /// Measured depth \[m\].
+    pub measured_depth: f64,
+    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    pub low_side: Option<f64>,
+}
+
+/// What a column is; of a node that is among the `places`, where that lies and which way it moves.
+pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
+    let Some(parsed) = Name::parse(name) else { return words(name) };
+    let Some(place) = places.iter().find(|place| Some(place.node as usize) == parsed.node) else {
+        return words(name);
+    };
+    let depth = grouped(place.measured_depth);
+    let direction = direction(parsed.quantity, place.low_side);
+    let elsewhere = Name { node: None, window: None, ..parsed };
+    let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
+    format!("{elsewhere} at {depth} m MD{direction}{window}")
+}
+
+/// Which way a lateral displacement or speed counts, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
+/// e1 on the low side e2 is on the left.
+fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
+    /// Directions this near to one that has a name bear it \[deg\].
+    const NEAR: f64 = 1.0;
+    let own = match quantity {
+        quantity if quantity == &U || quantity == &U_RATE => 0.0,
+        quantity if quantity == &V || quantity == &V_RATE => 90.0,
+        quantity if quantity == &W || quantity == &W_RATE => return ", axial, downhole".to_owned(),
+        _ => return String::new(),
+    };
+    let Some(low_side) = low_side else {
+        return format!(", lateral, along {}", if own == 0.0 { "e1" } else { "e2" });
+    };
+    // From the low side to the left, within half a turn either way.
+    let angle = (own - low_side.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    let towards = match angle.abs() {
+        off if off < NEAR => "to the low side".to_owned(),
+        off if off > 180.0 - NEAR => "to the high side".to_owned(),
+        off => {
+            let side = if angle > 0.0 { "left" } else { "right" };
+            if (off - 90.0).abs() < NEAR {
+                format!("to the {side}")
+            } else {
+                format!("{off:.0}° {side} of the low side")
+            }
+        }
+    };
+    format!(", lateral, {towards}")
+}
+
+/// A depth in metres to the decimetre, whole ones from 1000 m on with their thousands apart.
+pub(crate) fn grouped(depth: f64) -> String {
+    let whole = depth.round() as i64;
+    if whole >= 1000 { format!("{} {:03}", whole / 1000, whole % 1000) } else { format!("{depth:.1}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legends_say_where_a_node_is_and_which_way_it_moves() {
+        let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
+        let label = |name, low_side: Option<f64>| at_place(name, &place(low_side.map(f64::to_radians)));
+        // Seen down the hole with the low side down, a turn from u to v is clockwise: from down to the left.
+        for (name, low_side, words) in [
+            ("u_10", Some(0.0), "u at 3 412 m MD, lateral, to the low side"),
+            ("u_10", Some(180.0), "u at 3 412 m MD, lateral, to the high side"),
+            ("v_10", Some(0.0), "v at 3 412 m MD, lateral, to the left"),
+            ("v_10", Some(90.0), "v at 3 412 m MD, lateral, to the low side"),
+            ("u_10", Some(90.0), "u at 3 412 m MD, lateral, to the right"),
+            ("v_10", Some(-120.0), "v at 3 412 m MD, lateral, 150° right of the low side"),
+            ("u_10", None, "u at 3 412 m MD, lateral, along e1"),
+            ("w_10", Some(0.0), "w at 3 412 m MD, axial, downhole"),
+            ("u_11", Some(0.0), "u, node 11"),
+            ("spread_orbit_radius_rms_10", Some(0.0), "spread of orbit radius rms at 3 412 m MD"),
+            ("line_amplitude_10_w2", None, "line amplitude at 3 412 m MD, window 2"),
+        ] {
+            assert_eq!(label(name, low_side), words);
+        }
+        assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
+    }
+}

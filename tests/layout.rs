@@ -82,6 +82,18 @@ fn only_the_store_knows_sql_only_the_server_serves_http_and_only_chart_rasterise
 }
 
 #[test]
+fn only_tests_make_the_openapi_document() {
+    let metadata = metadata();
+    let all = metadata.packages.iter().flat_map(|package| &package.dependencies);
+    let built: Vec<_> = all.filter(|dependency| dependency.kind != DependencyKind::Development).collect();
+    assert!(built.iter().any(|dependency| dependency.name == "utoipa"), "the annotations were not found");
+    for dependency in built {
+        assert!(dependency.name != "utoipa" || dependency.optional, "utoipa is in every build");
+        assert!(!dependency.features.iter().any(|name| name == "openapi"), "{} has it", dependency.name);
+    }
+}
+
+#[test]
 fn simulation_knows_no_clock_files_threads_network_or_async() {
     let metadata = metadata();
     let sim = metadata.packages.iter().find(|package| package.name.as_str() == "drillsweep-sim").unwrap();

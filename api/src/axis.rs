@@ -1,7 +1,6 @@
 //! One axis of a sweep: the values that one parameter takes.
 
 use serde::{Deserialize, Deserializer, Serialize};
-use utoipa::ToSchema;
 
 /// The values of one swept parameter, listed or spaced between two ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,7 +34,8 @@ pub enum Axis {
 }
 
 /// Spacing of the values between the ends of a range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Equal differences: `from + (to - from) i / (count - 1)`.
@@ -178,6 +178,7 @@ impl TryFrom<AxisFields> for Axis {
 }
 
 /// The schemas of the three forms of an axis, which exclude each other by the members that they require and allow.
+#[cfg(feature = "openapi")]
 mod schema {
     use utoipa::openapi::schema::{OneOf, Schema};
     use utoipa::openapi::{Ref, RefOr};

@@ -3,7 +3,6 @@
 use drillsweep_sim::study::plan::{MachineSpeed, Plan};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
 use crate::expand::{Expansion, SweepPoint, key_text};
 use crate::problem::FieldProblem;
@@ -12,7 +11,8 @@ use crate::problem::FieldProblem;
 const PLANNED_POINTS: usize = 16;
 
 /// What a request would become, without storing anything.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct DryRun {
     /// Number of points.
     pub total: u64,
@@ -41,7 +41,8 @@ pub struct DryRun {
 }
 
 /// The reference runs that would verify some points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PlannedVerification {
     /// Number of reference runs.
     pub total: u64,
@@ -52,7 +53,8 @@ pub struct PlannedVerification {
 }
 
 /// A point that a request would become.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PlannedPoint {
     /// Number of the point, from 1, the first axis varying slowest.
     pub ordinal: u32,

@@ -2,12 +2,12 @@
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
 use crate::point::PointState;
 
 /// The data of an event `point`: a result that points of the sweep share, or that verifies some, has come to a new state.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointEvent {
     /// The points, by their numbers in the sweep; none where it is only the reference run of some.
     pub ordinals: Vec<u32>,
@@ -21,7 +21,8 @@ pub struct PointEvent {
 }
 
 /// The data of an event `deleted`: a sweep is no longer there.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct DeletedSweep {
     /// The sweep.
     pub id: String,

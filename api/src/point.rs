@@ -5,10 +5,10 @@ use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use utoipa::ToSchema;
 
 /// The state of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PointState {
     /// Waiting for a worker.
@@ -43,7 +43,8 @@ impl std::fmt::Display for PointState {
 }
 
 /// One row of a sweep's list of points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointRow {
     /// Number of the point in its sweep, from 1, the first axis varying slowest.
     pub ordinal: u32,
@@ -63,7 +64,8 @@ pub struct PointRow {
 }
 
 /// A page of points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointList {
     /// The points, by ordinal.
     pub points: Vec<PointRow>,
@@ -73,7 +75,8 @@ pub struct PointList {
 }
 
 /// A page of points, with the fields of each that were asked for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SelectedPointList {
     /// The points, by ordinal.
     pub points: Vec<Map<String, Value>>,
@@ -89,7 +92,8 @@ impl PointRow {
 }
 
 /// A failed point, in the list over all sweeps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Failure {
     /// Identifier of its sweep.
     pub sweep: String,
@@ -106,7 +110,8 @@ pub struct Failure {
 }
 
 /// A page of failed points, the latest first.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct FailureList {
     /// The points.
     pub failures: Vec<Failure>,
@@ -116,14 +121,16 @@ pub struct FailureList {
 }
 
 /// The files of a point's result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ArtifactList {
     /// One entry a file, by name.
     pub artifacts: Vec<ArtifactEntry>,
 }
 
 /// One file of a point's result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ArtifactEntry {
     /// Its name within the result.
     pub name: String,
@@ -143,7 +150,8 @@ pub struct ArtifactEntry {
 }
 
 /// What an archive of a sweep holds, and what it lacks: `manifest.json` in it.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ExportManifest {
     /// Number of files of points in the archive.
     pub files: u64,
@@ -152,10 +160,11 @@ pub struct ExportManifest {
 }
 
 /// A file of a point that cannot be had.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct MissingFile {
     /// Number of the point in the sweep, from 1.
-    #[schema(minimum = 1)]
+    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub point: u32,
     /// Name of the table.
     pub table: String,
@@ -164,7 +173,8 @@ pub struct MissingFile {
 }
 
 /// Everything about one point but its tables.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointDetail {
     /// The point as in the list.
     #[serde(flatten)]
@@ -186,7 +196,8 @@ pub struct PointDetail {
 }
 
 /// Why a point has failed; workers store this very form.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointError {
     /// The class of failure.
     pub class: FailureClass,
@@ -211,7 +222,8 @@ impl PointError {
 }
 
 /// What kind of failure ended a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FailureClass {
     /// The simulation itself: it diverged, or there is no equilibrium. Would happen again.
@@ -243,7 +255,8 @@ impl FailureClass {
 }
 
 /// Where to read more about a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointLinks {
     /// The point itself.
     #[serde(rename = "self")]

@@ -4,7 +4,6 @@ use drillsweep_sim::scenario::Problem;
 use drillsweep_table::Table;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use utoipa::ToSchema;
 
 use crate::point::PointState;
 
@@ -174,11 +173,12 @@ impl ProblemKind {
 }
 
 /// A problem document (RFC 9457), served as `application/problem+json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ProblemDetails {
     /// Stable URI of the kind of problem, for programs to compare.
     #[serde(rename = "type")]
-    #[schema(example = "urn:drillsweep:problem:invalid-request")]
+    #[cfg_attr(feature = "openapi", schema(example = "urn:drillsweep:problem:invalid-request"))]
     pub type_uri: String,
     /// The kind of problem in words.
     pub title: String,
@@ -198,11 +198,12 @@ pub struct ProblemDetails {
 }
 
 /// One thing that is wrong with a request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct FieldProblem {
     /// JSON Pointer (RFC 6901) into the request's body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(example = "/axes/flow_rate/values/2")]
+    #[cfg_attr(feature = "openapi", schema(example = "/axes/flow_rate/values/2"))]
     pub pointer: Option<String>,
     /// Name of the path, query or header parameter.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -8,7 +8,6 @@ use jiff::Timestamp;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
-use utoipa::ToSchema;
 
 use crate::axis::Axis;
 use crate::problem::{FieldProblem, ProblemDetails};
@@ -16,30 +15,34 @@ use crate::problem::{FieldProblem, ProblemDetails};
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///
 /// Exactly one of `preset` and `scenario` is given. `set` is applied first, then the axes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SweepRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(
-        min_length = 1,
-        max_length = 200,
-        pattern = r"^\P{Cc}*$",
-        example = "flow rate against density"
+    #[cfg_attr(
+        feature = "openapi",
+        schema(
+            min_length = 1,
+            max_length = 200,
+            pattern = r"^\P{Cc}*$",
+            example = "flow rate against density"
+        )
     )]
     pub name: Option<String>,
     /// Whose share of the workers the sweep counts against; absent means `default`. Where tokens are in use it is the token's
     /// owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
+    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
+    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(example = "paper-200m")]
+    #[cfg_attr(feature = "openapi", schema(example = "paper-200m"))]
     pub preset: Option<String>,
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,13 +51,13 @@ pub struct SweepRequest {
     /// `string.sections[1].count`. An object changes the fields it names; `null` removes what is optional. An
     /// outer path is applied before those inside it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
+    #[cfg_attr(feature = "openapi", schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120})))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
     /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says. A point of 60 s takes some 4 MB in full,
     /// 0.5 MB as spectra and nothing as a summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(example = "full")]
+    #[cfg_attr(feature = "openapi", schema(example = "full"))]
     pub outputs: Option<Outputs>,
     /// How the points are made from the axes; absent means `grid`.
     #[serde(default)]
@@ -63,23 +66,26 @@ pub struct SweepRequest {
     /// `operation.rotation_speed_rpm` or `string.sections[1].count`. In a grid the first axis varies slowest, in the order in which
     /// they are written. A sweep has 100,000 points at most, the product of the axes' counts in a grid; without axes it has one.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schema(example = json!({
-        "flow_rate": {"values": [0.01, 0.04, 0.06]},
-        "mud_density": {"from": 1200, "to": 2100, "count": 4}
-    }))]
+    #[cfg_attr(
+        feature = "openapi",
+        schema(example = json!({
+            "flow_rate": {"values": [0.01, 0.04, 0.06]},
+            "mud_density": {"from": 1200, "to": 2100, "count": 4}
+        }))
+    )]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`, each with a value for every parameter that the first names.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(example = json!([]))]
+    #[cfg_attr(feature = "openapi", schema(example = json!([])))]
     pub points: Vec<IndexMap<AxisName, f64>>,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(minimum = 1, maximum = 100_000)]
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
     pub samples: Option<u32>,
     /// What these designs are drawn from, any whole number from 0; 0 unless given. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
+    #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.
@@ -91,57 +97,59 @@ pub struct SweepRequest {
     /// same request; of points that are added later as many are verified as make up that part, or that number, of the whole sweep.
     /// What is found is at `GET /v1/sweeps/{id}/verification`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(exclusive_minimum = 0.0, example = 0.05)]
+    #[cfg_attr(feature = "openapi", schema(exclusive_minimum = 0.0, example = 0.05))]
     pub verify: Option<f64>,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
-    #[schema(minimum = -10, maximum = 10)]
+    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
     pub priority: i32,
 }
 
 /// A word to find a sweep by.
-#[derive(ToSchema)]
+#[cfg(feature = "openapi")]
+#[derive(utoipa::ToSchema)]
 #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
 #[expect(dead_code, reason = "only its schema is used")]
 struct Tag(String);
 
 /// A single point, computed by the same machinery as a sweep.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
+    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$"))]
     pub name: Option<String>,
     /// Whose share of the workers the run counts against; absent means `default`. Where tokens are in use it is the token's owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
+    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
+    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(example = "paper-200m")]
+    #[cfg_attr(feature = "openapi", schema(example = "paper-200m"))]
     pub preset: Option<String>,
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
     /// Changes to the scenario, by the path of the field.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schema(example = json!({"mud.flow_rate": 0.04}))]
+    #[cfg_attr(feature = "openapi", schema(example = json!({"mud.flow_rate": 0.04})))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
     /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(example = "full")]
+    #[cfg_attr(feature = "openapi", schema(example = "full"))]
     pub outputs: Option<Outputs>,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
-    #[schema(minimum = -10, maximum = 10)]
+    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
     pub priority: i32,
 }
 
@@ -164,7 +172,8 @@ impl From<RunRequest> for SweepRequest {
 }
 
 /// Points to add to a sweep: of its scenario, over its own parameters, by any design.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AppendRequest {
     /// How the points are made from the axes; absent means `grid`.
@@ -172,21 +181,24 @@ pub struct AppendRequest {
     pub design: Design,
     /// The sweep's parameters with new values.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))]
+    #[cfg_attr(
+        feature = "openapi",
+        schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))
+    )]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(example = json!([]))]
+    #[cfg_attr(feature = "openapi", schema(example = json!([])))]
     pub points: Vec<IndexMap<AxisName, f64>>,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(minimum = 1, maximum = 100_000)]
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
     pub samples: Option<u32>,
     /// What these designs are drawn from; 0 unless given. For further points of another Latin hypercube give another seed; of a
     /// Sobol sequence, `skip` with the same one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
+    #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.
@@ -237,27 +249,31 @@ impl SweepRequest {
 }
 
 /// What is changed of a sweep; what is absent stays.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SweepPatch {
     /// A name for people; `null` takes it away.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(value_type = Option<String>, min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
+    #[cfg_attr(
+        feature = "openapi",
+        schema(value_type = Option<String>, min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")
+    )]
     pub name: Option<Option<String>>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(minimum = -10, maximum = 10)]
+    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
     pub priority: Option<i32>,
     /// Words to find it by, in place of those that it has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_items = 20, value_type = Option<Vec<Tag>>)]
+    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Option<Vec<Tag>>))]
     pub tags: Option<BTreeSet<String>>,
     /// Whether the sweep, and all that belongs to it, is kept whatever its age.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pinned: Option<bool>,
     /// When the sweep is to be deleted, once all its points are final and unless it is pinned; `null` means never.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "time")]
-    #[schema(value_type = Option<Timestamp>)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Timestamp>))]
     pub expires: Option<Option<Timestamp>>,
 }
 
@@ -275,7 +291,8 @@ fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<Time
 }
 
 /// How points are made from the axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
     /// Every value of every axis with every value of the others.
@@ -302,7 +319,8 @@ impl Design {
 
 /// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
 /// scenario.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(transparent)]
 pub struct AxisName(String);
 

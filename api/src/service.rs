@@ -3,12 +3,12 @@
 use drillsweep_sim::scenario::{Scenario, ScenarioRequest};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
 use crate::problem::{FieldProblem, ProblemDetails};
 
 /// The bounds of what the service accepts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Limits {
     /// Points in one sweep.
     pub points_per_sweep: usize,
@@ -56,14 +56,16 @@ pub const LIMITS: Limits = Limits {
 };
 
 /// The preset scenarios.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ScenarioList {
     /// One entry a preset.
     pub scenarios: Vec<ScenarioEntry>,
 }
 
 /// A preset in the list.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ScenarioEntry {
     /// Its name, as a sweep's `preset`.
     pub name: String,
@@ -74,7 +76,8 @@ pub struct ScenarioEntry {
 }
 
 /// A preset in full.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ScenarioDetail {
     /// Its name, as a sweep's `preset`.
     pub name: String,
@@ -85,7 +88,8 @@ pub struct ScenarioDetail {
 }
 
 /// The text of a scenario file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     /// What the text is written in.
@@ -95,7 +99,8 @@ pub struct ScenarioFile {
 }
 
 /// What a scenario file is written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum ScenarioFormat {
     /// TOML.
@@ -123,14 +128,16 @@ impl ScenarioFile {
 }
 
 /// The worker processes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct WorkerList {
     /// One entry a process.
     pub workers: Vec<Worker>,
 }
 
 /// One worker process.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Worker {
     /// Identifier.
     pub id: String,
@@ -149,7 +156,8 @@ pub struct Worker {
 }
 
 /// The queue over all sweeps, in results to be computed: points that share a key are one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Queue {
     /// Queued for a worker.
     pub queued: u64,
@@ -162,7 +170,8 @@ pub struct Queue {
 }
 
 /// How long data are kept, and when it was last seen to that.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Retention {
     /// How often the service deletes what need not be kept; absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -179,7 +188,8 @@ pub struct Retention {
 }
 
 /// A collection of what need not be kept any more.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Collection {
     /// When the last one began.
     pub started: Timestamp,
@@ -192,7 +202,8 @@ pub struct Collection {
 }
 
 /// What a collection deleted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(default)]
 pub struct Collected {
     /// Sweeps whose time had come.
@@ -216,14 +227,16 @@ pub struct Collected {
 }
 
 /// The answer of the health checks.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Health {
     /// `ok`.
     pub status: String,
 }
 
 /// A token to log in by.
-#[derive(Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Login {
     /// Its text.
@@ -231,7 +244,8 @@ pub struct Login {
 }
 
 /// The session of a browser.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Session {
     /// Whether the service asks for tokens.
     pub tokens_required: bool,

@@ -1,13 +1,15 @@
 //! The HTTP service: routes, formats and long polls over the store. It computes nothing but views of results.
 //!
 //! [`serve`] runs it on a listener until asked to stop; [`router`] is the same without the network, for tests
-//! and for embedding; [`openapi_json`] is the document that it serves.
+//! and for embedding; [`OPENAPI_JSON`] is the document that it serves.
 
 mod answer;
 mod app;
 mod collect;
 mod guard;
 mod listen;
+#[cfg(feature = "openapi")]
+mod openapi;
 mod route;
 mod router;
 mod serve;
@@ -16,5 +18,7 @@ pub use app::Config;
 pub use app::limit::OwnerLimits;
 pub use app::retain::Retaining;
 pub use listen::ConnectionLimits;
-pub use router::{openapi_json, router};
+#[cfg(feature = "openapi")]
+pub use openapi::openapi_of_annotations;
+pub use router::{OPENAPI_JSON, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

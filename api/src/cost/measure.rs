@@ -4,10 +4,10 @@ use std::str::FromStr;
 
 use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity};
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
 /// The error that a chart shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
     /// Of the orbit's size, over the orbit window.

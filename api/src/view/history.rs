@@ -3,10 +3,10 @@
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Deserialize;
-use utoipa::ToSchema;
 
 /// Which rows of a history stay where at most so many are asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Decimation {
     /// Every k-th row: equal intervals of time, and extremes between them are lost.

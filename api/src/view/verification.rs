@@ -9,7 +9,6 @@ use indexmap::{IndexMap, IndexSet};
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Value, json};
-use utoipa::ToSchema;
 
 use crate::point::{PointError, PointState};
 
@@ -149,7 +148,8 @@ impl VerifiedPoint {
 }
 
 /// What the verified points show of one statistic.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct StatisticBias {
     /// Points at which its bias is known.
     pub verified: usize,
@@ -171,7 +171,8 @@ pub struct StatisticBias {
 }
 
 /// The bias of orbit size that is farthest from zero.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct WorstBias {
     /// Name of the statistic in the summary, such as `orbit_radius_rms_49`.
     pub statistic: String,

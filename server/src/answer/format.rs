@@ -10,13 +10,13 @@ use drillsweep_chart::{Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
 use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
 use serde::Deserialize;
-use utoipa::ToSchema;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::stored::{Stored, StoredFile};
 
 /// The formats in which tables are served.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum TableFormat {
     /// An object of columns.
@@ -30,7 +30,8 @@ pub(crate) enum TableFormat {
 }
 
 /// The formats in which tables are served that can be shown as a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PictureFormat {
     /// An object of columns.

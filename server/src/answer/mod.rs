@@ -3,7 +3,6 @@
 pub(crate) mod artifact;
 pub(crate) mod blocking;
 pub(crate) mod body;
-pub(crate) mod document;
 pub(crate) mod error;
 pub(crate) mod extract;
 pub(crate) mod format;
@@ -11,4 +10,3 @@ pub(crate) mod records;
 pub(crate) mod snapshots;
 pub(crate) mod stored;
 pub(crate) mod tag;
-pub(crate) mod vocabulary;

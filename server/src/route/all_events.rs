@@ -11,14 +11,14 @@ use axum::response::{IntoResponse, Response};
 use drillsweep_api::DeletedSweep;
 use serde::Deserialize;
 use tokio::sync::{OwnedSemaphorePermit, broadcast};
-use utoipa::IntoParams;
 
-use crate::answer::document::Problems;
 use crate::answer::error::Result;
 use crate::answer::extract::{Query, value};
 use crate::answer::records;
 use crate::app::App;
 use crate::app::feed::{News, Told};
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 use crate::route::events::{RETRY, last_seen, place_for_a_stream};
 use crate::route::feed;
 
@@ -27,8 +27,8 @@ use crate::route::feed;
 const OVERLAP: i64 = 300_000;
 
 /// Of which sweeps a stream tells, and where it begins.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AllEventsQuery {
     /// Only sweeps of this owner.
@@ -47,18 +47,21 @@ pub(crate) struct AllEventsQuery {
 /// that are not final, and has no end. An `id` is a time: a stream that is resumed by it, at whichever server, begins also with the
 /// sweeps that have become final since, some minutes before included. Of what else was missed it does not tell: deletions, and
 /// changes of finished sweeps (name, tags, pin, expiry); who shows a list reads it again.
-#[utoipa::path(
-    get,
-    path = "/v1/events",
-    tag = "sweeps",
-    operation_id = "follow_all_sweeps",
-    params(
-        AllEventsQuery,
-        ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
-    ),
-    responses(
-        (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
-        Problems
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/events",
+        tag = "sweeps",
+        operation_id = "follow_all_sweeps",
+        params(
+            AllEventsQuery,
+            ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
+        ),
+        responses(
+            (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
+            Problems
+        )
     )
 )]
 pub(crate) async fn follow(

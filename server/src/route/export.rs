@@ -12,31 +12,31 @@ use drillsweep_table::csv;
 use serde::Deserialize;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
-use utoipa::IntoParams;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
 use crate::answer::blocking::beside;
 use crate::answer::body::{self, Sink, WAITING_CHUNKS};
-use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::stored::Stored;
 use crate::app::App;
 use crate::app::lane::Place;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 use crate::route::verification::{Verified, memory_of_points};
 
 /// Points whose files are looked up at once.
 const PAGE: i64 = 200;
 
 /// What an archive holds.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ExportQuery {
     /// Names of the files of each point, separated by commas; absent means all, empty means none.
     #[serde(default, deserialize_with = "value::names")]
-    #[param(value_type = Option<String>, example = "profile,statics")]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "profile,statics"))]
     artifacts: Option<Vec<String>>,
 }
 
@@ -46,13 +46,16 @@ pub(crate) struct ExportQuery {
 /// verified point, where there are some), the files of every point that has a result, as `points/1/history.parquet`, and last
 /// `manifest.json`: which files should be there and are not, and why (`ExportManifest`). It is written while it is sent: its size is not
 /// known beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/export",
-    tag = "sweeps",
-    operation_id = "export_sweep",
-    params(("id" = String, Path, description = "Identifier of the sweep"), ExportQuery),
-    responses((status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip"), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/export",
+        tag = "sweeps",
+        operation_id = "export_sweep",
+        params(("id" = String, Path, description = "Identifier of the sweep"), ExportQuery),
+        responses((status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip"), Problems)
+    )
 )]
 pub(crate) async fn export(
     State(app): State<App>,

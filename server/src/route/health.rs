@@ -7,9 +7,10 @@ use axum::extract::State;
 use drillsweep_api::{Health, ProblemKind};
 use tokio::time::{Instant, timeout};
 
-use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 
 /// How long an answer holds: everybody may ask, and each try writes to the disk.
 const FRESH: Duration = Duration::from_secs(1);
@@ -18,13 +19,16 @@ const FRESH: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Whether the process answers at all
-#[utoipa::path(
-    get,
-    path = "/livez",
-    tag = "service",
-    operation_id = "is_alive",
-    security(()),
-    responses((status = 200, description = "It does", body = Health), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/livez",
+        tag = "service",
+        operation_id = "is_alive",
+        security(()),
+        responses((status = 200, description = "It does", body = Health), Problems)
+    )
 )]
 pub(crate) async fn alive() -> Json<Health> {
     Json(Health { status: "ok".to_owned() })
@@ -34,13 +38,16 @@ pub(crate) async fn alive() -> Json<Health> {
 ///
 /// A scratch point is queued and claimed as a worker would, and taken back; a scratch blob is written, read and
 /// deleted.
-#[utoipa::path(
-    get,
-    path = "/readyz",
-    tag = "service",
-    operation_id = "is_ready",
-    security(()),
-    responses((status = 200, description = "It can", body = Health), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/readyz",
+        tag = "service",
+        operation_id = "is_ready",
+        security(()),
+        responses((status = 200, description = "It can", body = Health), Problems)
+    )
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
     let mut seen = app.readiness.0.lock().await;

@@ -9,43 +9,46 @@ use drillsweep_api::{
 use drillsweep_store::{FailureFilter, FailurePlace};
 use serde::Deserialize;
 use serde_json::{Map, Value};
-use utoipa::IntoParams;
 
-use crate::answer::document::{PointPageResponse, Problems};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::records;
 use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::{PointPageResponse, Problems};
 use crate::route::results::PointPath;
 
 /// Which points are listed.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ListQuery {
     /// Only points in this state.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     state: Option<PointState>,
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1, maximum = 500)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
     limit: Option<u32>,
     /// `next` of the page before.
     cursor: Option<String>,
     /// Only these fields of each point, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[param(value_type = Option<String>, example = "ordinal,state")]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "ordinal,state"))]
     fields: Option<Vec<String>>,
 }
 
 /// The points of a sweep, in order
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points",
-    tag = "points",
-    operation_id = "list_points",
-    params(("id" = String, Path, description = "Identifier of the sweep"), ListQuery),
-    responses(PointPageResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points",
+        tag = "points",
+        operation_id = "list_points",
+        params(("id" = String, Path, description = "Identifier of the sweep"), ListQuery),
+        responses(PointPageResponse, Problems)
+    )
 )]
 pub(crate) async fn list(
     State(app): State<App>,
@@ -95,18 +98,18 @@ fn select(row: &PointRow, fields: &[String]) -> Result<Map<String, Value>> {
 }
 
 /// Which failures are listed.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FailuresQuery {
     /// Only points of sweeps of this owner.
     owner: Option<String>,
     /// Only points that failed in this way.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     class: Option<FailureClass>,
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1, maximum = 500)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
     limit: Option<u32>,
     /// `next` of the page before.
     cursor: Option<String>,
@@ -116,13 +119,16 @@ pub(crate) struct FailuresQuery {
 ///
 /// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
 /// of a sweep again. Reference runs that only verify a point are at `GET /v1/sweeps/{id}/verification`.
-#[utoipa::path(
-    get,
-    path = "/v1/failures",
-    tag = "points",
-    operation_id = "list_failures",
-    params(FailuresQuery),
-    responses((status = 200, description = "A page of points", body = FailureList), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/failures",
+        tag = "points",
+        operation_id = "list_failures",
+        params(FailuresQuery),
+        responses((status = 200, description = "A page of points", body = FailureList), Problems)
+    )
 )]
 pub(crate) async fn failures(
     State(app): State<App>,
@@ -157,13 +163,16 @@ fn failure_place(cursor: &str) -> Result<FailurePlace> {
 }
 
 /// One point: state, parameters, summary, provenance
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}",
-    tag = "points",
-    operation_id = "get_point",
-    params(PointPath),
-    responses((status = 200, description = "The point in its present state", body = PointDetail), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}",
+        tag = "points",
+        operation_id = "get_point",
+        params(PointPath),
+        responses((status = 200, description = "The point in its present state", body = PointDetail), Problems)
+    )
 )]
 pub(crate) async fn show(
     State(app): State<App>,

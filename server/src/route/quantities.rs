@@ -4,27 +4,33 @@ use std::sync::LazyLock;
 
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_table::quantity::{self, QuantityEntry};
+use drillsweep_table::quantity;
+#[cfg(feature = "openapi")]
+use drillsweep_table::quantity::QuantityEntry;
 
-use crate::answer::document::{Conditional, Problems};
 use crate::answer::error::{Error, Result};
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::{Conditional, Problems};
 
 /// What columns and fields stand for, with their units
 ///
 /// By name: of columns without the number of a node (`u_49` is `u`) and of a spectrum window (`line_amplitude_49_w1`), and without what an
 /// ensemble or a reference makes of them (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, but for frequencies); of a
 /// scenario's fields by their path without indices. Needs no token, like this document.
-#[utoipa::path(
-    get,
-    path = "/v1/quantities",
-    tag = "service",
-    operation_id = "list_quantities",
-    params(Conditional),
-    security(()),
-    responses(
-        (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
-        (status = 304, description = "The copy is right"),
-        Problems
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/quantities",
+        tag = "service",
+        operation_id = "list_quantities",
+        params(Conditional),
+        security(()),
+        responses(
+            (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
+            (status = 304, description = "The copy is right"),
+            Problems
+        )
     )
 )]
 pub(crate) async fn list() -> Result<Response> {

@@ -13,10 +13,8 @@ use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
-use utoipa::IntoParams;
 
 use crate::answer::artifact::{self, Recording, SpectrumSource};
-use crate::answer::document::{Conditional, PictureResponse, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
@@ -24,43 +22,45 @@ use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::{Conditional, PictureResponse, Problems, TableResponse};
 
 /// Which point's result.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Path)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
 pub(crate) struct PointPath {
     /// Identifier of the sweep.
     pub(crate) id: String,
     /// Number of the point in the sweep, from 1.
-    #[param(minimum = 1)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1))]
     pub(crate) n: u32,
 }
 
 /// How a table is served.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TableQuery {
     /// Format of the table; absent means that `Accept` decides.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     pub(crate) format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[param(value_type = Option<String>)]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     pub(crate) fields: Option<Vec<String>>,
 }
 
 /// How a table is served that can be shown as a picture.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PictureQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     pub(crate) format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, what it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[param(value_type = Option<String>)]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     pub(crate) fields: Option<Vec<String>>,
 }
 
@@ -68,13 +68,16 @@ pub(crate) struct PictureQuery {
 ///
 /// Eccentricity, friction coefficient C_f, apparent viscosity, flow regime, pressures, tension and torque at
 /// the equilibrium, from the top down. A picture shows C_f, or the `fields`, over depth.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/profile",
-    tag = "points",
-    operation_id = "get_profile",
-    params(PointPath, PictureQuery, Conditional),
-    responses(PictureResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/profile",
+        tag = "points",
+        operation_id = "get_profile",
+        params(PointPath, PictureQuery, Conditional),
+        responses(PictureResponse, Problems)
+    )
 )]
 pub(crate) async fn profile(
     State(app): State<App>,
@@ -100,13 +103,16 @@ pub(crate) async fn profile(
 }
 
 /// The static equilibrium, node by node
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/statics",
-    tag = "points",
-    operation_id = "get_statics",
-    params(PointPath, TableQuery, Conditional),
-    responses(TableResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/statics",
+        tag = "points",
+        operation_id = "get_statics",
+        params(PointPath, TableQuery, Conditional),
+        responses(TableResponse, Problems)
+    )
 )]
 pub(crate) async fn statics(
     app: State<App>,
@@ -118,13 +124,16 @@ pub(crate) async fn statics(
 }
 
 /// Contacts of every node with the hole over the run
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/contacts",
-    tag = "points",
-    operation_id = "get_contacts",
-    params(PointPath, TableQuery, Conditional),
-    responses(TableResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/contacts",
+        tag = "points",
+        operation_id = "get_contacts",
+        params(PointPath, TableQuery, Conditional),
+        responses(TableResponse, Problems)
+    )
 )]
 pub(crate) async fn contacts(
     app: State<App>,
@@ -136,13 +145,16 @@ pub(crate) async fn contacts(
 }
 
 /// The energy ledger over the run
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/energy",
-    tag = "points",
-    operation_id = "get_energy",
-    params(PointPath, TableQuery, Conditional),
-    responses(TableResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/energy",
+        tag = "points",
+        operation_id = "get_energy",
+        params(PointPath, TableQuery, Conditional),
+        responses(TableResponse, Problems)
+    )
 )]
 pub(crate) async fn energy(
     app: State<App>,
@@ -201,13 +213,13 @@ pub(super) async fn whole_file(app: &App, stored: Stored, file_name: &str) -> Re
 }
 
 /// Which part of the recorded histories is wanted.
-#[derive(Debug, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HistoryQuery {
     /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1))]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -223,18 +235,18 @@ pub(crate) struct HistoryQuery {
     to: Option<f64>,
     /// At most so many rows; which of them stay, `decimation` says. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1))]
     max_points: Option<u32>,
     /// Which rows stay of more than `max_points`. With `minmax` these are at least two for each column besides `time`.
     #[serde(default)]
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     decimation: Decimation,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, what it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[param(value_type = Option<String>)]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     fields: Option<Vec<String>>,
 }
 
@@ -258,13 +270,16 @@ impl HistoryQuery {
 /// and where the string twists rotation speed \[rpm\] and torque at the bit, of the history or else of the snapshots; where neither has the
 /// bit, it says so and shows those of the lowest recorded node. Of a chosen node it shows what belongs to that node, and of `fields` these
 /// alone. The legend says at which depth and to which side. It shows 2,000,000 values at most.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/history",
-    tag = "points",
-    operation_id = "get_history",
-    params(PointPath, HistoryQuery, Conditional),
-    responses(PictureResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/history",
+        tag = "points",
+        operation_id = "get_history",
+        params(PointPath, HistoryQuery, Conditional),
+        responses(PictureResponse, Problems)
+    )
 )]
 pub(crate) async fn history(
     State(app): State<App>,
@@ -413,13 +428,13 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
 }
 
 /// Which part of one node's orbit is wanted.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OrbitQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1))]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -436,14 +451,14 @@ pub(crate) struct OrbitQuery {
     /// At most so many points, 4 or more; those with the extremes of u and v in each part of the window stay.
     /// Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 4)]
+    #[cfg_attr(feature = "openapi", param(minimum = 4))]
     max_points: Option<u32>,
     /// Of a picture: whether the motion alone is shown, with the whole hole as an inset; absent means where the motion is below a
     /// tenth of the hole.
     #[serde(default, deserialize_with = "value::choice")]
     zoom: Option<bool>,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     format: Option<PictureFormat>,
 }
 
@@ -451,13 +466,16 @@ pub(crate) struct OrbitQuery {
 ///
 /// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
 /// `samples`, the number of samples in the window.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/orbit",
-    tag = "points",
-    operation_id = "get_orbit",
-    params(PointPath, OrbitQuery, Conditional),
-    responses(PictureResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/orbit",
+        tag = "points",
+        operation_id = "get_orbit",
+        params(PointPath, OrbitQuery, Conditional),
+        responses(PictureResponse, Problems)
+    )
 )]
 pub(crate) async fn orbit(
     State(app): State<App>,
@@ -490,13 +508,13 @@ pub(crate) async fn orbit(
 }
 
 /// Which full spectrum is wanted.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrumQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[param(minimum = 1)]
+    #[cfg_attr(feature = "openapi", param(minimum = 1))]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -512,18 +530,18 @@ pub(crate) struct SpectrumQuery {
     to: Option<f64>,
     /// Weighting of the samples in the window.
     #[serde(default)]
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     window: spectrum::Weighting,
     /// Frequencies from minus to plus this \[Hz\] are shown.
     #[serde(default = "default_range", deserialize_with = "range")]
-    #[param(default = 20.0, exclusive_minimum = 0.0)]
+    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0))]
     range_hz: f64,
     /// At most so many of the highest peaks are listed.
     #[serde(default = "default_peaks", deserialize_with = "peaks")]
-    #[param(default = 10)]
+    #[cfg_attr(feature = "openapi", param(default = 10))]
     peaks: usize,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[param(inline)]
+    #[cfg_attr(feature = "openapi", param(inline))]
     format: Option<PictureFormat>,
 }
 
@@ -552,13 +570,16 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 /// highest peaks with their whirl direction, frequency and amplitude interpolated between the bins. Lines outside the range enter
 /// neither. The attribute `resolved_hz` is the frequency up to which the run's steps resolve vibrations; each peak says whether it
 /// `is_resolved`, and a picture shades what lies beyond. Of a run that kept spectra only the window is one of its scenario's.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/spectrum",
-    tag = "points",
-    operation_id = "get_spectrum",
-    params(PointPath, SpectrumQuery, Conditional),
-    responses(PictureResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/spectrum",
+        tag = "points",
+        operation_id = "get_spectrum",
+        params(PointPath, SpectrumQuery, Conditional),
+        responses(PictureResponse, Problems)
+    )
 )]
 pub(crate) async fn spectrum(
     State(app): State<App>,

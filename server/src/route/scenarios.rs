@@ -5,17 +5,21 @@ use drillsweep_api::{
     ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
 };
 
-use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path};
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 
 /// The preset scenarios
-#[utoipa::path(
-    get,
-    path = "/v1/scenarios",
-    tag = "scenarios",
-    operation_id = "list_scenarios",
-    responses((status = 200, description = "Every preset", body = ScenarioList), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/scenarios",
+        tag = "scenarios",
+        operation_id = "list_scenarios",
+        responses((status = 200, description = "Every preset", body = ScenarioList), Problems)
+    )
 )]
 pub(crate) async fn list() -> Json<ScenarioList> {
     Json(presets())
@@ -25,13 +29,16 @@ pub(crate) async fn list() -> Json<ScenarioList> {
 ///
 /// For forms: the text of a file as commands take it, TOML or JSON, answered with what it asks for as a request says it, what the file
 /// leaves out filled in. Nothing is stored, and whether it can be simulated is what a dry run of a sweep says.
-#[utoipa::path(
-    post,
-    path = "/v1/scenarios",
-    tag = "scenarios",
-    operation_id = "read_scenario",
-    request_body = ScenarioFile,
-    responses((status = 200, description = "What the file asks for", body = ScenarioRequest), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        post,
+        path = "/v1/scenarios",
+        tag = "scenarios",
+        operation_id = "read_scenario",
+        request_body = ScenarioFile,
+        responses((status = 200, description = "What the file asks for", body = ScenarioRequest), Problems)
+    )
 )]
 pub(crate) async fn read(
     extract::Json { value: file, .. }: extract::Json<ScenarioFile>,
@@ -40,13 +47,16 @@ pub(crate) async fn read(
 }
 
 /// One preset scenario in full
-#[utoipa::path(
-    get,
-    path = "/v1/scenarios/{name}",
-    tag = "scenarios",
-    operation_id = "get_scenario",
-    params(("name" = String, Path, description = "Name of the preset", example = "paper-200m")),
-    responses((status = 200, description = "The preset", body = ScenarioDetail), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/scenarios/{name}",
+        tag = "scenarios",
+        operation_id = "get_scenario",
+        params(("name" = String, Path, description = "Name of the preset", example = "paper-200m")),
+        responses((status = 200, description = "The preset", body = ScenarioDetail), Problems)
+    )
 )]
 pub(crate) async fn show(Path(name): Path<String>) -> Result<Json<ScenarioDetail>> {
     match preset_detail(&name) {

@@ -6,26 +6,29 @@ use axum::extract::State;
 use drillsweep_api::scene::{self, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use serde::{Deserialize, Deserializer};
-use utoipa::IntoParams;
 
-use crate::answer::document::Problems;
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::records;
 use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 use crate::route::results::PointPath;
 
 /// What a point's scenario calls for and takes
 ///
 /// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
 /// the equilibrium shows.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/plan",
-    tag = "points",
-    operation_id = "get_plan",
-    params(PointPath),
-    responses((status = 200, description = "The plan", body = Plan), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/plan",
+        tag = "points",
+        operation_id = "get_plan",
+        params(PointPath),
+        responses((status = 200, description = "The plan", body = Plan), Problems)
+    )
 )]
 pub(crate) async fn plan(
     State(app): State<App>,
@@ -38,13 +41,13 @@ pub(crate) async fn plan(
 }
 
 /// Which modes are wanted.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModesQuery {
     /// Modes up to this frequency \[Hz\].
     #[serde(default = "default_range", deserialize_with = "range")]
-    #[param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0)]
+    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0))]
     to_hz: f64,
 }
 
@@ -62,13 +65,16 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
 ///
 /// Frequencies, growth, what moves most and where: of the equations of motion linearised about the equilibrium, its contacts closed and
 /// sliding. They say where lines of a spectrum may come from; the motion of a run, which lifts off and sticks, need not keep to them.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/points/{n}/modes",
-    tag = "points",
-    operation_id = "get_modes",
-    params(PointPath, ModesQuery),
-    responses((status = 200, description = "The modes, by frequency", body = Modes), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/modes",
+        tag = "points",
+        operation_id = "get_modes",
+        params(PointPath, ModesQuery),
+        responses((status = 200, description = "The modes, by frequency", body = Modes), Problems)
+    )
 )]
 pub(crate) async fn modes(
     State(app): State<App>,

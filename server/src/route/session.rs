@@ -8,11 +8,12 @@ use drillsweep_api::{Login, Session};
 use drillsweep_store::{SessionRecord, TokenSecret, TokensPresent};
 use headers::{Cookie, HeaderMapExt};
 
-use crate::answer::document::Problems;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract;
 use crate::answer::records::timestamp;
 use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
 
 const COOKIE: &str = "drillsweep_session";
 
@@ -22,13 +23,16 @@ const LOGINS: &str = "\0logins";
 /// Whether there is a session
 ///
 /// Everybody may ask. Without tokens there are no sessions, and none is needed.
-#[utoipa::path(
-    get,
-    path = "/v1/session",
-    tag = "service",
-    operation_id = "get_session",
-    security(()),
-    responses((status = 200, description = "The session of the request's cookie", body = Session), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/session",
+        tag = "service",
+        operation_id = "get_session",
+        security(()),
+        responses((status = 200, description = "The session of the request's cookie", body = Session), Problems)
+    )
 )]
 pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<impl IntoResponse> {
     let session = match session_cookie(&headers) {
@@ -43,14 +47,17 @@ pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<i
 ///
 /// For browsers: the answer sets a cookie that stands for the token from then on, until it expires after 30 days, or with the token, or
 /// is deleted. Programs send their token with each request instead.
-#[utoipa::path(
-    post,
-    path = "/v1/session",
-    tag = "service",
-    operation_id = "create_session",
-    security(()),
-    request_body = Login,
-    responses((status = 201, description = "The session", body = Session), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        post,
+        path = "/v1/session",
+        tag = "service",
+        operation_id = "create_session",
+        security(()),
+        request_body = Login,
+        responses((status = 201, description = "The session", body = Session), Problems)
+    )
 )]
 pub(crate) async fn open(
     State(app): State<App>,
@@ -76,13 +83,16 @@ pub(crate) async fn open(
 }
 
 /// Log out
-#[utoipa::path(
-    delete,
-    path = "/v1/session",
-    tag = "service",
-    operation_id = "delete_session",
-    security(()),
-    responses((status = 204, description = "There is no session any more"), Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        delete,
+        path = "/v1/session",
+        tag = "service",
+        operation_id = "delete_session",
+        security(()),
+        responses((status = 204, description = "There is no session any more"), Problems)
+    )
 )]
 pub(crate) async fn close(State(app): State<App>, headers: HeaderMap) -> Result<impl IntoResponse> {
     if let Some(secret) = session_cookie(&headers) {

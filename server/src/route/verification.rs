@@ -12,13 +12,14 @@ use drillsweep_store::{Store, WorkState};
 use tokio::runtime::Handle;
 
 use crate::answer::blocking::blocking;
-use crate::answer::document::{Conditional, Problems, TableResponse};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Format};
 use crate::answer::records;
 use crate::app::App;
 use crate::app::lane::Place;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::TableQuery;
 
 /// Bytes of memory that a point takes in a table of its sweep, besides its summary.
@@ -107,13 +108,16 @@ impl Verified {
 /// the reference, of frequencies in Hz. The attribute `statistics` sums them up by NAME: how many points are `verified`, the `mean`
 /// bias with its 95 % `interval`, the `largest` with the point that has it (`largest_at`), and what the sweep's accuracy has
 /// `promised`, with the number of points `exceeding` it; `warnings` says the latter in words. A sweep that verifies nothing has no rows.
-#[utoipa::path(
-    get,
-    path = "/v1/sweeps/{id}/verification",
-    tag = "sweeps",
-    operation_id = "get_sweep_verification",
-    params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery, Conditional),
-    responses(TableResponse, Problems)
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/verification",
+        tag = "sweeps",
+        operation_id = "get_sweep_verification",
+        params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery, Conditional),
+        responses(TableResponse, Problems)
+    )
 )]
 pub(crate) async fn show(
     State(app): State<App>,

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use axum::http::{Method, StatusCode};
 use drillsweep_api::ProblemKind;
-use drillsweep_server::openapi_json;
+use drillsweep_server::OPENAPI_JSON;
 use jsonschema::Validator;
 use serde_json::Value;
 
@@ -17,7 +17,7 @@ struct Operation {
 }
 
 static OPERATIONS: LazyLock<Vec<Operation>> = LazyLock::new(|| {
-    let document: Value = serde_json::from_str(openapi_json()).unwrap();
+    let document: Value = serde_json::from_str(OPENAPI_JSON).unwrap();
     let mut operations = Vec::new();
     for (path, methods) in document["paths"].as_object().unwrap() {
         for (method, operation) in methods.as_object().unwrap() {

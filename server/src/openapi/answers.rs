@@ -1,62 +1,17 @@
-//! What the OpenAPI document says of the service as a whole, and of answers that many routes give.
+//! What the OpenAPI document says of headers and answers that many routes have.
 
 use std::collections::BTreeMap;
 
 use axum::http::header;
-use drillsweep_api::{
-    DeletedSweep, ExportManifest, PROBLEM_MEDIA_TYPE, PointEvent, PointList, ProblemDetails,
-    SelectedPointList,
-};
+use drillsweep_api::{PROBLEM_MEDIA_TYPE, PointList, ProblemDetails, SelectedPointList};
 use drillsweep_table::Table;
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
-use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::openapi::{
     ContentBuilder, ObjectBuilder, Ref, RefOr, Response, ResponseBuilder, Schema, Type, schema::AnyOfBuilder,
 };
-use utoipa::{IntoParams, IntoResponses, Modify, OpenApi, ToSchema};
+use utoipa::{IntoParams, IntoResponses, ToSchema};
 
 use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
-
-/// What the document says about the service as a whole; the routes add themselves.
-#[derive(OpenApi)]
-#[openapi(
-    info(
-        title = "drillsweep",
-        version = "1",
-        description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
-            SI units throughout; a field in another unit says so in its name.",
-        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
-    ),
-    components(schemas(
-        ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
-    )),
-    modifiers(&TokenSecurity),
-    security(("token" = []), ()),
-    tags(
-        (name = "sweeps", description = "Submit sweeps and single runs, and follow them"),
-        (name = "points", description = "The points of a sweep and their results"),
-        (name = "scenarios", description = "Preset scenarios"),
-        (name = "service", description = "The service itself"),
-    )
-)]
-pub(crate) struct Document;
-
-/// Says what a token is; the alternative without one holds until the first token exists.
-struct TokenSecurity;
-
-impl Modify for TokenSecurity {
-    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
-        let scheme = HttpBuilder::new()
-            .scheme(HttpAuthScheme::Bearer)
-            .description(Some(
-                "A token of `drillsweep token create`. Its scope is read, submit or admin. Until the first token \
-                 exists none is needed, and the service listens on its own machine only.",
-            ))
-            .build();
-        let components = document.components.get_or_insert_default();
-        components.add_security_scheme("token", SecurityScheme::Http(scheme));
-    }
-}
 
 /// What every route may answer instead of a result.
 pub(crate) struct Problems;

@@ -1,0 +1,117 @@
+//! The OpenAPI document, out of the annotations of routes and types. What is served is the committed document; that both are the same is
+//! for tests to see.
+
+pub(crate) mod answers;
+mod vocabulary;
+
+use drillsweep_api::{
+    DeletedSweep, ExportManifest, PointEvent, PointList, ProblemDetails, SelectedPointList,
+};
+use drillsweep_table::Table;
+use serde_json::json;
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
+use utoipa::{Modify, OpenApi};
+
+use crate::route::{
+    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
+    snapshots, spectrogram, statistics, status, sweeps, verification,
+};
+
+/// The document as it is committed: indented JSON with a final newline.
+pub fn openapi_of_annotations() -> String {
+    let mut document = json!(Document::openapi());
+    vocabulary::describe(&mut document);
+    format!("{document:#}\n")
+}
+
+/// What the document says about the service as a whole, and whose annotations it is made of.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "drillsweep",
+        version = "1",
+        description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
+            SI units throughout; a field in another unit says so in its name.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    paths(
+        sweeps::create,
+        sweeps::list,
+        sweeps::show,
+        sweeps::change,
+        sweeps::delete,
+        sweeps::cancel,
+        sweeps::retry,
+        sweeps::pause,
+        sweeps::resume,
+        sweeps::table,
+        sweeps::columns,
+        verification::show,
+        events::follow,
+        all_events::follow,
+        export::export,
+        sweeps::create_run,
+        points::list,
+        sweeps::append,
+        points::show,
+        points::failures,
+        files::list,
+        files::show,
+        results::profile,
+        results::statics,
+        results::history,
+        snapshots::show,
+        results::orbit,
+        results::spectrum,
+        spectrogram::show,
+        results::contacts,
+        results::energy,
+        statistics::show,
+        scene::plan,
+        scene::modes,
+        cost::show,
+        scenarios::list,
+        scenarios::read,
+        scenarios::show,
+        quantities::list,
+        status::workers,
+        status::queue,
+        status::limits,
+        status::retention,
+        session::show,
+        session::open,
+        session::close,
+        crate::router::show,
+        health::alive,
+        health::ready,
+    ),
+    components(schemas(
+        ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
+    )),
+    modifiers(&TokenSecurity),
+    security(("token" = []), ()),
+    tags(
+        (name = "sweeps", description = "Submit sweeps and single runs, and follow them"),
+        (name = "points", description = "The points of a sweep and their results"),
+        (name = "scenarios", description = "Preset scenarios"),
+        (name = "service", description = "The service itself"),
+    )
+)]
+struct Document;
+
+/// Says what a token is; the alternative without one holds until the first token exists.
+struct TokenSecurity;
+
+impl Modify for TokenSecurity {
+    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+        let scheme = HttpBuilder::new()
+            .scheme(HttpAuthScheme::Bearer)
+            .description(Some(
+                "A token of `drillsweep token create`. Its scope is read, submit or admin. Until the first token \
+                 exists none is needed, and the service listens on its own machine only.",
+            ))
+            .build();
+        let components = document.components.get_or_insert_default();
+        components.add_security_scheme("token", SecurityScheme::Http(scheme));
+    }
+}

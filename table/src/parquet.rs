@@ -71,6 +71,7 @@ impl<'t, 's> Writer<'t, 's> {
     /// # Errors
     /// When the sink fails.
     pub fn new(sink: &'t mut Sink<'s>, layout: &Table) -> Result<Self, TableError> {
+        // What this level does not use of Zstandard is not built (`.cargo/config.toml`).
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
             .set_dictionary_enabled(false)

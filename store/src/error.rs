@@ -194,6 +194,9 @@ fn is_passing(error: &sqlx::Error) -> bool {
         // A connection that could not be made, or broke off, and not one that was refused.
         sqlx::Error::Io(error) => refused_certificate(error).is_none(),
         sqlx::Error::PoolTimedOut => true,
+        // A PostgreSQL server that can make no process for a connection says so before it is asked for anything, where the client
+        // looks for one letter about encryption.
+        sqlx::Error::Protocol(told) => told.contains("SSLRequest"),
         _ => false,
     }
 }

@@ -2,13 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use drillsweep_store::{
-    Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord,
+    Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, patiently,
 };
 use sqlx::AssertSqlSafe;
 use sqlx::postgres::PgPool;
 use tempfile::TempDir;
+use tokio::io::{AsyncReadExt, AsyncWriteExt, copy_bidirectional};
+use tokio::net::{TcpListener, TcpStream};
 
 use crate::bench::{
     Engine, LEASE_MS, PHYSICS, claim, claim_or_none, finish, finish_and_claim, submit, sweep, sweep_record,
@@ -559,3 +563,38 @@ fn tables(rows: Vec<(String, String, String, bool)>) -> BTreeMap<String, Columns
 }
 
 conformance!(Postgres);
+
+#[tokio::test]
+async fn a_server_that_can_make_no_process_for_a_connection_is_asked_again() {
+    /// What such a server writes without having read anything (`report_fork_failure_to_client` in its source).
+    const NO_PROCESS: &[u8] =
+        b"Ecould not fork new process for connection: Resource temporarily unavailable\n\0";
+    let engine = <Postgres>::new();
+    let address = engine.server.address();
+    let door = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let url = engine.server.url().replace(&address, &door.local_addr().unwrap().to_string());
+    assert_ne!(url, engine.server.url());
+    let turned_away = Arc::new(AtomicU32::new(0));
+    tokio::spawn({
+        let turned_away = turned_away.clone();
+        async move {
+            while let Ok((mut client, _)) = door.accept().await {
+                if turned_away.load(Ordering::Relaxed) < 2 {
+                    turned_away.fetch_add(1, Ordering::Relaxed);
+                    // Read, so that closing does not take back what was written.
+                    let _ = client.read(&mut [0; 8]).await;
+                    let _ = client.write_all(NO_PROCESS).await;
+                    continue;
+                }
+                let mut server = TcpStream::connect(&address).await.unwrap();
+                tokio::spawn(async move { copy_bidirectional(&mut client, &mut server).await });
+            }
+        }
+    });
+    let mut config = engine.config(Role::Server, 0);
+    config.database = url.parse().unwrap();
+    let store = patiently(|| Store::open(&config)).await.unwrap();
+    assert_eq!(turned_away.load(Ordering::Relaxed), 2);
+    submit(&store, &sweep("s", [1])).await;
+    store.close().await;
+}

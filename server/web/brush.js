@@ -203,5 +203,17 @@ export function orbitStatistics({ u, v }, first, end) {
     orbit_largest_radius: largest,
     orbit_smallest_radius: smallest,
     orbit_offset: Math.hypot(meanU, meanV),
+    peak_to_peak_u: reach(u, first, end),
+    peak_to_peak_v: reach(v, first, end),
   };
+}
+
+/** How far some values reach from the least to the largest. @param {number[]} values @param {number} first @param {number} end half-open */
+function reach(values, first, end) {
+  let [least, largest] = [Infinity, -Infinity];
+  for (let row = first; row < end; row += 1) {
+    least = Math.min(least, values[row]);
+    largest = Math.max(largest, values[row]);
+  }
+  return largest - least;
 }

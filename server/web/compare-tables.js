@@ -5,14 +5,12 @@ import { Biases } from "./bias.js";
 import { each, noteNode } from "./compare-views.js";
 import { fill, h } from "./dom.js";
 import { costFacts } from "./point-about.js";
-import { biasOver } from "./point-motion.js";
-import { label, say } from "./units.js";
+import { biasOver, STATISTICS } from "./statistics.js";
+import { say } from "./units.js";
 
 /** @typedef {import("./compare-views.js").Comparison} Comparison */
 /** @typedef {import("./compare-views.js").Compared} Compared */
 
-/** Statistics of a window, as the service calls them. */
-const STATISTICS = ["orbit_radius_rms", "orbit_mean_radius", "orbit_radius_deviation", "orbit_largest_radius", "orbit_smallest_radius", "orbit_offset", "peak_to_peak_u", "peak_to_peak_v"];
 /** Modes are looked for up to this frequency [Hz]. */
 const MODES_HZ = 20;
 
@@ -56,7 +54,7 @@ export async function drawStatistics(place, comparison) {
     noteNode(comparison, point, node, columns.measured_depth[0]);
     const beside = biasOver(point.detail.scenario, window, (name) => bias.beside(`${name}_${node}`, point.ordinal));
     /** @type {[string, string][]} */
-    const facts = STATISTICS.filter((name) => columns[name]).map((name) => [label(name), say(name, columns[name][0]) + beside(name)]);
+    const facts = STATISTICS.map(([name, text]) => [text, say(name, columns[name][0]) + beside(name)]);
     return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);
   });
   drawTable(place, "Statistics", found.map(([point]) => point), rowsOf(found));

@@ -7,6 +7,7 @@ import { pythonNode } from "./lines.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
+import { biasOver, STATISTICS, verifiedWindow } from "./statistics.js";
 import { say, shown, unit } from "./units.js";
 
 /** Samples in a picture: two for each pixel of a wide screen. */
@@ -15,39 +16,6 @@ const SHOWN = 4000;
 const LEAST = 8;
 /** How long a window that is dragged must rest before the service is asked for it. */
 const REST_MS = 100;
-
-/** Statistics of a window, and what the page calls them. @type {[string, string][]} */
-export const STATISTICS = [
-  ["orbit_radius_rms", "Orbit size (rms about the mean)"],
-  ["orbit_mean_radius", "Mean radius"],
-  ["orbit_radius_deviation", "Deviation of the radius"],
-  ["orbit_largest_radius", "Largest radius"],
-  ["orbit_smallest_radius", "Smallest radius"],
-  ["orbit_offset", "Offset of the mean position"],
-];
-/** Part of a run within which the ends of two windows count as the same: the link rounds them. */
-const SAME = 1e-4;
-
-/**
- * The window of a scenario's statistics, which verifying looks at: its own, or the last third of the run.
- * @param {any} scenario
- * @returns {{from: number, to: number}} [s]
- */
-export function verifiedWindow({ recording, duration }) {
-  return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
-}
-
-/**
- * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
- * @param {any} scenario
- * @param {{from: number, to: number}} window [s]
- * @param {(name: string) => string} bias
- */
-export function biasOver(scenario, { from, to }, bias) {
-  const verified = verifiedWindow(scenario);
-  const isVerified = [from - verified.from, to - verified.to].every((apart) => Math.abs(apart) <= SAME * scenario.duration);
-  return isVerified ? bias : () => "";
-}
 
 /**
  * @param {import("./point.js").PointContext} context

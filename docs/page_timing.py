@@ -1,6 +1,9 @@
 """How fast the web page is, and what it transfers: `python docs/page_timing.py SERVER SWEEP`.
 
 The sweep has complete points with histories; that of point 1 is shown and brushed. Prints a Markdown table of medians.
+
+A view is there once it has its numbers, and its picture is seen: sketched, or drawn by the drawing library. Once the
+latter has drawn it, the picture answers to the mouse as well.
 """
 
 from __future__ import annotations
@@ -45,20 +48,42 @@ FORGET = "() => { window.brushing.frames.length = window.brushing.delays.length 
 ANSWERS = """() => performance.getEntriesByType("resource").filter(({ name }) => name.includes("/table"))
     .map(({ name, startTime, responseEnd }) =>
         [name.slice(name.indexOf("/table")), responseEnd - startTime, responseEnd])"""
-PICTURE = ".js-plotly-plot .main-svg"
+DRAWN = ".main-svg"
+"""What the drawing library has drawn."""
+SEEN = f":is(.sketch, {DRAWN})"
+"""A picture that is seen: drawn, or sketched before."""
 
 
-def views(sweep: str) -> list[tuple[str, str, str]]:
-    """What is shown, by which link, and what is there once it is."""
+@dataclass
+class View:
+    """What is shown."""
+
+    name: str
+    link: str
+    seen: str
+    """Selects what is there once it is seen."""
+    drawn: str
+    """The same once it answers to the mouse."""
+
+
+def views(sweep: str) -> list[View]:
+    """What is measured."""
     of_sweep, of_point = f"#/sweeps/{sweep}?view=", f"#/sweeps/{sweep}/points/1?view="
+
+    def pictured(name: str, link: str, place: str = ".plot") -> View:
+        return View(name, link, f"{place} {SEEN}", f"{place} {DRAWN}")
+
+    def told(name: str, link: str, place: str) -> View:
+        return View(name, link, place, place)
+
     return [
-        ("sweeps", "#/sweeps", "main tbody tr"),
-        ("map", f"{of_sweep}map", PICTURE),
-        ("table of points", f"{of_sweep}table", ".rows tbody tr"),
-        ("profiles of a point", f"{of_point}profiles", PICTURE),
-        ("its history, orbit and spectrum", f"{of_point}motion", ".plot[aria-label^='Orbit of node'] .main-svg"),
-        ("its well", f"{of_point}well", ".js-plotly-plot canvas"),
-        ("new sweep", "#/new", PICTURE),
+        told("sweeps", "#/sweeps", "main tbody tr"),
+        pictured("map", f"{of_sweep}map"),
+        told("table of points", f"{of_sweep}table", ".rows tbody tr"),
+        pictured("profiles of a point", f"{of_point}profiles"),
+        pictured("its history, orbit and spectrum", f"{of_point}motion", ".plot[aria-label^='Orbit of node']"),
+        told("its well", f"{of_point}well", ".js-plotly-plot canvas"),
+        pictured("new sweep", "#/new"),
     ]
 
 
@@ -80,9 +105,9 @@ def moved(page: Page, link: str, selector: str) -> tuple[float, float]:
     return time, page.evaluate(BYTES) - before
 
 
-def mapped(page: Page, server: str, sweep: str) -> tuple[dict[str, float], float]:
-    """The map of a sweep: milliseconds of each answer that it needs of the table, and from the last to the picture."""
-    page.goto(f"{server}/#/sweeps/{sweep}?view=map", wait_until="commit")
+def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, float], float]:
+    """A map of a sweep: milliseconds of each answer that it needs of tables, and from the last to the picture."""
+    page.goto(f"{server}/#/sweeps/{sweep}?view={view}", wait_until="commit")
     page.evaluate(SHOWN, [None, ".heatmaplayer image"])
     now = page.evaluate("() => performance.now()")
     answers = page.evaluate(ANSWERS)
@@ -154,38 +179,43 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=5)
     parser.add_argument("--brushing", action="store_true", help="measure nothing else")
     parser.add_argument("--map", action="store_true", help="measure the map of the sweep alone, which is a grid")
+    parser.add_argument("--difference", metavar="OTHER", help="measure the map of another sweep's differences alone")
     arguments = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
-        if arguments.map:
+        if arguments.map or arguments.difference:
+            view = f"difference&with={arguments.difference}" if arguments.difference else "map"
             maps = []
             for _ in range(arguments.times):
                 context = browser.new_context(viewport={"width": 1400, "height": 900})
-                maps.append(mapped(context.new_page(), arguments.server, arguments.sweep))
+                maps.append(mapped(context.new_page(), arguments.server, arguments.sweep, view))
                 context.close()
             for name in maps[0][0]:
                 print(f"{name}: {median(answers[name] for answers, _ in maps):.0f} ms")
             print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
             return
         if not arguments.brushing:
-            print("| view | first load | after it | from another view | transferred at first | after it |")
-            print("|---|---|---|---|---|---|")
-        for name, link, selector in [] if arguments.brushing else views(arguments.sweep):
-            cold, warm, inside = [], [], []
+            print("| view | first load | after it | drawn | from another view | transferred at first | after it |")
+            print("|---|---|---|---|---|---|---|")
+        for view in [] if arguments.brushing else views(arguments.sweep):
+            cold, warm, drawn, inside = [], [], [], []
             for _ in range(arguments.times):
                 context = browser.new_context(viewport={"width": 1400, "height": 900})
-                cold.append(opened(context, arguments.server, link, selector))
-                warm.append(opened(context, arguments.server, link, selector))
+                cold.append(opened(context, arguments.server, view.link, view.seen))
+                warm.append(opened(context, arguments.server, view.link, view.seen))
+                drawn.append(opened(context, arguments.server, view.link, view.drawn))
                 page = context.new_page()
                 # Pictures need the drawing library, which a first one has loaded.
                 page.goto(f"{arguments.server}/#/sweeps/{arguments.sweep}?view=scatter")
-                page.locator(PICTURE).first.wait_for()
-                inside.append(moved(page, link, selector))
+                page.locator(f".plot {DRAWN}").first.wait_for()
+                page.goto(f"{arguments.server}/#/nowhere")
+                page.locator("main a").wait_for()
+                inside.append(moved(page, view.link, view.drawn))
                 context.close()
-            times = [median(time for time, _ in of) for of in (cold, warm, inside)]
+            times = [median(time for time, _ in of) for of in (cold, warm, drawn, inside)]
             sizes = [median(size for _, size in of) / 1000 for of in (cold, warm)]
             told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
-            print("| " + " | ".join([name, *told]) + " |")
+            print("| " + " | ".join([view.name, *told]) + " |", flush=True)
         drags = []
         for _ in range(arguments.times):
             context = browser.new_context(viewport={"width": 1400, "height": 900})

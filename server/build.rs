@@ -26,11 +26,25 @@ fn main() -> io::Result<()> {
         fs::write(&compressed, encoder.finish()?)?;
         let name = path.strip_prefix("web").map_err(io::Error::other)?;
         let hash = blake3::hash(&bytes).to_hex();
-        writeln!(list, "    ({:?}, {:?}, include_bytes!({compressed:?})),", name, hash.as_str())
-            .map_err(io::Error::other)?;
+        let imported =
+            if name.extension().is_some_and(|end| end == "js") { imports(&bytes)? } else { Vec::new() };
+        writeln!(
+            list,
+            "    ({:?}, {:?}, include_bytes!({compressed:?}), &{imported:?}),",
+            name,
+            hash.as_str()
+        )
+        .map_err(io::Error::other)?;
     }
     list.push_str("]\n");
     fs::write(out.join("web.rs"), list)
+}
+
+/// The modules beside it that a module needs before it runs.
+fn imports(bytes: &[u8]) -> io::Result<Vec<&str>> {
+    let lines = str::from_utf8(bytes).map_err(io::Error::other)?.lines();
+    let beside = lines.filter(|line| line.starts_with("import ")).filter_map(|line| line.split_once("\"./"));
+    Ok(beside.filter_map(|(_, path)| path.split('"').next()).collect())
 }
 
 fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {

@@ -50,6 +50,14 @@ export function answerAfter(work) {
   needed = work;
 }
 
+/** How many requests for what views show have no answer yet. */
+let open = 0;
+
+/** Whether answers are still to come. */
+export function isWaiting() {
+  return open > 0;
+}
+
 /**
  * @param {string} path
  * @param {Record<string, any>} [query]
@@ -57,8 +65,13 @@ export function answerAfter(work) {
  * @returns {Promise<any>}
  */
 export async function get(path, query, signal) {
-  const [answer] = await Promise.all([ask("GET", address(path, query), undefined, signal), needed]);
-  return answer;
+  open += 1;
+  try {
+    const [answer] = await Promise.all([ask("GET", address(path, query), undefined, signal), needed]);
+    return answer;
+  } finally {
+    open -= 1;
+  }
 }
 
 /**

@@ -39,6 +39,7 @@ const EXAGGERATION = 100;
  * @property {boolean} [isWindowed] whether it is of a window
  * @property {boolean} [isOfNode] whether it is of a recorded node
  * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
+ * @property {import("./drawing.js").Build} [build] of the drawing library, where the usual one does not do
  * @property {"table" | "several"} [kind] what it is where it is not one picture
  * @property {boolean} [isDocument] whether the service answers with a document in place of a table
  * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
@@ -48,15 +49,15 @@ const EXAGGERATION = 100;
 export const VIEWS = {
   profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
   orbit: { name: "Orbits", table: "orbit", isWindowed: true, isOfNode: true, draw: drawOrbits },
-  history: { name: "Histories", table: "orbit", isWindowed: true, isOfNode: true, hasTime: true, draw: drawHistories },
-  rotation: { name: "Rotation and torque", table: "history", isWindowed: true, isOfNode: true, hasTime: true, draw: drawRotation },
+  history: { name: "Histories", table: "orbit", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawHistories },
+  rotation: { name: "Rotation and torque", table: "history", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawRotation },
   spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, isOfNode: true, draw: drawSpectra },
   statistics: { name: "Statistics", table: "statistics", isWindowed: true, isOfNode: true, kind: "table", draw: drawStatistics },
   spectrogram: { name: "Spectrograms", table: "spectrogram", isWindowed: true, isOfNode: true, kind: "several", draw: drawSpectrograms },
-  bit: { name: "Rotation at the bit", table: "history", isWindowed: true, hasTime: true, draw: drawBits },
+  bit: { name: "Rotation at the bit", table: "history", build: "whole", isWindowed: true, hasTime: true, draw: drawBits },
   string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
   contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
-  well: { name: "Well", table: "statics", draw: drawWells },
+  well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
   modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
   effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },

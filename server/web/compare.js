@@ -81,7 +81,7 @@ export async function show(main, route, signal) {
   );
   offerSweeps(listed, "");
 
-  const place = kind === "several" ? h("div", {}) : kind === "table" ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall");
+  const place = kind === "several" ? h("div", {}) : kind === "table" ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${VIEWS[view].name}, scrollable` }) : canvas(VIEWS[view].name, view, "tall", VIEWS[view].build);
   const controls = h("div", { class: "controls" });
   const lacking = h("div", { class: "lacking", role: "status", "aria-label": "What is missing" });
   const caption = h("figcaption", {});

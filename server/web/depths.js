@@ -8,6 +8,8 @@ export class Depths {
   /** @type {Map<number, number>} */
   #depths = new Map();
   #isAsked = false;
+  /** Whether a name was told without the depth of its node. */
+  isMissed = false;
 
   /**
    * Reads them once there is a result; where its equilibrium is not kept, or not any more, they stay unknown: names do without them.
@@ -39,6 +41,7 @@ export class Depths {
   label(name) {
     return label(name).replace(/\bnode (\d+)/, (text, node) => {
       const depth = this.#depths.get(Number(node));
+      this.isMissed ||= depth === undefined;
       return depth === undefined ? text : `${text} at ${say("measured_depth", depth)}`;
     });
   }

@@ -2,6 +2,7 @@
 
 import { answerAfter, connection, Problem, Unreachable } from "./api.js";
 import { fill, h } from "./dom.js";
+import { preload } from "./modules.js";
 import { reported } from "./notices.js";
 import { route } from "./router.js";
 import { loadSession, logIn, logOut, onLoginNeeded, session } from "./session.js";
@@ -13,7 +14,7 @@ import { loadQuantities } from "./units.js";
  * @typedef {(main: HTMLElement, route: import("./router.js").Route, signal: AbortSignal) => Promise<string>} View
  */
 
-/** @type {Record<string, () => Promise<{show: View}>>} */
+/** The module of each view, by its name. @type {Record<string, () => Promise<{show: View}>>} */
 const VIEWS = {
   sweeps: () => import("./sweeps.js"),
   sweep: () => import("./sweep.js"),
@@ -66,6 +67,7 @@ async function show() {
   if (isElsewhere) fill(main, h("p", { class: "empty", role: "status" }, "Loading…"));
   // A view is built aside and takes its place complete, so that one that is shown anew does not flicker.
   const next = h("div", {});
+  preload(`${view}.js`);
   try {
     const title = await (await VIEWS[view]()).show(next, asked, mine.signal);
     if (mine.signal.aborted) return;

@@ -1,7 +1,10 @@
-// Pictures with plotly: loaded when the first one is drawn, in the page's theme, with PNG and SVG to take away.
+// Pictures in the page's theme, with PNG and SVG to take away: sketched at once, and drawn by plotly as soon as that is compiled.
 
+import { isWaiting } from "./api.js";
 import { h } from "./dom.js";
+import { fetchAhead, library, libraryAtHand } from "./drawing.js";
 import { settings, theme } from "./settings.js";
+import { sketch } from "./sketch.js";
 import { forgetZoom, keepZoom, wholeOf, zoomed } from "./zoom.js";
 
 /** Lines that differ, for colour-blind readers too (after Okabe and Ito); lighter on the dark theme. */
@@ -18,24 +21,6 @@ export const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashd
 /** The scale of every coloured quantity. */
 export const SCALE = "Viridis";
 
-/** @type {Promise<any> | undefined} */
-let loading;
-
-/** @returns {Promise<any>} plotly */
-function plotly() {
-  loading ??= new Promise((resolve, reject) => {
-    const script = document.createElement("script");
-    script.src = new URL("vendor/plotly-strict.min.js", import.meta.url).href;
-    script.onload = () => resolve(/** @type {any} */ (globalThis).Plotly);
-    script.onerror = () => {
-      loading = undefined;
-      reject(new Error("the drawing library could not be loaded"));
-    };
-    document.head.append(script);
-  });
-  return loading;
-}
-
 /** @returns {{text: string, soft: string, line: string, panel: string}} colours of the theme */
 export function inks() {
   return theme() === "dark"
@@ -48,18 +33,26 @@ export function inks() {
  * @param {string} name what screen readers say and files are called
  * @param {string} key what the link calls it, where it holds how the picture is zoomed
  * @param {string} [size] `low` or `tall`
+ * @param {import("./drawing.js").Build} [build] of the drawing library that it will need
  */
-export function canvas(name, key, size = "") {
+export function canvas(name, key, size = "", build = "flat") {
   // While the data come.
-  plotly().catch(() => {});
+  fetchAhead(build);
   return h("div", { class: `plot ${size}`, role: "figure", "aria-label": name, "data-zoom": key });
 }
+
+/** How long no picture has been sketched and nothing is awaited when the drawing library is compiled, and how long that waits at most. */
+const REST_MS = 40, LONGEST_MS = 500, STEP_MS = 10;
 
 /**
  * What is known of a picture that is drawn: its layout, what its axes are, and how it is when it is not zoomed.
  * @type {WeakMap<HTMLElement, {layout: any, axes: string, whole: Record<string, any>}>}
  */
 const drawn = new WeakMap();
+/** What drew a picture. @type {WeakMap<HTMLElement, any>} */
+const drawers = new WeakMap();
+/** How often each place was to be drawn: what is older than the newest is dropped. @type {WeakMap<HTMLElement, number>} */
+const asked = new WeakMap();
 /** Pictures whose layout the page changes itself. @type {WeakSet<HTMLElement>} */
 const adjusted = new WeakSet();
 
@@ -73,27 +66,78 @@ const adjusted = new WeakSet();
  * @returns {Promise<any>} the picture, which has plotly's events
  */
 export async function draw(place, traces, layout, signal) {
-  const Plotly = await plotly();
+  const mine = (asked.get(place) ?? 0) + 1;
+  asked.set(place, mine);
   await laidOut(place, signal);
   if (signal.aborted) return place;
-  const isFirst = !place.classList.contains("js-plotly-plot");
-  await Plotly.react(place, traces, merged(common(), layout), config(Plotly, place, layout));
+  const complete = merged(common(), layout);
+  if (!libraryAtHand(traces)) await sketched(place, traces, complete);
+  const Plotly = await library(traces);
+  // What has been asked for since is drawn in the place of this.
+  if (signal.aborted || asked.get(place) !== mine) return place;
+  const before = drawers.get(place);
+  // What one build has drawn the other cannot change.
+  if (before && before !== Plotly) before.purge(place);
+  drawers.set(place, Plotly);
+  await Plotly.react(place, traces, complete, config(Plotly, place, layout));
+  for (const rough of place.querySelectorAll(".sketch")) rough.remove();
   await zoom(Plotly, place, layout);
-  if (isFirst) {
-    /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
-      const known = drawn.get(place);
-      if (!known || adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
-      keepZoom(keyOf(place), /** @type {any} */ (place)._fullLayout, known.layout, known.whole);
-    });
-    const observer = new ResizeObserver(() => place.isConnected && place.clientWidth > 0 && Plotly.Plots.resize(place));
-    observer.observe(place);
-    signal.addEventListener("abort", () => {
-      observer.disconnect();
-      // After the next view has taken the place of this one.
-      setTimeout(() => Plotly.purge(place), 1000);
-    }, { once: true });
-  }
+  if (before !== Plotly) followZoom(place);
+  if (!before) attach(place, signal);
   return place;
+}
+
+/**
+ * Shows roughly what will be drawn, as long as the drawing library is not there.
+ * @param {HTMLElement} place
+ * @param {any[]} traces
+ * @param {any} layout complete
+ */
+async function sketched(place, traces, layout) {
+  const ranges = Object.entries(zoomed(keyOf(place), layout)).filter(([path]) => path.endsWith(".range"));
+  const zoomedAxes = ranges.map(([path, range]) => [path.split(".")[0], range]);
+  const axes = Object.fromEntries(zoomedAxes.map(([name, range]) => [name, { ...layout[name], range, autorange: undefined }]));
+  const older = place.querySelectorAll(".sketch");
+  const isSketched = sketch(place, traces, { ...layout, ...axes }, inks()) !== null;
+  for (const rough of older) rough.remove();
+  await painted();
+  if (!isSketched) return;
+  firstSketch ??= performance.now();
+  lastSketch = performance.now();
+  // What else the view shows is sketched before.
+  while (performance.now() < Math.min(firstSketch + LONGEST_MS, isWaiting() ? Infinity : lastSketch + REST_MS)) await new Promise((resolve) => setTimeout(resolve, STEP_MS));
+}
+/** When pictures were sketched first and last [ms]. @type {number | undefined} */
+let firstSketch;
+let lastSketch = -Infinity;
+
+/** Waits until the browser has painted what there is; compiling the drawing library would hold that up. @returns {Promise<void>} */
+function painted() {
+  return new Promise((resolve) => void requestAnimationFrame(() => setTimeout(resolve)));
+}
+
+/** Keeps in the link how the reader zooms a picture. @param {HTMLElement} place */
+function followZoom(place) {
+  /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
+    const known = drawn.get(place);
+    if (!known || adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
+    keepZoom(keyOf(place), /** @type {any} */ (place)._fullLayout, known.layout, known.whole);
+  });
+}
+
+/**
+ * Has a picture follow the size of its place, and takes it down with its view.
+ * @param {HTMLElement} place
+ * @param {AbortSignal} signal
+ */
+function attach(place, signal) {
+  const observer = new ResizeObserver(() => place.isConnected && place.clientWidth > 0 && drawers.get(place).Plots.resize(place));
+  observer.observe(place);
+  signal.addEventListener("abort", () => {
+    observer.disconnect();
+    // After the next view has taken the place of this one.
+    setTimeout(() => drawers.get(place).purge(place), 1000);
+  }, { once: true });
 }
 
 /**
@@ -137,7 +181,7 @@ function laidOut(place, signal) {
  */
 export async function adjust(place, changes) {
   if (!place.classList.contains("js-plotly-plot")) return;
-  const Plotly = await plotly();
+  const Plotly = drawers.get(place);
   adjusted.add(place);
   await Plotly.relayout(place, changes);
   adjusted.delete(place);

@@ -120,6 +120,10 @@ export function motion(context) {
 
   async function redraw() {
     const mine = ++generation;
+    const { from, to } = span();
+    const asked = ofWindow(from, to);
+    // Where it fails, the window says so once it is drawn.
+    asked.catch(() => {});
     try {
       [statics, whole] = await Promise.all([statics ?? context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }), context.table("orbit", { ...selector(), max_points: SHOWN })]);
     } catch (error) {
@@ -129,7 +133,7 @@ export function motion(context) {
     }
     if (mine !== generation) return;
     drawControls();
-    await Promise.all([drawHistory(), drawWindow(), drawRotation(place().node)]);
+    await Promise.all([drawHistory(), drawWindow(asked), drawRotation(place().node)]);
   }
 
   async function drawHistory() {
@@ -170,13 +174,14 @@ export function motion(context) {
     );
   }
 
-  async function drawWindow() {
+  /** @param {ReturnType<typeof ofWindow>} [asked] where the service has been asked for the window already */
+  async function drawWindow(asked) {
     const mine = ++generation;
     const { from, to } = span();
     wrong.textContent = "";
     void adjust(history, { shapes: [shade()] });
     try {
-      const [cut, lines, statistics] = await ofWindow(from, to);
+      const [cut, lines, statistics] = await (asked ?? ofWindow(from, to));
       if (mine !== generation) return;
       windowed = { cut, lines, statistics };
       // What follows the mouse is shown until it is let go.

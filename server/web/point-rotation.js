@@ -86,7 +86,7 @@ export function endsRequest(lines) {
 
 /** @param {import("./point.js").PointContext} context */
 export function rotation(context) {
-  const place = canvas("Rotation speed and torque at bit and top", "rotation");
+  const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
   const caption = h("figcaption", {});
   return {
     element: h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption)),

@@ -16,7 +16,7 @@ const EXAGGERATIONS = ["1", "20", "100", "300"];
  */
 export function well(context) {
   const { query } = context;
-  const place = canvas("The well and the string in it", "well", "tall");
+  const place = canvas("The well and the string in it", "well", "tall", "whole");
   const controls = h("div", { class: "controls" });
   const caption = h("figcaption", {});
   const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");

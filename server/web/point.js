@@ -5,13 +5,7 @@ import { Biases } from "./bias.js";
 import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
 import { lines, requestLines } from "./lines.js";
-import { about } from "./point-about.js";
-import { energy } from "./point-energy.js";
-import { motion } from "./point-motion.js";
-import { profiles } from "./point-profiles.js";
-import { spectrogram } from "./point-spectrogram.js";
-import { string } from "./point-string.js";
-import { well } from "./point-well.js";
+import { preload } from "./modules.js";
 import { keep, link } from "./router.js";
 import { parameters } from "./sweep-failures.js";
 import { say } from "./units.js";
@@ -36,15 +30,18 @@ import { say } from "./units.js";
  * @typedef {{asked: {table: string, query?: Record<string, any>, isDocument?: boolean, name?: string}[], python: string}} PartRequest
  */
 
-/** @type {[string, string, (context: PointContext) => PointPart][]} */
+/**
+ * The views: name in the link, what it is called, its module, and what makes it.
+ * @type {[string, string, string, () => Promise<(context: PointContext) => PointPart>][]}
+ */
 const PARTS = [
-  ["profiles", "Profiles", profiles],
-  ["motion", "Orbit, history, spectrum", motion],
-  ["spectrogram", "Spectrogram", spectrogram],
-  ["string", "String in motion", string],
-  ["well", "Well", well],
-  ["energy", "Energy", energy],
-  ["about", "Effects, accuracy, downloads", about],
+  ["profiles", "Profiles", "point-profiles.js", async () => (await import("./point-profiles.js")).profiles],
+  ["motion", "Orbit, history, spectrum", "point-motion.js", async () => (await import("./point-motion.js")).motion],
+  ["spectrogram", "Spectrogram", "point-spectrogram.js", async () => (await import("./point-spectrogram.js")).spectrogram],
+  ["string", "String in motion", "point-string.js", async () => (await import("./point-string.js")).string],
+  ["well", "Well", "point-well.js", async () => (await import("./point-well.js")).well],
+  ["energy", "Energy", "point-energy.js", async () => (await import("./point-energy.js")).energy],
+  ["about", "Effects, accuracy, downloads", "point-about.js", async () => (await import("./point-about.js")).about],
 ];
 
 /**
@@ -63,11 +60,12 @@ const POLL_MS = 3000;
 export async function show(main, route, signal) {
   const [, id, , ordinal] = route.path;
   const path = `/v1/sweeps/${encodeURIComponent(id)}/points/${encodeURIComponent(ordinal)}`;
-  const [point, sweep] = await Promise.all([get(path, {}, signal), get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal)]);
+  const asked = route.query.get("view");
+  const [view, name, file, making] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
+  preload(file);
+  const [point, sweep, make] = await Promise.all([get(path, {}, signal), get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal), making()]);
   const biases = new Biases();
   await biases.load(sweep, signal);
-  const asked = route.query.get("view");
-  const [view, name, make] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
   const here = ["sweeps", id, "points", ordinal];
   const heading = h("div", {});
   const neighbour = (/** @type {number} */ step, /** @type {string} */ text) => {

@@ -5,15 +5,10 @@ import { Biases } from "./bias.js";
 import { Depths } from "./depths.js";
 import { choice, fill, h } from "./dom.js";
 import { lines } from "./lines.js";
-import { reported, notice } from "./notices.js";
+import { preload } from "./modules.js";
+import { attend, reported, notice } from "./notices.js";
 import { go, keep, link } from "./router.js";
 import { MAY_NOT, maySubmit } from "./session.js";
-import { difference } from "./sweep-difference.js";
-import { effects } from "./sweep-effects.js";
-import { failures } from "./sweep-failures.js";
-import { map } from "./sweep-map.js";
-import { parallel, scatter } from "./sweep-scatter.js";
-import { table } from "./sweep-table.js";
 import { Pace, progressPart, when } from "./sweeps.js";
 import { sweepLines } from "./sweep-lines.js";
 import { SweepTable, sweptBy } from "./table.js";
@@ -43,16 +38,22 @@ import { say } from "./units.js";
  * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./sweep-lines.js").Shown[]}} Part
  */
 
-/** @type {[string, string, (context: Context) => Part][]} */
+/**
+ * The views: name in the link, what it is called, its module, and what makes it.
+ * @type {[string, string, string, () => Promise<(context: Context) => Part>][]}
+ */
 const PARTS = [
-  ["map", "Map", map],
-  ["scatter", "Scatter", scatter],
-  ["parallel", "Parallel coordinates", parallel],
-  ["effects", "Sensitivities", effects],
-  ["difference", "Difference", difference],
-  ["table", "Table", table],
-  ["failures", "Failures", failures],
+  ["map", "Map", "sweep-map.js", async () => (await import("./sweep-map.js")).map],
+  ["scatter", "Scatter", "sweep-scatter.js", async () => (await import("./sweep-scatter.js")).scatter],
+  ["parallel", "Parallel coordinates", "sweep-parallel.js", async () => (await import("./sweep-parallel.js")).parallel],
+  ["effects", "Sensitivities", "sweep-effects.js", async () => (await import("./sweep-effects.js")).effects],
+  ["difference", "Difference", "sweep-difference.js", async () => (await import("./sweep-difference.js")).difference],
+  ["table", "Table", "sweep-table.js", async () => (await import("./sweep-table.js")).table],
+  ["failures", "Failures", "sweep-failures.js", async () => (await import("./sweep-failures.js")).failures],
 ];
+
+/** Where the table stands among them: what is shown of a sweep that varies nothing. */
+const TABLE = PARTS.findIndex(([name]) => name === "table");
 
 /** The least time between two readings of a table that is still growing. */
 const REDRAW_MS = 4000;
@@ -60,14 +61,18 @@ const REDRAW_MS = 4000;
 /** @type {import("./main.js").View} */
 export async function show(main, route, signal) {
   const id = route.path[1];
+  const asked = PARTS.find(([name]) => name === route.query.get("view"));
+  preload((asked ?? PARTS[0])[2]);
   let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
   const data = new SweepTable(sweep, signal);
   const biases = new Biases();
   const depths = new Depths();
-  await Promise.all([data.load(), biases.load(sweep, signal), depths.load(sweep, signal)]);
+  // Names do without depths until these have come, or where they cannot be had.
+  const deepened = depths.load(sweep, signal).catch(() => {});
+  await Promise.all([data.load(), biases.load(sweep, signal)]);
   const { axes, spans, paths } = sweptBy(sweep, data.names);
-  const asked = route.query.get("view");
-  const [view, , make] = PARTS.find(([name]) => name === asked) ?? PARTS[axes.length ? 0 : 4];
+  const [view, , , making] = asked ?? PARTS[axes.length ? 0 : TABLE];
+  const make = await making();
 
   const query = new URLSearchParams(route.query);
   const taken = lines(() => {
@@ -157,6 +162,7 @@ export async function show(main, route, signal) {
     taken,
   );
   await part.draw();
+  attend(deepened.then(() => (depths.isMissed && !signal.aborted ? part.draw() : undefined)), signal);
   if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
   return sweep.name ?? `Sweep ${id.slice(-8)}`;
 }

@@ -227,6 +227,35 @@ def test_every_view_of_a_sweep_is_shown(
         drawn(page, "." if view != "effects" else "Shares of the variance")
 
 
+def test_a_picture_is_seen_before_the_drawing_library_has_come(opened: Opens, named: Sweep) -> None:
+    page = opened("#/nowhere")
+    held: list[Route] = []
+    page.route("**/vendor/*", lambda route: held.append(route))
+    colour = "orbit_radius_rms_49"
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour={colour}"))
+    rough = page.locator(".plot canvas.sketch")
+    expect(rough).to_be_visible()
+    # Its four cells, by the colour in the middle of each: of the least value the darkest, of the largest the brightest.
+    read = """canvas => {
+        const pen = canvas.getContext('2d');
+        const { width, height } = canvas;
+        const at = (x, y) => [...pen.getImageData(x * width, y * height, 1, 1).data].slice(0, 3);
+        return [at(0.3, 0.7), at(0.7, 0.7), at(0.3, 0.2), at(0.7, 0.2)];
+    }"""
+    shown = [sum(cell) for cell in rough.evaluate(read)]
+    table = named.table().to_pandas()
+    held_speed = table[table["operation.rotation_speed_rpm"] == 90].sort_values(["mud_density", "flow_rate"])
+    values = list(held_speed[colour])
+    assert sorted(range(4), key=shown.__getitem__) == sorted(range(4), key=values.__getitem__)
+    assert [min(shown), max(shown)] == [68 + 1 + 84, 253 + 231 + 37]
+    for route in held:
+        route.continue_()
+    held.clear()
+    page.unroute("**/vendor/*")
+    drawn(page, "over flow rate")
+    expect(rough).to_have_count(0)
+
+
 def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=friction_coefficient_max")
     drawn(page, "friction coefficient C_f max|friction coefficient max")
@@ -442,6 +471,7 @@ def test_a_finer_grid_is_dragged_over_a_region(opened: Opens, client: Client) ->
     page.mouse.down()
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.45 * box["height"], steps=8)
     page.mouse.up()
+    until(page, lambda: float(panel.get_by_label("From [m³/s]").input_value()) > 0.01)
     start, end = (float(panel.get_by_label(f"{name} [m³/s]").input_value()) for name in ("From", "To"))
     assert 0.01 < start < 0.025 < end + 0.002 < 0.035
     panel.get_by_label("From [m³/s]").fill("0.02")

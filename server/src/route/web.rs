@@ -14,8 +14,8 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 use crate::guard::middleware;
 
-/// Path, hash and compressed bytes of each file.
-const FILES: &[(&str, &str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
+/// Path, hash and compressed bytes of each file, and what it imports where it is a module.
+const FILES: &[(&str, &str, &[u8], &[&str])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
 
 /// What the page may load: files and answers of this service alone. plotly.js sets styles of its elements, and makes pictures from blobs;
 /// Swagger UI sets styles, too, and has icons in its own text.
@@ -25,7 +25,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'u
 /// The name of all files together: the page loads files of its own version, however long a browser keeps them.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
     let mut hasher = blake3::Hasher::new();
-    for (path, hash, _) in FILES {
+    for (path, hash, ..) in FILES {
         hasher.update(path.as_bytes()).update(hash.as_bytes());
     }
     hasher.finalize().to_hex()[..16].to_owned()
@@ -39,13 +39,13 @@ struct File {
 
 static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
     let file = |compressed| File { compressed, plain: OnceLock::new() };
-    FILES.iter().map(|(path, _, bytes)| (*path, file(*bytes))).collect()
+    FILES.iter().map(|(path, _, bytes, _)| (*path, file(*bytes))).collect()
 });
 
 /// The page on which sweeps are watched.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
     static PAGE: LazyLock<io::Result<String>> =
-        LazyLock::new(|| Ok(html("index.html")?.replace("</head>", &preloads())));
+        LazyLock::new(|| Ok(html("index.html")?.replace("</head>", &preloads()?)));
     html_response(&PAGE, &uri)
 }
 
@@ -74,14 +74,30 @@ fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Respons
     Ok((headers, usual(), text.as_str()).into_response())
 }
 
-/// What the page's head ends with: all modules, which a browser would otherwise find one after the other by their imports, and what every
-/// view needs.
-fn preloads() -> String {
-    let is_module = |path: &str| path.ends_with(".js") && !path.contains('/') && path != "docs.js";
-    let modules = FILES.iter().filter(|(path, ..)| is_module(path));
-    let links = modules
-        .map(|(path, ..)| format!("  <link rel=\"modulepreload\" href=\"/web/{}/{path}\">\n", *VERSION));
-    links.collect::<String>() + "</head>"
+/// What the page's head ends with: the modules that every view needs, which a browser would otherwise find one after the other by their
+/// imports, and what each module imports, so that the page fetches those of a view at once.
+fn preloads() -> io::Result<String> {
+    let imports: BTreeMap<&str, &[&str]> = FILES
+        .iter()
+        .filter(|(.., imported)| !imported.is_empty())
+        .map(|(path, .., imported)| (*path, *imported))
+        .collect();
+    let mut needed = vec!["main.js"];
+    let mut next = 0;
+    while let Some(path) = needed.get(next) {
+        let further = imports.get(path).copied().unwrap_or_default();
+        let fresh: Vec<&str> = further.iter().copied().filter(|path| !needed.contains(path)).collect();
+        needed.extend(fresh);
+        next += 1;
+    }
+    let links = needed
+        .iter()
+        .map(|path| format!("  <link rel=\"modulepreload\" href=\"/web/{}/{path}\">\n", *VERSION));
+    let imports = serde_json::to_string(&imports).map_err(io::Error::other)?;
+    Ok(format!(
+        "{}  <script type=\"application/json\" id=\"imports\">{imports}</script>\n</head>",
+        links.collect::<String>()
+    ))
 }
 
 /// A file of the page, compressed as it is stored where the browser takes that.

@@ -177,7 +177,9 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
     let main = text.split('"').find(|part| part.ends_with("main.js")).expect("the page loads it");
     let folder = main.strip_suffix("main.js").unwrap();
     let mut waiting =
-        vec!["main.js".to_owned(), "style.css".to_owned(), "vendor/plotly-strict.min.js".to_owned()];
+        ["main.js", "style.css", "vendor/plotly-cartesian.min.js", "vendor/plotly-strict.min.js"]
+            .map(str::to_owned)
+            .to_vec();
     let mut seen = Vec::new();
     while let Some(path) = waiting.pop() {
         if seen.contains(&path) {
@@ -195,12 +197,20 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
         seen.push(path);
     }
     assert!(seen.len() > 5, "{seen:?}");
-    // The head names all modules, so that none waits for another one's imports.
+    // The head names what every view needs, and says what each module imports, so that none waits for another one's imports.
+    let imports =
+        text.split("id=\"imports\">").nth(1).and_then(|rest| rest.split("</script>").next()).unwrap();
+    let imports: Value = serde_json::from_str(imports).unwrap();
     for module in seen.iter().filter(|path| path.ends_with(".js") && !path.contains('/')) {
-        assert!(
-            text.contains(&format!("<link rel=\"modulepreload\" href=\"{folder}{module}\">")),
-            "{module}"
-        );
+        let answer = bench.get(&format!("{folder}{module}")).await;
+        for imported in answer.text().split(" from \"./").skip(1).filter_map(|rest| rest.split('"').next()) {
+            let said = imports[module].as_array().unwrap();
+            assert!(said.iter().any(|path| path == imported), "{module} imports {imported}: {said:?}");
+            if module == "main.js" {
+                let link = format!("<link rel=\"modulepreload\" href=\"{folder}{imported}\">");
+                assert!(text.contains(&link), "{imported}");
+            }
+        }
     }
 
     // What has a copy is told that it is still right; another version has no files here.

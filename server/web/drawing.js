@@ -1,0 +1,74 @@
+// The drawing library, plotly, in two builds: a small one for flat pictures, and the whole one for those that WebGL draws. Compiling either
+// takes the page a part of a second in which nothing else happens, so that it waits until a picture needs it.
+
+/** What the small build draws. */
+const FLAT = new Set(["scatter", "bar", "heatmap", "contour"]);
+/** @typedef {"flat" | "whole"} Build */
+/** @type {Record<Build, string>} */
+const FILES = { flat: "vendor/plotly-cartesian.min.js", whole: "vendor/plotly-strict.min.js" };
+
+/** Data that take longer come while the library is compiled. */
+const LONG_MS = 900;
+
+/** @type {Map<Build, Promise<any>>} */
+const loading = new Map();
+/** @type {Map<Build, any>} */
+const loaded = new Map();
+
+/** @param {Build} build */
+function addressOf(build) {
+  return new URL(FILES[build], import.meta.url).href;
+}
+
+/** Has the file of a build come while data do. It is compiled only for a picture, or where the data take long. @param {Build} build */
+export function fetchAhead(build) {
+  const href = addressOf(build);
+  if (loaded.has("whole") || loading.has(build) || document.head.querySelector(`link[href="${href}"]`)) return;
+  const link = document.createElement("link");
+  Object.assign(link, { rel: "preload", as: "script", href });
+  document.head.append(link);
+  setTimeout(() => loaded.has("whole") || load(build).catch(() => {}), LONG_MS);
+}
+
+/**
+ * The library that draws what is given, if it is there.
+ * @param {any[]} traces
+ */
+export function libraryAtHand(traces) {
+  return (isFlat(traces) && loaded.get("flat")) || loaded.get("whole");
+}
+
+/**
+ * @param {any[]} traces
+ * @returns {Promise<any>} the library that draws them
+ */
+export async function library(traces) {
+  return libraryAtHand(traces) ?? load(isFlat(traces) ? "flat" : "whole");
+}
+
+/** @param {any[]} traces */
+function isFlat(traces) {
+  return traces.every(({ type }) => FLAT.has(type));
+}
+
+/** @param {Build} build @returns {Promise<any>} */
+function load(build) {
+  const known = loading.get(build);
+  if (known) return known;
+  const work = new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = addressOf(build);
+    script.onload = () => {
+      // Either build calls itself so.
+      loaded.set(build, /** @type {any} */ (globalThis).Plotly);
+      resolve(loaded.get(build));
+    };
+    script.onerror = () => {
+      loading.delete(build);
+      reject(new Error("the drawing library could not be loaded"));
+    };
+    document.head.append(script);
+  });
+  loading.set(build, work);
+  return work;
+}

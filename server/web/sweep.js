@@ -7,9 +7,10 @@ import { choice, fill, h } from "./dom.js";
 import { lines } from "./lines.js";
 import { preload } from "./modules.js";
 import { attend, reported, notice } from "./notices.js";
+import { Pace } from "./pace.js";
 import { go, keep, link } from "./router.js";
 import { MAY_NOT, maySubmit } from "./session.js";
-import { Pace, progressPart, when } from "./sweeps.js";
+import { progressPart, when } from "./sweeps.js";
 import { sweepLines } from "./sweep-lines.js";
 import { SweepTable, sweptBy } from "./table.js";
 import { say } from "./units.js";
@@ -107,8 +108,16 @@ export async function show(main, route, signal) {
 
   const head = h("div", {});
   const pace = new Pace();
-  pace.note(sweep.progress);
+  pace.note(sweep);
   const drawHead = () => fill(head, ...headPart(sweep, pace, act, change));
+  /** Learns what a point takes, once one is complete, for the time left before the page has seen how fast the sweep goes. */
+  async function learnPace() {
+    if (isFinal(sweep) || !sweep.counts.succeeded || hasAsked) return;
+    hasAsked = true;
+    pace.pointSeconds = await secondsOfPoint(id, signal);
+    if (!signal.aborted) drawHead();
+  }
+  let hasAsked = false;
 
   /** @param {string} verb */
   async function act(verb) {
@@ -134,8 +143,9 @@ export async function show(main, route, signal) {
     // What is absent is not so any more.
     sweep = { ...sweep, waiting_for: undefined, ...changed };
     context.sweep = sweep;
-    pace.note(sweep.progress);
+    pace.note(sweep);
     drawHead();
+    attend(learnPace(), signal);
     if (hasResults && waiting === undefined) waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
     if (wasFinal && !isFinal(sweep)) follow(id, { sweep: update }, signal);
   }
@@ -163,8 +173,23 @@ export async function show(main, route, signal) {
   );
   await part.draw();
   attend(deepened.then(() => (depths.isMissed && !signal.aborted ? part.draw() : undefined)), signal);
+  attend(learnPace(), signal);
   if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
   return sweep.name ?? `Sweep ${id.slice(-8)}`;
+}
+
+/**
+ * How long the first of a sweep's complete points was computed [s]; null where its result does not say.
+ * @param {string} id
+ * @param {AbortSignal} signal
+ */
+async function secondsOfPoint(id, signal) {
+  const path = `/v1/sweeps/${encodeURIComponent(id)}/points`;
+  const { points } = await get(path, { state: "succeeded", limit: 1 }, signal);
+  if (!points[0]) return null;
+  const { provenance } = await get(`${path}/${points[0].ordinal}`, {}, signal);
+  const seconds = (Date.parse(provenance?.ended) - Date.parse(provenance?.started)) / 1000;
+  return Number.isFinite(seconds) ? seconds : null;
 }
 
 /**

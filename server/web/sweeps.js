@@ -4,6 +4,7 @@ import { address, followAll, get, isFinal } from "./api.js";
 import { debounced, choice, fill, h } from "./dom.js";
 import { lines, shell } from "./lines.js";
 import { attend } from "./notices.js";
+import { Pace } from "./pace.js";
 import { go, keep, link } from "./router.js";
 import { duration } from "./units.js";
 
@@ -92,7 +93,7 @@ export async function show(main, route, signal) {
     for (const sweep of sweeps) {
       if (known.has(sweep.id)) continue;
       const entry = { sweep, row: h("tr", {}), pace: new Pace() };
-      entry.pace.note(sweep.progress);
+      entry.pace.note(sweep);
       known.set(sweep.id, entry);
       drawRow(entry.row, sweep, entry.pace);
       body.append(entry.row);
@@ -110,7 +111,7 @@ export async function show(main, route, signal) {
     const entry = known.get(sweep.id);
     if (!entry) return;
     entry.sweep = sweep;
-    entry.pace.note(sweep.progress);
+    entry.pace.note(sweep);
     drawRow(entry.row, sweep, entry.pace);
   }
 
@@ -154,7 +155,7 @@ export async function show(main, route, signal) {
     for (const sweep of page.sweeps) update(sweep);
     for (const sweep of fresh.reverse()) {
       const entry = { sweep, row: h("tr", {}), pace: new Pace() };
-      entry.pace.note(sweep.progress);
+      entry.pace.note(sweep);
       known.set(sweep.id, entry);
       drawRow(entry.row, sweep, entry.pace);
       body.prepend(entry.row);
@@ -257,28 +258,6 @@ export async function show(main, route, signal) {
   return "Sweeps";
 }
 
-/** How fast a sweep goes: from the progress seen of it, and until that is enough, from its mean pace since it was submitted. */
-export class Pace {
-  /** @type {{at: number, progress: number}[]} */
-  #seen = [];
-
-  /** @param {number} progress */
-  note(progress) {
-    this.#seen.push({ at: Date.now(), progress });
-    if (this.#seen.length > 30) this.#seen.shift();
-  }
-
-  /**
-   * @param {string} created when the sweep was submitted, RFC 3339
-   * @returns {number | null} seconds left; null where nothing moved yet
-   */
-  left(created) {
-    const last = this.#seen[this.#seen.length - 1];
-    const since = [this.#seen[0], { at: Date.parse(created), progress: 0 }].find((past) => past && last.progress > past.progress && last.at > past.at);
-    return since ? ((1 - last.progress) * (last.at - since.at)) / (last.progress - since.progress) / 1000 : null;
-  }
-}
-
 /**
  * @param {HTMLTableRowElement} row
  * @param {any} sweep
@@ -305,12 +284,12 @@ function drawRow(row, sweep, pace) {
  */
 export function progressPart(sweep, pace) {
   const { counts } = sweep;
-  const left = sweep.state === "running" ? pace.left(sweep.created) : null;
+  const left = pace.left();
   const words = [`${counts.succeeded} of ${counts.total} succeeded`];
   if (counts.running) words.push(`${counts.running} running`);
   if (counts.failed) words.push(`${counts.failed} failed`);
   if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
-  if (left !== null) words.push(`about ${duration(left)} left`);
+  if (sweep.state === "running") words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
   const percent = Math.floor(100 * sweep.progress);
   return h(
     "div",

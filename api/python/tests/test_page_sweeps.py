@@ -148,16 +148,93 @@ def test_the_selected_sweep_stays_so_when_another_arrives(opened: Opens, client:
     assert second.id != first.id
 
 
-def test_a_page_just_opened_says_how_much_time_is_left(opened: Opens) -> None:
-    # A quarter was done in the 100 s since the submission.
-    call = """(() => {
-        const pace = new module.Pace();
-        pace.note(argument);
-        return pace.left(new Date(Date.now() - 100000).toISOString());
-    })()"""
-    page = opened()
-    assert module(page, "sweeps.js", call, 0.25) == pytest.approx(300, rel=0.01)
-    assert module(page, "sweeps.js", call, 0) is None
+def test_beside_a_selected_sweep_that_is_deleted_its_neighbour_is_selected(opened: Opens, client: Client) -> None:
+    tag = "neighbours"
+    names = ["last", "middle", "first"]
+    sweeps = {name: client.submit("paper-200m", set=SHORT, tags=[tag], name=name).wait(timeout=60.0) for name in names}
+    page = opened(f"#/sweeps?tag={tag}")
+    expect(page.get_by_role("table", name="Sweeps").locator("tbody tr")).to_have_count(3)
+    selected = page.locator("tr[aria-selected]")
+    for _ in range(2):
+        page.keyboard.press("j")
+    expect(selected).to_contain_text("middle")
+    sweeps["middle"].delete()
+    # The one below, which also has the keyboard.
+    expect(selected).to_contain_text("last")
+    expect(page.get_by_role("link", name="last")).to_be_focused()
+    # Below the last one there is none.
+    sweeps["last"].delete()
+    expect(selected).to_contain_text("first")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", level=1)).to_have_text("first")
+
+
+def test_the_keyboard_stays_at_a_sweep_whose_row_changes(opened: Opens, client: Client) -> None:
+    sweep = client.submit("paper-200m", set=SHORT, tags=["changing"], name="changes", priority=-10)
+    page = opened("#/sweeps?tag=changing")
+    expect(page.get_by_role("link", name="changes")).to_be_visible()
+    page.keyboard.press("j")
+    expect(page.get_by_role("link", name="changes")).to_be_focused()
+    sweep.change(name="has changed")
+    expect(page.get_by_role("link", name="has changed")).to_be_focused()
+
+
+PACE = """(() => {
+    const real = Date.now;
+    const pace = new module.Pace();
+    try {
+        for (const [at, progress, running, state] of argument.seen) {
+            Date.now = () => 1000 * at;
+            pace.note({ state, progress, counts: { total: 100, running } });
+        }
+        pace.pointSeconds = argument.seconds;
+        return pace.left();
+    } finally {
+        Date.now = real;
+    }
+})()"""
+
+
+@pytest.mark.parametrize(
+    ("seen", "seconds", "left"),
+    [
+        # A tenth in 10 s: nine more of these.
+        ([(0, 0.0, 2, "running"), (10, 0.1, 2, "running")], None, 90),
+        # An hour's pause and a wait for a worker change nothing.
+        (
+            [
+                (0, 0.0, 0, "running"),
+                (1000, 0.0, 2, "running"),
+                (1010, 0.1, 2, "paused"),
+                (4610, 0.1, 2, "running"),
+                (4620, 0.2, 2, "running"),
+            ],
+            None,
+            80,
+        ),
+        # What was long ago does not count.
+        ([(0, 0.0, 2, "running"), (1000, 0.5, 2, "running"), (1200, 0.6, 2, "running")], None, 800),
+        # A page just opened goes by what a point took: 75 points, two at a time.
+        ([(0, 0.25, 2, "running")], 4, 150),
+        ([(0, 0.25, 2, "running")], None, None),
+        # Nothing runs.
+        ([(0, 0.0, 2, "running"), (10, 0.1, 0, "running")], 4, None),
+        ([(0, 0.0, 2, "running"), (10, 0.1, 2, "paused")], 4, None),
+    ],
+)
+def test_the_time_left_goes_by_how_fast_points_were_while_they_ran(
+    opened: Opens, seen: list[tuple[float, float, int, str]], seconds: float | None, left: float | None
+) -> None:
+    found = module(opened(), "pace.js", PACE, {"seen": seen, "seconds": seconds})
+    assert found == (left if left is None else pytest.approx(left))
+
+
+def test_the_time_left_is_unknown_while_a_sweep_waits(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        sweep = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.02]}, name="waits")
+    expect(opened("", address=idle).get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
+    page = opened(f"#/sweeps/{sweep.id}", address=idle)
+    expect(page.get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
 
 
 @pytest.fixture

@@ -4,10 +4,10 @@ import { Problem } from "./api.js";
 import { drawBits, drawContactMaps, drawSpectrograms, drawStrings } from "./compare-many.js";
 import { drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
-import { draw, inks } from "./plots.js";
+import { colourBar, draw, inks, SCALE } from "./plots.js";
 import { ledger } from "./point-energy.js";
-import { drawProfiles, tableOf } from "./point-profiles.js";
-import { displaced } from "./point-well.js";
+import { drawProfiles, QUANTITIES, tableOf } from "./point-profiles.js";
+import { displaced, onNodes } from "./point-well.js";
 import { label, say, shown, title, unit } from "./units.js";
 
 /** Samples of a line. */
@@ -194,12 +194,31 @@ async function drawSpectra(place, comparison) {
   return draw(place, found.map(([, trace]) => trace), spectrumLayout(null, comparison.query.get("amplitude") === "log"), comparison.signal);
 }
 
+/** The quantity that colours wells; none where each has the colour of its point. @param {URLSearchParams} query */
+export function wellColour(query) {
+  return QUANTITIES.find(([name]) => name === query.get("colour"))?.[0];
+}
+
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawWells(place, comparison) {
-  const found = await each(comparison, async (point) => (await comparison.table(point, "statics")).columns);
-  const traces = found.map(([point, statics]) => {
+  const colour = wellColour(comparison.query);
+  const found = await each(comparison, async (point) => {
+    const [{ columns: statics }, table] = await Promise.all(["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) => comparison.table(point, name)));
+    const { columns } = table ?? { columns: statics };
+    if (colour && !columns[colour]) comparison.lacking.push(`Point ${point.number} has no ${label(colour)}.`);
+    return { statics, values: colour && columns[colour] ? onNodes(columns, colour, statics.measured_depth.length) : null };
+  });
+  // One scale for all.
+  const finite = colour ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null)) : [];
+  const [cmin, cmax] = [finite.reduce((a, b) => Math.min(a, b), Infinity), finite.reduce((a, b) => Math.max(a, b), -Infinity)];
+  const barOf = found.find(([, { values }]) => values)?.[0];
+  const traces = found.map(([point, { statics, values }]) => {
     const path = displaced(statics, { north: statics.north, east: statics.east, down: statics.true_vertical_depth }, EXAGGERATION);
-    return { type: "scatter3d", mode: "lines", name: point.name, showlegend: true, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line: { color: point.colour, width: 5 }, hoverinfo: "name" };
+    const line = colour && values ? { color: shown(colour, values), colorscale: SCALE, cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
+    const last = statics.measured_depth.length - 1;
+    // Where colours tell values, numbers tell the wells apart.
+    const told = colour ? { mode: "lines+text", text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) => (index === last ? `point ${point.number}` : "")), hovertext: values?.map((value, index) => `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`), hoverinfo: "text", showlegend: false } : { mode: "lines", hoverinfo: "name", showlegend: true };
+    return { type: "scatter3d", ...told, name: point.name, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line };
   });
   const { soft, line } = inks();
   const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });

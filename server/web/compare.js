@@ -3,16 +3,16 @@
 import { get, Problem } from "./api.js";
 import { dragWindow } from "./brush.js";
 import { RANGES, rangeOf } from "./compare-many.js";
-import { VIEWS } from "./compare-views.js";
+import { VIEWS, wellColour } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, pythonNode, requestLines } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, DASHES, LINES } from "./plots.js";
-import { profileTables, quantityTicks } from "./point-profiles.js";
+import { profileTables, QUANTITIES, quantityTicks, tableOf } from "./point-profiles.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
-import { say } from "./units.js";
+import { label, say } from "./units.js";
 
 /** How long typing must rest before sweeps are looked for. */
 const REST_MS = 200;
@@ -118,6 +118,7 @@ export async function show(main, route, signal) {
   function drawControls() {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => change({ [name]: value });
     if (view === "profiles") return fill(controls, ticks.element);
+    if (view === "well") return fill(controls, choice("Colour", [["", "of each point"], ...QUANTITIES.map(([name]) => /** @type {[string, string]} */ ([name, label(name)]))], wellColour(query) ?? "", set("colour")));
     if (!isWindowed) return fill(controls);
     const { from, to } = window_();
     const time = (/** @type {string} */ name, /** @type {number} */ value) => {
@@ -185,21 +186,29 @@ export async function show(main, route, signal) {
   /** The requests behind the view for one point: tables with what is asked of each. @param {Compared} point @returns {{table: string, query: Record<string, any>}[]} */
   function requestsOf(point) {
     if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
+    if (view === "well") return wellTables().map((table) => ({ table, query: {} }));
     // At the bit the snapshots come before the history.
     const table = view === "bit" && point.detail.scenario.recording.snapshots ? "snapshots" : shownTable;
     return [{ table, query: { ...(isOfNode ? { depth: depth(), nearest: true } : {}), ...(isWindowed ? window_() : {}) } }];
   }
 
+  /** The tables behind the wells: the equilibrium, and what has the quantity that colours them. */
+  function wellTables() {
+    const colour = wellColour(query);
+    return [...new Set(["statics", ...(colour ? [tableOf(colour)] : [])])];
+  }
+
   function pythonLines() {
     const window = isOfNode ? pythonNode(node(), window_()) : isWindowed ? `time=(${window_().from}, ${window_().to})` : "";
     if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => `${table} = [point.${table}().to_pandas()[${python(fields)}] for point in points]`).join("\n");
+    if (view === "well") return wellTables().map((table) => `${table} = [point.${table}().to_pandas() for point in points]`).join("\n");
     if (isDocument) return shownTable ? `documents = [point.${shownTable}() for point in points]` : "documents = [point.provenance for point in points]";
     if (view === "orbit" || view === "spectrum") return `for point in points:\n    plot.${view}(point, ${window})`;
     if (view === "bit") return points.map((point) => `point${point.number} = client.sweep("${point.id}").point(${point.ordinal}).${requestsOf(point)[0].table}(${window}).to_pandas()`).join("\n");
     return `tables = [point.${shownTable}(${window}).to_pandas() for point in points]`;
   }
   const taken = lines(() => {
-    const asked = points.flatMap((point) => requestsOf(point).map(({ table, query: asks }) => ({ path: table ? `${point.path}/${table}` : point.path, query: asks, name: `point${point.number}${view === "profiles" ? `_${table}` : ""}`, isDocument })));
+    const asked = points.flatMap((point) => requestsOf(point).map(({ table, query: asks }, _, { length }) => ({ path: table ? `${point.path}/${table}` : point.path, query: asks, name: `point${point.number}${view === "profiles" || length > 1 ? `_${table}` : ""}`, isDocument })));
     const start = `from drillsweep import Client, plot\n\nclient = Client("${location.origin}")\npoints = [${points.map((point) => `client.sweep("${point.id}").point(${point.ordinal})`).join(", ")}]\n`;
     return requestLines(asked, start + pythonLines());
   });

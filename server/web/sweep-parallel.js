@@ -2,11 +2,13 @@
 
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
+import { followLines } from "./parallel-lines.js";
 import { canvas, colourBar, draw, SCALE } from "./plots.js";
+import { link } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
-import { label, shown, title, unit } from "./units.js";
+import { label, say, shown, title, unit } from "./units.js";
 
-const HOW = "Drag along an axis to keep the points that pass there; drag an axis by its name to move it.";
+const HOW = "Drag along an axis to keep the points that pass there; drag an axis by its name to move it. Point at a line to read its values.";
 
 /**
  * Dragging along an axis keeps what passes there.
@@ -17,6 +19,7 @@ export function parallel(context) {
   const { table, axes, query } = context;
   const place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
   const caption = h("figcaption", {});
+  const reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
   const controls = h("div", { class: "controls" });
 
   function chosen() {
@@ -27,6 +30,10 @@ export function parallel(context) {
     return { results, colour, beside };
   }
 
+  /** Says what a line of the picture is of. @type {(line: number) => void} */
+  let toldOf = () => {};
+  followLines(place, (line) => toldOf(line), context.signal);
+
   async function redraw() {
     const { results, colour, beside } = chosen();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
@@ -36,7 +43,7 @@ export function parallel(context) {
     const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));
     const names = [...new Set([...axes, beside, colour])];
-    const columns = await table.columns(...names);
+    const [ordinals, ...columns] = await table.columns("ordinal", ...names);
     const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
     if (!rows.length) {
       fill(caption, "No point has all of these values yet.");
@@ -47,12 +54,19 @@ export function parallel(context) {
     const last = dimensions[names.indexOf(colour)];
     fill(caption, HOW, [...new Set([beside, colour])].map((name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`));
     const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: SCALE, colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
+    toldOf = (line) => read(Number(ordinals[rows[line]]), names, columns.map((column) => column[rows[line]]));
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => context.keep({ brush: written(shape.data[0].dimensions) || null }));
   }
 
+  /** Says which point a line is of. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
+  function read(ordinal, names, values) {
+    const words = names.map((name, order) => `${label(name)} ${say(name, values[order])}${context.biases.beside(name, ordinal)}`);
+    fill(reading, h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, `Point ${ordinal}`), `: ${words.join(" · ")}`);
+  }
+
   return {
-    element: h("div", {}, controls, h("figure", {}, place, caption)),
+    element: h("div", {}, controls, h("figure", {}, place, reading, caption)),
     draw: undelayed(redraw, context),
     fields: () => {
       const { colour, beside } = chosen();

@@ -14,7 +14,7 @@ from playwright.sync_api import Page, Route, expect
 from drillsweep import Client, Sweep
 from service import SHORT, Service
 from test_page import COMPARED, REFUSED, Opens, browser, drawn, named, opened, troubles, until
-from test_page_points import run_curl, run_python, shown_lines
+from test_page_points import run_curl, run_python, said, shown_lines
 from test_tokens import make_token
 
 __all__ = ["browser", "named", "opened", "troubles"]
@@ -165,7 +165,9 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
     page = opened(f"#/compare?points={points}&view=statistics&depth=57.73&from=0.1&to=0.4")
     has = [named.point(1), elsewhere.point(1)]
     sizes = [point.statistics(depth=57.73, nearest=True, time=(0.1, 0.4))["orbit_radius_rms"][0] for point in has]
-    assert cells(page, "Statistics", "orbit radius rms") == [f"{float(f'{1e3 * size:.4g}'):g} mm" for size in sizes]
+    assert cells(page, "Statistics", "Orbit size (rms about the mean)") == [
+        f"{float(f'{1e3 * size:.4g}'):g} mm" for size in sizes
+    ]
     expect(page.get_by_role("status", name="What is missing")).to_contain_text("Point 2 is missing")
     page.get_by_role("link", name="Modes", exact=True).click()
     lowest = [min(mode["frequency_hz"] for mode in point.modes(to_hz=20.0)["modes"]) for point in has]
@@ -181,6 +183,42 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
     assert cells(page, "Cost", "Elements")[0] == str((has[0].provenance or {})["elements"])
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+def test_compared_statistics_carry_the_bias_of_the_window_that_was_verified(opened: Opens, client: Client) -> None:
+    verified = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01]}, verify=1).wait(timeout=180.0)
+    bias = said(float(verified.verification()["bias_orbit_radius_rms_49"][0]))
+    view = f"#/compare?points={key(verified)}&view=statistics&depth=57.73"
+    page = opened(f"{view}&from=0.1&to=0.5")
+    assert cells(page, "Statistics", "Orbit size (rms about the mean)")[0].endswith(f"(bias {bias})")
+    page.get_by_role("button", name="Whole run").click()
+    row = page.get_by_role("rowheader", name="Orbit size (rms about the mean)").locator("..")
+    expect(row).not_to_contain_text("bias")
+
+
+def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, tmp_path: Path) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 8)}&view=well")
+    assert [name[0] for name in names(page, "Well")] == ["1", "2"]
+    page.get_by_label("Colour", exact=True).select_option(label="friction coefficient C_f")
+    picture = drawn(page, "Well")
+    read = "place => place.data.map(({ line: { color, cmin, cmax } }) => ({ color, cmin, cmax }))"
+    until(page, lambda: isinstance(picture.evaluate(read)[0]["color"], list))
+    wells = picture.evaluate(read)
+    expected = []
+    for point in (named.point(1), named.point(8)):
+        elements = np.array(point.profile()["friction_coefficient"])
+        # At a node the mean of both elements beside it.
+        expected.append(np.concatenate([elements[:1], (elements[1:] + elements[:-1]) / 2, elements[-1:]]))
+    for well, values in zip(wells, expected, strict=True):
+        np.testing.assert_allclose(well["color"], values, rtol=1e-9)
+        ends = [min(map(min, expected)), max(map(max, expected))]
+        assert [well["cmin"], well["cmax"]] == pytest.approx(ends)
+    lines = shown_lines(page)
+    answers = run_curl(lines["curl"], tmp_path / "curl")
+    assert sum("friction_coefficient" in found for found in answers.values()) == 2
+    tables = run_python(lines["Python"])
+    assert "friction_coefficient" in tables["profile[1]"]
+    assert "true_vertical_depth" in tables["statics[1]"]
 
 
 def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Opens, named: Sweep) -> None:

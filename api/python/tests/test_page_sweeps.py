@@ -456,6 +456,39 @@ def test_an_incomplete_grid_says_how_its_indices_are_estimated(opened: Opens, cl
     said = "The points are no full grid: first-order indices are estimated from the points as they are"
     expect(page.get_by_text(said)).to_be_visible()
     expect(page.get_by_text("95 % intervals")).to_be_visible()
+def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
+    picture = drawn(page, "Parallel coordinates")
+    # Between the first two axes, on the line of one point, as far from its neighbours as these are apart.
+    axes = picture.locator(".axis-brush")
+    boxes = [axes.nth(number).bounding_box() for number in range(2)]
+    assert boxes[0] is not None
+    assert boxes[1] is not None
+    table = named.table().to_pandas()
+    (point,) = table.index[
+        (table["flow_rate"] == 0.04) & (table["mud_density"] == 1200) & (table["operation.rotation_speed_rpm"] == 120)
+    ]
+    read = """place => place.data[0].dimensions.slice(0, 2).map(({ name, values, range }) => ({
+        name, values: [...values], ends: range ?? [Math.min(...values), Math.max(...values)],
+    }))"""
+    heights = []
+    for axis, box in zip(picture.evaluate(read), boxes, strict=True):
+        assert box is not None
+        least, largest = axis["ends"]
+        part = (axis["values"][point] - least) / (largest - least)
+        heights.append((box["x"] + box["width"] / 2, box["y"] + (1 - part) * box["height"]))
+    (left, top), (right, bottom) = heights
+    said = page.get_by_role("status", name="The point that the mouse is at")
+    page.mouse.move(left + 0.3 * (right - left), top + 0.3 * (bottom - top) + 4, steps=5)
+    expect(said).to_contain_text("flow rate 0.04 m³/s · mud density 1200 kg/m³")
+    ordinal = int(str(said.get_by_role("link").text_content()).removeprefix("Point "))
+    row = table[table["ordinal"] == ordinal].iloc[0]
+    assert (row["flow_rate"], row["mud_density"]) == (0.04, 1200)
+    expect(said).to_contain_text(f"{int(row['contact_count'])}")
+    said.get_by_role("link").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(f"Point {ordinal}")
+
+
 
 
 @pytest.fixture

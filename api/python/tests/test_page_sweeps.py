@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
+import csv
+import io
 import json
 import math
 import os
 import random
 import re
+import sqlite3
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
-from test_page import Opens, browser, drawn, named, opened, requested, troubles, until
+from test_page import GONE, Opens, browser, drawn, named, opened, requested, troubles, until
 
 __all__ = ["browser", "named", "opened", "troubles"]
 
@@ -302,6 +307,105 @@ def test_the_lines_of_a_view_get_what_it_shows(
     assert lines["MATLAB"].count("webread") == len(tables)
 
 
+def test_the_lines_of_failures_get_them(opened: Opens, client: Client, tmp_path: Path) -> None:
+    # Without its wall the string is buckled by the weight on bit.
+    axes = {"flow_rate": [0.01, 0.012]}
+    failing = client.submit("paper-200m", set={**SHORT, "effects.contact": "off"}, axes=axes).wait(timeout=120.0)
+    page = opened(f"#/sweeps/{failing.id}?view=failures")
+    expect(page.get_by_role("link", name="2", exact=True)).to_be_visible()
+    lines = lines_of(page)
+    rows = list(csv.DictReader(io.StringIO(run("sh", "-c", lines["curl"]))))
+    reasons = [error.reason for error in (failing.point(number).error for number in (1, 2)) if error is not None]
+    assert [(row["ordinal"], row["state"], row["error"]) for row in rows] == [
+        (str(number), "failed", reason) for number, reason in zip((1, 2), reasons, strict=True)
+    ]
+    printed = run(sys.executable, "-c", f"{lines['Python']}\nprint(*table['error'], sep='\\n')")
+    assert printed.splitlines()[-2:] == reasons
+    run("sh", "-c", f"cd {tmp_path}; {lines['Command line']}")
+    assert (tmp_path / "results").is_dir()
+    assert "error_time" in lines["MATLAB"]
+
+
+NEW: dict[str, dict[str, Any]] = {
+    "preset": {
+        "preset": "paper-200m",
+        "set": {**SHORT, "effects.buoyancy": "off"},
+        "axes": {
+            "flow_rate": {"from": 0.01, "to": 0.04, "count": 4, "scale": "log"},
+            "mud_density": {"values": [1250]},
+        },
+        "outputs": "summary",
+        "name": "it's new",
+        "tags": ["a tag"],
+        "priority": -10,
+    },
+    "design": {
+        "preset": "paper-200m",
+        "set": SHORT,
+        "axes": {"flow_rate": {"from": 0.01, "to": 0.04}, "mud_density": {"from": 1200, "to": 1800}},
+        "design": "latin_hypercube",
+        "samples": 3,
+        "seed": 7,
+        "outputs": "summary",
+    },
+}
+
+
+@pytest.mark.parametrize("form", NEW)
+def test_the_lines_of_a_new_sweep_submit_it(idle: str, opened: Opens, form: str) -> None:
+    page = opened(f"#/new?request={quote(json.dumps(NEW[form]))}", address=idle)
+    expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+    body = requested(page)
+    lines = lines_of(page)
+    with Client(idle) as client:
+        for language, command in [
+            ("curl", ["sh", "-c", lines["curl"]]),
+            # Nobody computes it here.
+            ("Python", [sys.executable, "-c", lines["Python"].replace("sweep.wait()", "")]),
+            ("Command line", ["sh", "-c", f"{lines['Command line']} --detach"]),
+        ]:
+            known = {sweep.id for sweep in client.sweeps()}
+            run(*command)
+            (made,) = [sweep for sweep in client.sweeps() if sweep.id not in known]
+            assert asked_for(made.request) == asked_for(body), language
+    assert json.loads(lines["MATLAB"].split("'", 1)[1].rpartition("'")[0].replace("''", "'")) == body
+
+
+def asked_for(request: dict[str, Any]) -> dict[str, Any]:
+    """A request without what is usual anyway, and without who asks."""
+    usual = {"design": "grid", "priority": 0, "owner": request.get("owner")}
+    named = {name: value for name, value in request.items() if value is not None and usual.get(name) != value}
+    axes = {
+        path: {name: value for name, value in axis.items() if value is not None and value != "linear"}
+        for path, axis in request["axes"].items()
+    }
+    return {**named, "axes": axes}
+
+
+def test_the_lines_of_a_finer_grid_add_it(idle: str, opened: Opens) -> None:
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+    with Client(idle) as client:
+        for language in ("curl", "Python"):
+            coarse = client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary")
+            region = "finer=flow_rate:0.01:0.03:3,mud_density:1200:1200:1"
+            page = opened(f"#/sweeps/{coarse.id}?view=map&colour=state&{region}", address=idle)
+            panel = page.get_by_role("region", name="Finer grid")
+            panel.get_by_text("The same request").click()
+            lines = panel.locator("details.lines[open]")
+            names = lines.locator("h2").all_text_contents()
+            texts = dict(zip(names, lines.locator("pre").all_text_contents(), strict=True))
+            run(*(["sh", "-c", texts["curl"]] if language == "curl" else [sys.executable, "-c", texts["Python"]]))
+            # Of the three new ones the sweep has one already.
+            assert client.sweep(coarse.id).counts.total == 6
+            table = coarse.table().to_pandas()
+            rates = sorted(table[table["mud_density"] == 1200]["flow_rate"])
+            assert rates == pytest.approx([0.01, 0.02, 0.03, 0.04])
+            asked = json.loads(texts["MATLAB"].split("'", 1)[1].rpartition("'")[0])
+            assert asked == {
+                "axes": {"flow_rate": {"from": 0.01, "to": 0.03, "count": 3}, "mud_density": {"values": [1200]}}
+            }
+
+
 def test_the_lines_of_the_list_get_what_it_shows(opened: Opens, other: Sweep) -> None:
     page = opened("#/sweeps?name=it's+the+other&state=completed")
     expect(page.get_by_role("link", name="it's the other").first).to_be_visible()
@@ -352,6 +456,39 @@ def test_the_link_holds_what_is_brushed_on_parallel_coordinates(opened: Opens, n
     until(other, lambda: len(copy.evaluate(script)["mud_density"] or []) == 2)
 
 
+def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
+    picture = drawn(page, "Parallel coordinates")
+    # Between the first two axes, on the line of one point, as far from its neighbours as these are apart.
+    axes = picture.locator(".axis-brush")
+    boxes = [axes.nth(number).bounding_box() for number in range(2)]
+    assert boxes[0] is not None
+    assert boxes[1] is not None
+    table = named.table().to_pandas()
+    (point,) = table.index[
+        (table["flow_rate"] == 0.04) & (table["mud_density"] == 1200) & (table["operation.rotation_speed_rpm"] == 120)
+    ]
+    read = """place => place.data[0].dimensions.slice(0, 2).map(({ name, values, range }) => ({
+        name, values: [...values], ends: range ?? [Math.min(...values), Math.max(...values)],
+    }))"""
+    heights = []
+    for axis, box in zip(picture.evaluate(read), boxes, strict=True):
+        assert box is not None
+        least, largest = axis["ends"]
+        part = (axis["values"][point] - least) / (largest - least)
+        heights.append((box["x"] + box["width"] / 2, box["y"] + (1 - part) * box["height"]))
+    (left, top), (right, bottom) = heights
+    said = page.get_by_role("status", name="The point that the mouse is at")
+    page.mouse.move(left + 0.3 * (right - left), top + 0.3 * (bottom - top) + 4, steps=5)
+    expect(said).to_contain_text("flow rate 0.04 m³/s · mud density 1200 kg/m³")
+    ordinal = int(str(said.get_by_role("link").text_content()).removeprefix("Point "))
+    row = table[table["ordinal"] == ordinal].iloc[0]
+    assert (row["flow_rate"], row["mud_density"]) == (0.04, 1200)
+    expect(said).to_contain_text(f"{int(row['contact_count'])}")
+    said.get_by_role("link").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(f"Point {ordinal}")
+
+
 def test_the_link_holds_the_region_of_a_finer_grid(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
     drawn(page, "over flow rate")
@@ -375,6 +512,54 @@ def test_the_bar_of_colours_says_the_depth_of_its_node(opened: Opens, named: Swe
     depth = float(statics["measured_depth"][list(statics["node"]).index(49)])
     title = "place => place.data[0].colorbar.title.text"
     assert picture.evaluate(title) == f"orbit radius rms, node 49 at {float(f'{depth:.4g}'):g} m [mm]"
+
+
+def test_a_map_does_not_wait_for_the_depths_of_nodes(opened: Opens, named: Sweep) -> None:
+    page = opened("#/nowhere")
+    held: list[Route] = []
+    page.route("**/statics?*", lambda route: held.append(route))
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
+    picture = drawn(page, "node 49 over flow rate")
+    title = "place => place.data[0].colorbar.title.text"
+    assert picture.evaluate(title) == "orbit radius rms, node 49 [mm]"
+    until(page, lambda: held != [])
+    held[0].continue_()
+    until(page, lambda: " m [mm]" in picture.evaluate(title))
+
+
+def test_a_sweep_whose_tables_have_expired_shows_what_is_left(
+    opened: Opens, troubles: list[str], tmp_path: Path
+) -> None:
+    service = Service("up", "--workers", "1", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
+    try:
+        axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+        with Client(service.server) as client:
+            sweep = client.submit("paper-200m", set=SHORT, axes=axes).wait(timeout=120.0)
+        collected = run(
+            *(binary(), "gc", "--data", str(tmp_path), "--tables-days", "0", "--recordings-days", "0", "--json")
+        )
+        assert json.loads(collected)["artifacts"] > 0
+        colour = "orbit_radius_rms_49"
+        page = opened(f"#/sweeps/{sweep.id}?view=map&colour={colour}", address=service.server)
+        picture = drawn(page, "node 49 over flow rate")
+        values = picture.evaluate("place => place.data[0].z.flat()")
+        assert sorted(values) == pytest.approx(sorted(1e3 * value for value in sweep_values(service, sweep, colour)))
+        page.get_by_role("link", name="Table", exact=True).click()
+        expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(4)
+        for view in ("profiles", "motion", "well", "energy"):
+            page = opened(f"#/sweeps/{sweep.id}/points/1?view={view}", address=service.server)
+            expect(page.get_by_role("alert").filter(has_text="expired")).to_be_visible()
+        page.get_by_role("link", name="Effects, accuracy, downloads").click()
+        expect(page.get_by_role("region", name="Effects").get_by_text("the wall has friction").first).to_be_visible()
+    finally:
+        service.stop()
+    # The browser writes of every answer that refuses, and of a server that is gone.
+    troubles[:] = [text for text in troubles if not (GONE.search(text) or re.search("status of (404|410)", text))]
+
+
+def sweep_values(service: Service, sweep: Sweep, name: str) -> list[float]:
+    with Client(service.server) as client:
+        return list(client.sweep(sweep.id).table()[name])
 
 
 def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> None:
@@ -456,39 +641,6 @@ def test_an_incomplete_grid_says_how_its_indices_are_estimated(opened: Opens, cl
     said = "The points are no full grid: first-order indices are estimated from the points as they are"
     expect(page.get_by_text(said)).to_be_visible()
     expect(page.get_by_text("95 % intervals")).to_be_visible()
-def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
-    page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
-    picture = drawn(page, "Parallel coordinates")
-    # Between the first two axes, on the line of one point, as far from its neighbours as these are apart.
-    axes = picture.locator(".axis-brush")
-    boxes = [axes.nth(number).bounding_box() for number in range(2)]
-    assert boxes[0] is not None
-    assert boxes[1] is not None
-    table = named.table().to_pandas()
-    (point,) = table.index[
-        (table["flow_rate"] == 0.04) & (table["mud_density"] == 1200) & (table["operation.rotation_speed_rpm"] == 120)
-    ]
-    read = """place => place.data[0].dimensions.slice(0, 2).map(({ name, values, range }) => ({
-        name, values: [...values], ends: range ?? [Math.min(...values), Math.max(...values)],
-    }))"""
-    heights = []
-    for axis, box in zip(picture.evaluate(read), boxes, strict=True):
-        assert box is not None
-        least, largest = axis["ends"]
-        part = (axis["values"][point] - least) / (largest - least)
-        heights.append((box["x"] + box["width"] / 2, box["y"] + (1 - part) * box["height"]))
-    (left, top), (right, bottom) = heights
-    said = page.get_by_role("status", name="The point that the mouse is at")
-    page.mouse.move(left + 0.3 * (right - left), top + 0.3 * (bottom - top) + 4, steps=5)
-    expect(said).to_contain_text("flow rate 0.04 m³/s · mud density 1200 kg/m³")
-    ordinal = int(str(said.get_by_role("link").text_content()).removeprefix("Point "))
-    row = table[table["ordinal"] == ordinal].iloc[0]
-    assert (row["flow_rate"], row["mud_density"]) == (0.04, 1200)
-    expect(said).to_contain_text(f"{int(row['contact_count'])}")
-    said.get_by_role("link").click()
-    expect(page.get_by_role("heading", level=1)).to_have_text(f"Point {ordinal}")
-
-
 
 
 @pytest.fixture
@@ -520,3 +672,44 @@ def test_a_thousand_sweeps_are_listed(idle: str, opened: Opens) -> None:
     expect(rows.first).to_contain_text("sweep 0123")
     page.get_by_role("link", name="sweep 0123").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("sweep 0123")
+
+
+def test_a_hundred_thousand_points_are_shown_with_their_results(
+    idle: str, opened: Opens, named: Sweep, tmp_path: Path
+) -> None:
+    axes = {"flow_rate": Range(0.01, 0.06, 400), "mud_density": Range(1200, 2100, 250)}
+    with Client(idle) as client:
+        large = client.submit("paper-200m", set=SHORT, axes=axes, name="large", outputs="summary")
+    complete(tmp_path / "data" / "drillsweep.sqlite", named)
+    page = opened(f"#/sweeps/{large.id}?view=table&columns=ordinal,contact_count,orbit_radius_rms_49", address=idle)
+    expect(page.get_by_text("100000 points", exact=True)).to_be_visible(timeout=60_000)
+    page.locator(".rows").evaluate("rows => { rows.scrollTop = rows.scrollHeight }")
+    last = page.get_by_role("row").filter(has=page.get_by_role("link", name="100000", exact=True))
+    # In millimetres: as many as the point's number.
+    expect(last.get_by_role("cell").nth(2)).to_have_text("100000")
+    assert page.locator(".rows tbody tr").count() < 200
+    page.get_by_role("searchbox").fill("orbit_radius_rms_49>99990")
+    expect(page.get_by_text("10 of 100000 points")).to_be_visible()
+    page.get_by_role("link", name="Map", exact=True).click()
+    page.get_by_label("Colour", exact=True).select_option("orbit_radius_rms_49")
+    picture = drawn(page, "node 49.* over flow rate and mud density")
+    read = "place => { const { z } = place.data[0]; return [z.length, z[0].length, z[0][0], z[249][399]]; }"
+    assert picture.evaluate(read) == pytest.approx([250, 400, 1, 100_000])
+
+
+def complete(database: Path, known: Sweep) -> None:
+    """Gives all points of a store without workers the result of another point, its orbit as large as their number."""
+    point = known.point(1)
+    with contextlib.closing(sqlite3.connect(database, timeout=60.0)) as store:
+        ((trigger,),) = store.execute("SELECT sql FROM sqlite_master WHERE name = 'work_changes_state'")
+        with store:
+            # It counts points one by one.
+            store.execute("DROP TRIGGER work_changes_state")
+            store.execute(
+                "INSERT INTO result (work_key, summary, provenance, created) SELECT work_key, json_set(?, "
+                "'$.orbit_radius_rms_49', 0.001 * ordinal), ?, 0 FROM point GROUP BY work_key",
+                (json.dumps(point.summary), json.dumps(point.provenance)),
+            )
+            store.execute("UPDATE work SET state = 'done'")
+            store.execute("UPDATE sweep SET points_done = points_queued, points_queued = 0, finished = created")
+            store.execute(trigger)

@@ -15,25 +15,33 @@ from playwright.sync_api import Page, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
-WIDTH, LARGEST_HEIGHT = 1200, 1000
-TALLER = {"sweep-map": 1400, "point-string": 1500}
+WIDTH, LARGEST_HEIGHT = 1200, 1150
+TALLER = {"sweep-map": 1400, "sweep-effects": 1300, "point-motion": 1500, "point-string": 1500, "compare-string": 1500}
 """Pictures whose lower part is what they are taken for."""
+COMPARED = [
+    *("profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string", "contacts"),
+    *("well", "energy", "modes", "effects", "cost"),
+]
+"""Views of a comparison."""
 QUALITY = 40
 STRING_TIME = "50"
 """Time at which the string is shown [s]."""
 
 
-def views(sweep: str, other: str) -> dict[str, str]:
+def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     """The link of each view."""
     links = {"sweeps": "#/sweeps", "new": f"#/new?from={sweep}"}
-    for view in ("map", "scatter", "parallel", "effects", "table", "failures"):
+    for view in ("map", "scatter", "parallel", "effects", "table"):
         links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_49"
+    links["sweep-failures"] = f"#/sweeps/{failed}?view=failures"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
     for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
     points = f"{sweep}:1,{sweep}:4,{other}:4"
-    for view in ("profiles", "orbit", "history", "rotation", "spectrum", "well", "energy"):
+    for view in COMPARED:
         links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
+    links["compare-well"] += "&colour=friction_coefficient"
+    links["compare-string"] += "&colour=whirl_amplitude"
     return links
 
 
@@ -42,6 +50,14 @@ def unfold(page: Page, name: str) -> None:
     if name == "new":
         page.get_by_text("All fields, with units").click()
         page.locator("summary", has_text="operation").first.click()
+    if name == "sweep-parallel":
+        said = page.get_by_role("status", name="The point that the mouse is at")
+        box = page.locator(".plot").bounding_box()
+        # Down between two axes, until there is a line.
+        for step in range(100):
+            if box is not None and not said.text_content():
+                page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + (0.3 + 0.006 * step) * box["height"])
+                page.wait_for_timeout(20)
     if name == "point-string":
         # A time at which the string whirls.
         page.get_by_label("Time", exact=True).fill(STRING_TIME)
@@ -62,15 +78,17 @@ def main() -> None:
     parser.add_argument("server")
     parser.add_argument("sweep")
     parser.add_argument("other")
+    parser.add_argument("--failed", help="a sweep whose failures are shown, in place of those of the first one")
     parser.add_argument("--only", nargs="*", help="names of the pictures to be taken; all unless given")
     parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).parent / "page")
     arguments = parser.parse_args()
+    links = views(arguments.sweep, arguments.other, arguments.failed or arguments.sweep)
     arguments.folder.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         for theme in ("light", "dark"):
             context = browser.new_context(viewport={"width": WIDTH, "height": 800}, color_scheme=theme)
-            for name, link in views(arguments.sweep, arguments.other).items():
+            for name, link in links.items():
                 if arguments.only is not None and name not in arguments.only:
                     continue
                 page = context.new_page()

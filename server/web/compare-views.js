@@ -4,7 +4,7 @@ import { Problem } from "./api.js";
 import { drawBits, drawContactMaps, drawSpectrograms, drawStrings } from "./compare-many.js";
 import { drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
-import { colourBar, draw, inks, SCALE } from "./plots.js";
+import { colourBar, draw, inks, lineScale } from "./plots.js";
 import { ledger } from "./point-energy.js";
 import { drawProfiles, QUANTITIES, tableOf } from "./point-profiles.js";
 import { displaced, onNodes } from "./point-well.js";
@@ -14,6 +14,8 @@ import { label, say, shown, title, unit } from "./units.js";
 const SHOWN = 6000;
 /** How many times a string's distance from the axis of its hole is drawn. */
 const EXAGGERATION = 100;
+/** Part of a well's length by which coloured wells are drawn aside of each other. */
+const APART = 0.12;
 
 /** @typedef {{number: number, id: string, ordinal: number, path: string, detail: any, name: string, colour: string, dash: string}} Compared */
 
@@ -199,6 +201,17 @@ export function wellColour(query) {
   return QUANTITIES.find(([name]) => name === query.get("colour"))?.[0];
 }
 
+/**
+ * How far aside of each other wells are drawn, horizontally and across: most often all points have the same.
+ * @param {any} statics
+ */
+function asideOf({ north, east, measured_depth }) {
+  const last = north.length - 1;
+  const [along, across] = [north[last] - north[0], east[last] - east[0]];
+  const apart = (APART * (measured_depth[last] - measured_depth[0])) / (Math.hypot(along, across) || 1);
+  return Math.hypot(along, across) ? { north: -across * apart, east: along * apart } : { north: 0, east: APART * measured_depth[last] };
+}
+
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawWells(place, comparison) {
   const colour = wellColour(comparison.query);
@@ -212,9 +225,12 @@ async function drawWells(place, comparison) {
   const finite = colour ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null)) : [];
   const [cmin, cmax] = [finite.reduce((a, b) => Math.min(a, b), Infinity), finite.reduce((a, b) => Math.max(a, b), -Infinity)];
   const barOf = found.find(([, { values }]) => values)?.[0];
-  const traces = found.map(([point, { statics, values }]) => {
-    const path = displaced(statics, { north: statics.north, east: statics.east, down: statics.true_vertical_depth }, EXAGGERATION);
-    const line = colour && values ? { color: shown(colour, values), colorscale: SCALE, cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
+  const aside = colour && found.length > 1 ? asideOf(found[0][1].statics) : null;
+  const traces = found.map(([point, { statics, values }], order) => {
+    const beside = (/** @type {number[]} */ path, /** @type {number} */ step) => path.map((value) => value + order * step);
+    const axis = { north: beside(statics.north, aside?.north ?? 0), east: beside(statics.east, aside?.east ?? 0), down: statics.true_vertical_depth };
+    const path = displaced(statics, axis, EXAGGERATION);
+    const line = colour && values ? { color: shown(colour, values), colorscale: lineScale(), cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
     const last = statics.measured_depth.length - 1;
     // Where colours tell values, numbers tell the wells apart.
     const told = colour ? { mode: "lines+text", text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) => (index === last ? `point ${point.number}` : "")), hovertext: values?.map((value, index) => `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`), hoverinfo: "text", showlegend: false } : { mode: "lines", hoverinfo: "name", showlegend: true };
@@ -222,7 +238,7 @@ async function drawWells(place, comparison) {
   });
   const { soft, line } = inks();
   const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
-  return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } }, comparison.signal);
+  return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } }, comparison.signal);
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */

@@ -178,7 +178,7 @@ export async function show(main, route, signal) {
     }
     fill(lacking, comparison.lacking.map((sentence) => h("p", {}, sentence)));
     const shownNodes = [...comparison.nodes.entries()].sort(([a], [b]) => a - b).map(([, text]) => text);
-    fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, hasTime && " Drag across the picture to choose a window; the other views follow.");
+    fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, view === "well" && wellColour(query) && points.length > 1 && "Wells are drawn aside of each other, so that each is seen. ", hasTime && " Drag across the picture to choose a window; the other views follow.");
   }
 
   const { table: shownTable } = VIEWS[view];

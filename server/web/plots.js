@@ -1,6 +1,7 @@
 // Pictures in the page's theme, with PNG and SVG to take away: sketched at once, and drawn by plotly as soon as that is compiled.
 
 import { isWaiting } from "./api.js";
+import { colourOf } from "./colours.js";
 import { h } from "./dom.js";
 import { fetchAhead, library, libraryAtHand } from "./drawing.js";
 import { settings, theme } from "./settings.js";
@@ -20,6 +21,16 @@ settings.addEventListener("change", () => (LINES = PALETTES[theme()]));
 export const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
 /** The scale of every coloured quantity. */
 export const SCALE = "Viridis";
+
+/** Part of it that is too dark on the dark theme. */
+const DARK_END = 0.3;
+
+/** The scale of lines and marks: on the dark theme without its dark end, which would not be seen there. @returns {string | [number, string][]} */
+export function lineScale() {
+  return theme() === "dark" ? BRIGHT : SCALE;
+}
+/** @type {[number, string][]} */
+const BRIGHT = Array.from({ length: 11 }, (_, step) => [step / 10, colourOf(DARK_END + (1 - DARK_END) * (step / 10), [0, 1])]);
 
 /** @returns {{text: string, soft: string, line: string, panel: string}} colours of the theme */
 export function inks() {

@@ -2,7 +2,7 @@
 
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
-import { canvas, colourBar, draw, inks, SCALE } from "./plots.js";
+import { canvas, colourBar, draw, inks, lineScale } from "./plots.js";
 import { pythonColumns, QUANTITIES, tableOf } from "./point-profiles.js";
 import { label, say, shown, title, unit } from "./units.js";
 import { nodeFrames } from "./well-frames.js";
@@ -43,9 +43,9 @@ export function well(context) {
       place,
       [
         { type: "scatter3d", mode: "lines", ...line(axis), line: { color: soft, width: 2 }, hoverinfo: "skip", name: "axis of the hole" },
-        { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: SCALE, width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
+        { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: lineScale(), width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
       ],
-      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.5, y: -1.5, z: 0.7 } } } },
+      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } },
       context.signal,
     );
   }

@@ -2,7 +2,7 @@
 
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
-import { adjust, canvas, colourBar, draw, inks, LINES, logTicks, SCALE } from "./plots.js";
+import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "./plots.js";
 import { keyboard } from "./sweep-cursor.js";
 import { finer } from "./sweep-finer.js";
 import { ends, layered } from "./sweep-layers.js";
@@ -140,7 +140,7 @@ export function map(context) {
       });
     } else {
       const kind = rows.length > 3000 ? "scattergl" : "scatter";
-      traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > 3000 ? 5 : 9, color: shownZ, colorscale: scale.colorscale, cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
+      traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > 3000 ? 5 : 9, color: shownZ, colorscale: words ? scale.colorscale : lineScale(), cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
     }
     const failed = rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });

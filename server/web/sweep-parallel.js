@@ -3,7 +3,7 @@
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
 import { followLines } from "./parallel-lines.js";
-import { canvas, colourBar, draw, SCALE } from "./plots.js";
+import { canvas, colourBar, draw, lineScale } from "./plots.js";
 import { link } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { label, say, shown, title, unit } from "./units.js";
@@ -53,7 +53,7 @@ export function parallel(context) {
     const dimensions = names.map((name, order) => ({ name, label: title(name), constraintrange: kept.get(name)?.map((range) => range.map((end) => end / unit(name).size)), values: shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))) }));
     const last = dimensions[names.indexOf(colour)];
     fill(caption, HOW, [...new Set([beside, colour])].map((name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`));
-    const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: SCALE, colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
+    const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
     toldOf = (line) => read(Number(ordinals[rows[line]]), names, columns.map((column) => column[rows[line]]));
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => context.keep({ brush: written(shape.data[0].dimensions) || null }));

@@ -2,7 +2,7 @@
 
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
-import { canvas, colourBar, draw, LINES, SCALE } from "./plots.js";
+import { canvas, colourBar, draw, lineScale, LINES } from "./plots.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { isText } from "./table.js";
 import { label, say, shown, title, unit } from "./units.js";
@@ -48,7 +48,7 @@ export function scatter(context) {
           const rows = ordinals.map((_, index) => index).filter((index) => colours[index] === word);
           return { ...base, name: String(word), x: rows.map((index) => atX[index]), y: rows.map((index) => atY[index]), text: text && rows.map((index) => text[index]), customdata: rows.map((index) => ordinals[index]), marker: { size, color: LINES[order % LINES.length], symbol: order }, showlegend: true };
         })
-      : [{ ...base, x: atX, y: atY, text, customdata: ordinals, marker: { size, color: shown(colour, /** @type {(number | null)[]} */ (colours)), colorscale: SCALE, colorbar: colourBar(title(colour)) } }];
+      : [{ ...base, x: atX, y: atY, text, customdata: ordinals, marker: { size, color: shown(colour, /** @type {(number | null)[]} */ (colours)), colorscale: lineScale(), colorbar: colourBar(title(colour)) } }];
     const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
     fill(caption, `${both} of ${ordinals.length} points have both values. Select a point to open it. `, [...new Set([x, y, colour])].map((name) => context.biases.say(name) && `${label(name)}: ${context.biases.say(name)} `));
     place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);

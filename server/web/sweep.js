@@ -13,7 +13,7 @@ import { MAY_NOT, maySubmit } from "./session.js";
 import { progressPart, when } from "./sweeps.js";
 import { sweepLines } from "./sweep-lines.js";
 import { SweepTable, sweptBy } from "./table.js";
-import { say } from "./units.js";
+import { label, say } from "./units.js";
 
 /**
  * What a view of a sweep's points is made with.
@@ -179,6 +179,15 @@ export async function show(main, route, signal) {
 }
 
 /**
+ * What verifying warns of: the first of it, and the rest where it is asked for.
+ * @param {string[]} warnings each begins with the name of what it is of
+ */
+function warningsPart([first, ...others]) {
+  const line = (/** @type {string} */ warning) => h("p", { class: "wrong" }, warning.replace(/^(\w+)(?=: )/, label));
+  return [first && line(first), others.length > 0 && h("details", {}, h("summary", {}, `${others.length} further ${others.length === 1 ? "warning" : "warnings"}`), others.map(line))];
+}
+
+/**
  * How long the first of a sweep's complete points was computed [s]; null where its result does not say.
  * @param {string} id
  * @param {AbortSignal} signal
@@ -227,7 +236,7 @@ function headPart(sweep, pace, act, change) {
     ),
     h("div", { "aria-live": "off" }, progressPart(sweep, pace)),
     worst && h("p", { class: "small" }, `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`, worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : "."),
-    warnings.map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
+    warningsPart(warnings),
     sweep.waiting_for && h("p", { class: "wrong" }, `${sweep.waiting_for.reason}.`),
     h("div", { style: "height:.8rem" }),
   ];

@@ -324,7 +324,7 @@ function servicePart(queue, workers) {
 /** @param {any[]} failed */
 function failuresPart(failed) {
   const rows = failed.map((point) =>
-    h("li", {}, h("a", { href: link(["sweeps", point.sweep, "points", String(point.ordinal)]) }, `${point.sweep_name ?? "Sweep"}, point ${point.ordinal}`), h("div", { class: "small soft" }, `${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"} `, when(point.at))),
+    h("li", {}, h("a", { href: link(["sweeps", point.sweep, "points", String(point.ordinal)]) }, `${point.sweep_name ?? "Sweep"}, point ${point.ordinal}`), h("div", { class: "small soft brief", title: point.error?.reason }, when(point.at), ` ${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"}`)),
   );
   return [h("h2", {}, "Failed lately"), rows.length ? h("ul", {}, rows) : h("p", { class: "soft" }, "Nothing has failed.")];
 }

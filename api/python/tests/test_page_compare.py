@@ -200,7 +200,7 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
     page = opened(f"#/compare?points={key(named)},{key(named, 8)}&view=well")
     assert [name[0] for name in names(page, "Well")] == ["1", "2"]
     page.get_by_label("Colour", exact=True).select_option(label="friction coefficient C_f")
-    picture = drawn(page, "Well")
+    picture = drawn(page, "^Well$")
     read = "place => place.data.map(({ line: { color, cmin, cmax } }) => ({ color, cmin, cmax }))"
     until(page, lambda: isinstance(picture.evaluate(read)[0]["color"], list))
     wells = picture.evaluate(read)

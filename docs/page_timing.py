@@ -44,10 +44,11 @@ OBSERVE = """(selector) => {
     requestAnimationFrame(tick);
 }"""
 FORGET = "() => { window.brushing.frames.length = window.brushing.delays.length = 0; }"
-# The answers of a sweep's table: what was asked, how long it took, and when it had come [ms].
-ANSWERS = """() => performance.getEntriesByType("resource").filter(({ name }) => name.includes("/table"))
+# The answers of tables of sweeps: what was asked of which sweep, how long it took, and when it had come [ms].
+ANSWERS = """() => performance.getEntriesByType("resource")
+    .filter(({ name }) => name.includes("/v1/sweeps/") && name.includes("/table"))
     .map(({ name, startTime, responseEnd }) =>
-        [name.slice(name.indexOf("/table")), responseEnd - startTime, responseEnd])"""
+        [decodeURIComponent(name.slice(name.indexOf("/table") - 4)), responseEnd - startTime, responseEnd])"""
 DRAWN = ".main-svg"
 """What the drawing library has drawn."""
 SEEN = f":is(.sketch, {DRAWN})"

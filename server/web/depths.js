@@ -12,7 +12,7 @@ export class Depths {
   isMissed = false;
 
   /**
-   * Reads them once there is a result; where its equilibrium is not kept, or not any more, they stay unknown: names do without them.
+   * Reads them once there is a result; where its equilibrium is not kept, or not any more, they stay unknown: names do without them. It does not fail.
    * @param {any} sweep
    * @param {AbortSignal} signal
    */
@@ -22,7 +22,8 @@ export class Depths {
     try {
       await this.#read(sweep, signal);
     } catch (error) {
-      if (!(error instanceof Problem)) throw error;
+      // What could not be reached is asked for with the next result.
+      this.#isAsked = error instanceof Problem;
     }
   }
 

@@ -68,8 +68,8 @@ export async function show(main, route, signal) {
   const data = new SweepTable(sweep, signal);
   const biases = new Biases();
   const depths = new Depths();
-  // Names do without depths until these have come, or where they cannot be had.
-  const deepened = depths.load(sweep, signal).catch(() => {});
+  // Names do without depths until these have come.
+  const deepened = depths.load(sweep, signal);
   await Promise.all([data.load(), biases.load(sweep, signal)]);
   const { axes, spans, paths } = sweptBy(sweep, data.names);
   const [view, , , making] = asked ?? PARTS[axes.length ? 0 : TABLE];

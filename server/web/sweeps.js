@@ -264,7 +264,6 @@ export async function show(main, route, signal) {
  * @param {Pace} pace
  */
 function drawRow(row, sweep, pace) {
-  const hadFocus = row.contains(document.activeElement);
   const title = sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
   const anchor = h("a", { class: "name", href: link(["sweeps", sweep.id]) }, title);
   fill(
@@ -274,7 +273,6 @@ function drawRow(row, sweep, pace) {
     h("td", { class: "wide-only" }, sweep.owner),
     h("td", { class: "wide-only" }, when(sweep.created)),
   );
-  if (hadFocus) anchor.focus({ preventScroll: true });
 }
 
 /**

@@ -527,6 +527,21 @@ def test_a_map_does_not_wait_for_the_depths_of_nodes(opened: Opens, named: Sweep
     until(page, lambda: " m [mm]" in picture.evaluate(title))
 
 
+def test_names_do_without_the_depths_of_an_equilibrium_that_is_gone(
+    opened: Opens, named: Sweep, troubles: list[str]
+) -> None:
+    page = opened("#/nowhere")
+    gone = json.dumps({"title": "Gone", "status": 410, "detail": "the table has expired"})
+    page.route("**/statics?*", lambda route: route.fulfill(status=410, body=gone))
+    with page.expect_response("**/statics?*"):
+        page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
+    picture = drawn(page, "node 49 over flow rate")
+    assert picture.evaluate("place => place.data[0].colorbar.title.text") == "orbit radius rms, node 49 [mm]"
+    assert page.locator("#notices").text_content() == ""
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 410" not in text]
+
+
 def test_a_sweep_whose_tables_have_expired_shows_what_is_left(
     opened: Opens, troubles: list[str], tmp_path: Path
 ) -> None:
@@ -544,6 +559,8 @@ def test_a_sweep_whose_tables_have_expired_shows_what_is_left(
         picture = drawn(page, "node 49 over flow rate")
         values = picture.evaluate("place => place.data[0].z.flat()")
         assert sorted(values) == pytest.approx(sorted(1e3 * value for value in sweep_values(service, sweep, colour)))
+        page.wait_for_load_state("networkidle")
+        assert page.locator("#notices").text_content() == ""
         page.get_by_role("link", name="Table", exact=True).click()
         expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(4)
         for view in ("profiles", "motion", "well", "energy"):

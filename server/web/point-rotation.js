@@ -1,4 +1,4 @@
-// Rotation speed and torque over time at both ends of the string: from the snapshots, or else from the histories of the nodes at the ends.
+// Rotation speed and torque over time at both ends of the string: from the snapshots, or else from the history.
 
 import { Problem } from "./api.js";
 import { h } from "./dom.js";
@@ -13,8 +13,8 @@ const TAKEN = 300_000;
 const SHOWN = 4000;
 const QUANTITIES = ["rotation_speed", "torque"];
 
-/** What to record for these lines. */
-export const RECORD_ENDS = "Rotation speed and torque at the bit need snapshots (recording.snapshots), or the node at the bit among those that are recorded (recording.nodes).";
+/** Why there may be no such lines. */
+export const RECORD_ENDS = "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or what is kept is chosen (recording.outputs).";
 
 /**
  * One quantity at one end, in served units.
@@ -53,10 +53,12 @@ async function fromSnapshots(context, window, nodes) {
  */
 async function fromHistory(context, window) {
   try {
-    const [statics, recorded] = await Promise.all([context.table("statics", { fields: "node" }), context.table("statistics", { fields: "node" })]);
+    // One sample tells the columns.
+    const [statics, sample] = await Promise.all([context.table("statics", { fields: "node" }), context.table("history", { max_points: 1 })]);
     const [top, bit] = [statics.columns.node[0], statics.columns.node.at(-1)];
-    if (!recorded.columns.node.includes(bit)) return [];
-    const ends = /** @type {["bit" | "top", number][]} */ ([["bit", bit], ["top", top]]).filter(([, node]) => recorded.columns.node.includes(node));
+    const has = (/** @type {number} */ node) => QUANTITIES.every((quantity) => `${quantity}_${node}` in sample.columns);
+    if (!has(bit)) return [];
+    const ends = /** @type {["bit" | "top", number][]} */ ([["bit", bit], ["top", top]]).filter(([, node]) => has(node));
     const found = await Promise.all(ends.map(async ([end, node]) => {
       const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
       const { columns } = await context.table("history", { node, ...window, fields: ["time", ...names].join(","), max_points: SHOWN, decimation: "minmax" });

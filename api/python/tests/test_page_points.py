@@ -25,6 +25,12 @@ __all__ = ["browser", "opened", "recorded", "troubles"]
 
 
 @pytest.fixture(scope="module")
+def untwisted(client: Client) -> Sweep:
+    """A point for which torsion was not solved."""
+    return client.submit("paper-200m", set=SHORT | {"effects.torsion": "off"}, name="untwisted").wait(timeout=120.0)
+
+
+@pytest.fixture(scope="module")
 def ends(client: Client) -> Sweep:
     """A point whose recorded nodes are those at the top and at the bit."""
     changes = SHORT | {"recording.nodes": [{"node": 1}, {"node": 297}]}
@@ -263,7 +269,7 @@ def test_the_string_is_saved_as_it_is_shown(opened: Opens, recorded: Sweep) -> N
 
 
 def test_without_snapshots_rotation_is_drawn_from_the_history_of_the_bit(
-    opened: Opens, ends: Sweep, sweep: Sweep, tmp_path: Path
+    opened: Opens, ends: Sweep, sweep: Sweep, untwisted: Sweep, tmp_path: Path
 ) -> None:
     page = opened(f"#/sweeps/{ends.id}/points/1?view=string")
     picture = drawn(page, "Rotation speed and torque at bit and top")
@@ -275,6 +281,9 @@ def test_without_snapshots_rotation_is_drawn_from_the_history_of_the_bit(
     assert shown[1] == pytest.approx([force / 1e3 for force in history["torque_297"]])
     expected = {f"history_{node}": ["time", f"rotation_speed_{node}", f"torque_{node}"] for node in (1, 297)}
     assert_lines_run(page, expected, tmp_path / "curl")
-    # Where neither was recorded, the page says what to record.
+    # Those of the bit are recorded whichever nodes are.
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=string")
-    expect(page.get_by_text("or the node at the bit among those that are recorded (recording.nodes)")).to_be_visible()
+    assert len(drawn(page, "Rotation speed and torque at bit and top").evaluate("plot => plot.data")) == 2
+    expect(page.get_by_text("The top was not recorded.")).to_be_visible()
+    page = opened(f"#/sweeps/{untwisted.id}/points/1?view=string")
+    expect(page.get_by_text("are not in this result: torsion was not solved for")).to_be_visible()

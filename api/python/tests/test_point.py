@@ -162,8 +162,12 @@ def test_orbit_is_drawn_low_side_down_in_the_holes_circle(sweep: Sweep) -> None:
 def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sweep) -> None:
     changes = SHORT | {"recording.nodes": [{"node": 296}, {"node": 297}]}
     recorded = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]})
-    changes = SHORT | {"recording.snapshots": {"rate_hz": 50}}
+    # Of chosen nodes alone the history is kept without the bit.
+    chosen = SHORT | {"recording.outputs": {"orbits": {"nodes": [{"node": 282}]}}}
+    changes = chosen | {"recording.snapshots": {"rate_hz": 50}}
     snapped = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]})
+    # At a flow rate at which no whole result is stored already.
+    without = client.submit("paper-200m", set=chosen, axes={"flow_rate": [0.012]})
     point = recorded.wait(timeout=120.0).point(1)
     lateral, speed, torque = plot.history(point)
     assert len(lateral.lines) == 4
@@ -189,13 +193,18 @@ def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sw
     np.testing.assert_allclose(drawn(speed_of_snapshots), drawn(speed)[::20], rtol=1e-9)
     np.testing.assert_allclose(drawn(torque_of_snapshots), drawn(torque)[::20], rtol=1e-9)
 
-    point = sweep.point(1)
-    _, speed, _ = plot.history(point)
-    assert speed.get_title() == "Rotation of node 282: at the bit, at 200.0 m, it was not recorded"
-    assert plot.history(point, node=49)[1].get_title() == "Rotation of node 49"
+    point = without.wait(timeout=120.0).point(1)
+    _, speed_of_lowest, _ = plot.history(point)
+    assert speed_of_lowest.get_title() == "Rotation of node 282: at the bit, at 200.0 m, it was not recorded"
     assert "Rotation at the bit, at 200.0 m MD, was not recorded" in svg(point)
-    assert "rotation speed at the bit, 200.0 m MD" in svg(snapped.point(1))
-    assert "rotation speed at the bit, 200.0 m MD" in svg(recorded.point(1))
+    # It is recorded whichever nodes are.
+    point = sweep.point(1)
+    _, speed_beside, _ = plot.history(point)
+    assert speed_beside.get_title() == "Rotation at the bit"
+    np.testing.assert_array_equal(drawn(speed_beside), drawn(speed))
+    assert plot.history(point, node=49)[1].get_title() == "Rotation of node 49"
+    for has_it in (sweep, snapped, recorded):
+        assert "rotation speed at the bit, 200.0 m MD" in svg(has_it.point(1))
 
 
 def legend_of(axes: Axes) -> list[str]:

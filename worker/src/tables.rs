@@ -1,5 +1,6 @@
 //! What a point's result becomes: tables for the object store, and one flat row for the sweep's table.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
@@ -237,31 +238,26 @@ fn history(
         let every = *decimation as usize;
         let mut table = Table::default();
         numbers(&mut table, &TIME, samples.clone().step_by(every).map(|k| k as f64 / records.rate_hz));
+        let column = |values: Cow<'_, [f64]>, of: &dyn Fn(f64) -> f64| {
+            Column::Single(values.iter().step_by(every).map(|&value| of(value) as f32).collect())
+        };
+        let unchanged: &dyn Fn(f64) -> f64 = &|value| value;
+        let speed: &dyn Fn(f64) -> f64 = &|rate| model.rotation_speed + rate;
         for &(index, node) in &kept_nodes {
-            let column = |series, of: &dyn Fn(f64) -> f64| {
-                let values = histories.read(index, series, samples.clone())?;
-                let values = values.iter().step_by(every).map(|&value| of(value) as f32).collect();
-                Ok::<_, std::io::Error>(Column::Single(values))
-            };
+            let read = |series| histories.read(index, series, samples.clone());
             for (series, quantity) in SERIES {
-                table.push(quantity.at_node(node + 1), column(series, &|value| value)?);
+                table.push(quantity.at_node(node + 1), column(read(series)?, unchanged));
             }
             if model.effects.torsion {
-                let speed = column(Series::ThetaZRate, &|rate| model.rotation_speed + rate)?;
-                table.push(ROTATION_SPEED.at_node(node + 1), speed);
-                table.push(TORQUE.at_node(node + 1), column(Series::Torque, &|torque| torque)?);
+                table.push(ROTATION_SPEED.at_node(node + 1), column(read(Series::ThetaZRate)?, speed));
+                table.push(TORQUE.at_node(node + 1), column(read(Series::Torque)?, unchanged));
             }
         }
         // Whoever chooses nodes has those alone.
         if let Some(bit) = histories.bit().filter(|_| nodes.is_none()) {
-            let column = |series, of: &dyn Fn(f64) -> f64| {
-                let values = histories.read_bit(series, samples.clone())?;
-                let values = values.iter().step_by(every).map(|&value| of(value) as f32).collect();
-                Ok::<_, std::io::Error>(Column::Single(values))
-            };
-            let speed = column(Series::ThetaZRate, &|rate| model.rotation_speed + rate)?;
-            table.push(ROTATION_SPEED.at_node(bit + 1), speed);
-            table.push(TORQUE.at_node(bit + 1), column(Series::Torque, &|torque| torque)?);
+            let read = |series| histories.read_bit(series, samples.clone()).map(Cow::Owned);
+            table.push(ROTATION_SPEED.at_node(bit + 1), column(read(Series::ThetaZRate)?, speed));
+            table.push(TORQUE.at_node(bit + 1), column(read(Series::Torque)?, unchanged));
         }
         Ok(table)
     };

@@ -20,10 +20,10 @@ OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
-# Milliseconds from a change of the link until something is there, as the page's own clock has it.
+# When the link is changed and when something is there [ms], as the page's own clock has it, which starts with the page's loading.
 SHOWN = """([link, selector]) => new Promise((resolve) => {
     const start = performance.now();
-    const end = () => resolve(performance.now() - start);
+    const end = () => resolve([start, performance.now()]);
     const look = () => document.querySelector(selector) ? end() : requestAnimationFrame(look);
     if (link !== null) location.hash = link;
     requestAnimationFrame(look);
@@ -92,8 +92,8 @@ def opened(context: BrowserContext, server: str, link: str, selector: str) -> tu
     """Milliseconds from the start of loading until something is there, and bytes transferred for it."""
     page = context.new_page()
     page.goto(f"{server}/{link}", wait_until="commit")
-    page.evaluate(SHOWN, [None, selector])
-    time, size = page.evaluate("() => performance.now()"), page.evaluate(BYTES)
+    _, time = page.evaluate(SHOWN, [None, selector])
+    size = page.evaluate(BYTES)
     page.close()
     return time, size
 
@@ -102,15 +102,14 @@ def moved(page: Page, link: str, selector: str) -> tuple[float, float]:
     """Milliseconds from one view to another, and bytes transferred for it."""
     page.wait_for_load_state("networkidle")
     before = page.evaluate(BYTES)
-    time = page.evaluate(SHOWN, [link, selector])
-    return time, page.evaluate(BYTES) - before
+    start, end = page.evaluate(SHOWN, [link, selector])
+    return end - start, page.evaluate(BYTES) - before
 
 
 def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, float], float]:
     """A map of a sweep: milliseconds of each answer that it needs of tables, and from the last to the picture."""
     page.goto(f"{server}/#/sweeps/{sweep}?view={view}", wait_until="commit")
-    page.evaluate(SHOWN, [None, ".heatmaplayer image"])
-    now = page.evaluate("() => performance.now()")
+    _, now = page.evaluate(SHOWN, [None, ".heatmaplayer image"])
     answers = page.evaluate(ANSWERS)
     return {name: duration for name, duration, _ in answers}, now - max(end for *_, end in answers)
 

@@ -2,7 +2,6 @@
 
 import { answerAfter, connection, Problem, Unreachable } from "./api.js";
 import { fill, h } from "./dom.js";
-import { preload } from "./modules.js";
 import { reported } from "./notices.js";
 import { route } from "./router.js";
 import { loadSession, logIn, logOut, onLoginNeeded, session } from "./session.js";
@@ -23,6 +22,9 @@ const VIEWS = {
   new: () => import("./new.js"),
 };
 
+/** How long a view may take before the page says that it is loading. */
+const SLOW_MS = 250;
+
 const main = element("main");
 const banner = element("banner");
 const switches = element("switches");
@@ -39,20 +41,12 @@ function element(id) {
   return found;
 }
 
-/** @param {string[]} path */
-function viewOf(path) {
-  if (path[0] === "sweeps" && path.length === 1) return "sweeps";
-  if (path[0] === "sweeps" && path.length === 2) return "sweep";
-  if (path[0] === "sweeps" && path[2] === "points" && path.length === 4) return "point";
-  return path.length === 1 && (path[0] === "compare" || path[0] === "new") ? path[0] : "";
-}
-
 /** Shows what the link asks for, anew. */
 async function show() {
   shown.abort();
   const mine = (shown = new AbortController());
   const asked = route();
-  const view = viewOf(asked.path);
+  const view = ahead.viewOf(asked.path);
   const isElsewhere = asked.path.join("/") !== place;
   place = asked.path.join("/");
   for (const entry of document.querySelectorAll(".bar nav a")) {
@@ -64,10 +58,11 @@ async function show() {
     fill(main, h("div", { class: "empty" }, h("h1", {}, "There is no such page"), h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps"))));
     return;
   }
-  if (isElsewhere) fill(main, h("p", { class: "empty", role: "status" }, "Loading…"));
+  // What comes at once needs no such word, which would hold it up.
+  const waits = setTimeout(() => isElsewhere && fill(main, h("p", { class: "empty", role: "status" }, "Loading…")), SLOW_MS);
   // A view is built aside and takes its place complete, so that one that is shown anew does not flicker.
   const next = h("div", {});
-  preload(`${view}.js`);
+  ahead.preload(asked);
   try {
     const title = await (await VIEWS[view]()).show(next, asked, mine.signal);
     if (mine.signal.aborted) return;
@@ -75,6 +70,8 @@ async function show() {
   } catch (error) {
     if (mine.signal.aborted) return;
     fill(next, failure(error));
+  } finally {
+    clearTimeout(waits);
   }
   fill(main, next);
   next.dispatchEvent(new Event("shown"));
@@ -86,7 +83,7 @@ async function show() {
 
 /** Whether a form is shown that somebody may have typed in; it follows what changes by itself. */
 function isTyped() {
-  return viewOf(route().path) === "new" && main.querySelector("form") !== null;
+  return ahead.viewOf(route().path) === "new" && main.querySelector("form") !== null;
 }
 
 /** @param {unknown} error */

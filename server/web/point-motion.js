@@ -188,8 +188,9 @@ export function motion(context) {
       if (dragged) return;
       drawStatistics();
       drawLines();
-      drawModes().catch((error) => signal.aborted || console.error(error));
       await Promise.all([drawOrbit(), drawSpectrum()]);
+      // The service takes a second for what it has not been asked for before, in which the pictures need not wait.
+      if (mine === generation) drawModes().catch((error) => signal.aborted || console.error(error));
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       wrong.textContent = error.errors[0]?.detail ?? error.message;

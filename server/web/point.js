@@ -5,7 +5,6 @@ import { Biases } from "./bias.js";
 import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
 import { lines, requestLines } from "./lines.js";
-import { preload } from "./modules.js";
 import { keep, link } from "./router.js";
 import { parameters } from "./sweep-failures.js";
 import { say } from "./units.js";
@@ -31,17 +30,17 @@ import { say } from "./units.js";
  */
 
 /**
- * The views: name in the link, what it is called, its module, and what makes it.
- * @type {[string, string, string, () => Promise<(context: PointContext) => PointPart>][]}
+ * The views: name in the link, what it is called, and what makes it.
+ * @type {[string, string, () => Promise<(context: PointContext) => PointPart>][]}
  */
 const PARTS = [
-  ["profiles", "Profiles", "point-profiles.js", async () => (await import("./point-profiles.js")).profiles],
-  ["motion", "Orbit, history, spectrum", "point-motion.js", async () => (await import("./point-motion.js")).motion],
-  ["spectrogram", "Spectrogram", "point-spectrogram.js", async () => (await import("./point-spectrogram.js")).spectrogram],
-  ["string", "String in motion", "point-string.js", async () => (await import("./point-string.js")).string],
-  ["well", "Well", "point-well.js", async () => (await import("./point-well.js")).well],
-  ["energy", "Energy", "point-energy.js", async () => (await import("./point-energy.js")).energy],
-  ["about", "Effects, accuracy, downloads", "point-about.js", async () => (await import("./point-about.js")).about],
+  ["profiles", "Profiles", async () => (await import("./point-profiles.js")).profiles],
+  ["motion", "Orbit, history, spectrum", async () => (await import("./point-motion.js")).motion],
+  ["spectrogram", "Spectrogram", async () => (await import("./point-spectrogram.js")).spectrogram],
+  ["string", "String in motion", async () => (await import("./point-string.js")).string],
+  ["well", "Well", async () => (await import("./point-well.js")).well],
+  ["energy", "Energy", async () => (await import("./point-energy.js")).energy],
+  ["about", "Effects, accuracy, downloads", async () => (await import("./point-about.js")).about],
 ];
 
 /**
@@ -61,8 +60,7 @@ export async function show(main, route, signal) {
   const [, id, , ordinal] = route.path;
   const path = `/v1/sweeps/${encodeURIComponent(id)}/points/${encodeURIComponent(ordinal)}`;
   const asked = route.query.get("view");
-  const [view, name, file, making] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
-  preload(file);
+  const [view, name, making] = PARTS.find(([entry]) => entry === asked) ?? PARTS[0];
   const [point, sweep, make] = await Promise.all([get(path, {}, signal), get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal), making()]);
   const biases = new Biases();
   await biases.load(sweep, signal);

@@ -7,19 +7,7 @@
  */
 
 /** @returns {Route} */
-export function route() {
-  const [path, query] = (location.hash.replace(/^#/, "") || "/sweeps").split("?", 2);
-  return { path: path.split("/").filter(Boolean).map(decode), query: new URLSearchParams(query ?? "") };
-}
-
-/** @param {string} segment */
-function decode(segment) {
-  try {
-    return decodeURIComponent(segment);
-  } catch {
-    return segment;
-  }
-}
+export const route = ahead.route;
 
 /**
  * The link to a view.

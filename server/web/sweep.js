@@ -5,7 +5,6 @@ import { Biases } from "./bias.js";
 import { Depths } from "./depths.js";
 import { choice, fill, h } from "./dom.js";
 import { lines } from "./lines.js";
-import { preload } from "./modules.js";
 import { attend, reported, notice } from "./notices.js";
 import { Pace } from "./pace.js";
 import { go, keep, link } from "./router.js";
@@ -40,17 +39,17 @@ import { label, say } from "./units.js";
  */
 
 /**
- * The views: name in the link, what it is called, its module, and what makes it.
- * @type {[string, string, string, () => Promise<(context: Context) => Part>][]}
+ * The views: name in the link, what it is called, and what makes it.
+ * @type {[string, string, () => Promise<(context: Context) => Part>][]}
  */
 const PARTS = [
-  ["map", "Map", "sweep-map.js", async () => (await import("./sweep-map.js")).map],
-  ["scatter", "Scatter", "sweep-scatter.js", async () => (await import("./sweep-scatter.js")).scatter],
-  ["parallel", "Parallel coordinates", "sweep-parallel.js", async () => (await import("./sweep-parallel.js")).parallel],
-  ["effects", "Sensitivities", "sweep-effects.js", async () => (await import("./sweep-effects.js")).effects],
-  ["difference", "Difference", "sweep-difference.js", async () => (await import("./sweep-difference.js")).difference],
-  ["table", "Table", "sweep-table.js", async () => (await import("./sweep-table.js")).table],
-  ["failures", "Failures", "sweep-failures.js", async () => (await import("./sweep-failures.js")).failures],
+  ["map", "Map", async () => (await import("./sweep-map.js")).map],
+  ["scatter", "Scatter", async () => (await import("./sweep-scatter.js")).scatter],
+  ["parallel", "Parallel coordinates", async () => (await import("./sweep-parallel.js")).parallel],
+  ["effects", "Sensitivities", async () => (await import("./sweep-effects.js")).effects],
+  ["difference", "Difference", async () => (await import("./sweep-difference.js")).difference],
+  ["table", "Table", async () => (await import("./sweep-table.js")).table],
+  ["failures", "Failures", async () => (await import("./sweep-failures.js")).failures],
 ];
 
 /** Where the table stands among them: what is shown of a sweep that varies nothing. */
@@ -63,7 +62,6 @@ const REDRAW_MS = 4000;
 export async function show(main, route, signal) {
   const id = route.path[1];
   const asked = PARTS.find(([name]) => name === route.query.get("view"));
-  preload((asked ?? PARTS[0])[2]);
   let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
   const data = new SweepTable(sweep, signal);
   const biases = new Biases();
@@ -72,7 +70,7 @@ export async function show(main, route, signal) {
   const deepened = depths.load(sweep, signal);
   await Promise.all([data.load(), biases.load(sweep, signal)]);
   const { axes, spans, paths } = sweptBy(sweep, data.names);
-  const [view, , , making] = asked ?? PARTS[axes.length ? 0 : TABLE];
+  const [view, , making] = asked ?? PARTS[axes.length ? 0 : TABLE];
   const make = await making();
 
   const query = new URLSearchParams(route.query);

@@ -2,9 +2,6 @@
 
 import { get } from "./api.js";
 
-/** Points up to which the whole table is one answer; beyond, columns are fetched as views ask for them. */
-const WHOLE = 3000;
-
 /** @typedef {(number | string | null)[]} Values */
 
 export class SweepTable {
@@ -17,7 +14,8 @@ export class SweepTable {
   /** @param {any} sweep @param {AbortSignal} signal */
   constructor(sweep, signal) {
     this.path = `/v1/sweeps/${encodeURIComponent(sweep.id)}/table`;
-    this.isWhole = sweep.counts.total <= WHOLE;
+    // Beyond, columns are fetched as views ask for them.
+    this.isWhole = sweep.counts.total <= ahead.WHOLE;
     this.signal = signal;
   }
 

@@ -9,7 +9,7 @@ use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::view::window;
 use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::{Hole, Place};
-use drillsweep_store::{Artifact, Store, WorkKey};
+use drillsweep_store::{Artifact, BlobId, Store, WorkKey};
 use drillsweep_table::parquet::StoredTable;
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, tables};
@@ -121,6 +121,14 @@ impl SpectrumSource {
         Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
     }
 
+    /// The names of all contents that a spectrum depends on.
+    pub(crate) fn blobs(&self) -> [BlobId; 2] {
+        match self {
+            SpectrumSource::Recording(recording) => recording.blobs(),
+            SpectrumSource::Kept(KeptSpectra { spectra, statics }) => [spectra.blob(), statics.blob()],
+        }
+    }
+
     /// Bytes of memory that a spectrum takes.
     pub(crate) async fn memory(&self) -> Result<u64> {
         /// Of a sample: its time, u and v, the bins, and frequencies and amplitudes with what of them is shown.
@@ -206,6 +214,11 @@ impl Recording {
         let history = stored_of(store, key, tables::HISTORY.name).await?;
         let statics = stored_of(store, key, tables::STATICS.name).await?;
         Ok(Recording { history, statics })
+    }
+
+    /// The names of all contents that an orbit depends on.
+    pub(crate) fn blobs(&self) -> [BlobId; 2] {
+        [self.history.blob(), self.statics.blob()]
     }
 
     /// Bytes of memory that an orbit takes.

@@ -1,14 +1,16 @@
 //! Which format a table is served in, and how.
 
+use std::fmt::Debug;
 use std::io;
 
 use axum::body::Body;
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
 use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
+use headers::{ETag, HeaderMapExt as _, IfNoneMatch};
 use serde::Deserialize;
 
 use crate::answer::error::{Error, Result};
@@ -198,17 +200,25 @@ enum Content {
 }
 
 impl Answer {
-    /// A table in memory, or its columns `fields`, in a format that is no picture.
+    /// A table in memory, or its columns `fields`, in a format that is no picture. Its tag, where that is not known before, is that of
+    /// what it holds, which takes as long as writing it.
     pub(crate) fn of_table(
         table: Table,
         fields: Option<&[String]>,
         format: Format,
         name: &str,
+        tag: Option<Tag>,
     ) -> Result<Self> {
         let table = select(table, fields)?;
-        let mut hasher = blake3::Hasher::new();
-        write(&table, format, &mut hasher)?;
-        Ok(Self { head: Head::new(format, name, &hasher), content: Content::Table(table) })
+        let tag = match tag {
+            Some(tag) => tag,
+            None => {
+                let mut hasher = blake3::Hasher::new();
+                write(&table, format, &mut hasher)?;
+                Tag::of_hash(&hasher.finalize())
+            }
+        };
+        Ok(Self { head: Head::new(format, name, tag), content: Content::Table(table) })
     }
 
     /// The same; a picture is drawn by `draw` from the whole table.
@@ -217,31 +227,27 @@ impl Answer {
         fields: Option<&[String]>,
         format: Format,
         name: &str,
+        tag: Option<Tag>,
         draw: impl FnOnce(&Table) -> Result<Drawing, Box<ProblemDetails>>,
     ) -> Result<Self> {
         let picture = match format {
             Format::Svg => draw(&table)?.svg().into_bytes(),
             Format::Png => draw(&table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
-            _ => return Self::of_table(table, fields, format, name),
+            _ => return Self::of_table(table, fields, format, name, tag),
         };
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&picture);
-        Ok(Self { head: Head::new(format, name, &hasher), content: Content::Picture(picture) })
+        let tag = tag.unwrap_or_else(|| Tag::of_hash(&blake3::hash(&picture)));
+        Ok(Self { head: Head::new(format, name, tag), content: Content::Picture(picture) })
     }
 
-    /// A part of a stored table, in a format that is no picture: the one that `selection` says. That, the stored bytes, the format and
-    /// what writes it are all that the body depends on, so that its tag is known before the body is.
+    /// A part of a stored table, in a format that is no picture.
     pub(crate) fn of_part(
         stored: Stored,
         part: Cut<StoredFile>,
         format: Format,
         name: &str,
-        selection: &impl std::fmt::Debug,
+        tag: Tag,
     ) -> Self {
-        let mut hasher = blake3::Hasher::new();
-        let depends = (env!("CARGO_PKG_VERSION"), stored.blob(), format, selection);
-        hasher.update(format!("{depends:?}").as_bytes());
-        Self { head: Head::new(format, name, &hasher), content: Content::Part(Box::new((stored, part))) }
+        Self { head: Head::new(format, name, tag), content: Content::Part(Box::new((stored, part))) }
     }
 
     /// What goes before the body.
@@ -286,32 +292,63 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
     }
 }
 
+/// What a body goes by, a weak entity tag, since it may be compressed on its way.
+#[derive(Debug, Clone)]
+pub(crate) struct Tag(String);
+
+impl Tag {
+    /// Of a body that depends on this alone besides its format and what writes it: the names of stored contents, and what is asked of
+    /// them. So it is known before the body is, which need not be made for a client that has it.
+    pub(crate) fn of(format: Format, depends_on: &impl Debug) -> Self {
+        let depends_on = (env!("CARGO_PKG_VERSION"), format, depends_on);
+        Self::of_hash(&blake3::hash(format!("{depends_on:?}").as_bytes()))
+    }
+
+    fn of_hash(hash: &blake3::Hash) -> Self {
+        Self(format!("W/\"{}\"", hash.to_hex()))
+    }
+
+    /// The answer to a client that says that it has a copy with this tag; none to one that does not.
+    pub(crate) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
+        let known = headers.typed_get::<IfNoneMatch>()?;
+        let tag: ETag = self.0.parse().ok()?;
+        if known.precondition_passes(&tag) {
+            return None;
+        }
+        Some(self.on(StatusCode::NOT_MODIFIED.into_response()))
+    }
+
+    /// The response with what tells a client how long it may keep the body.
+    pub(crate) fn on(&self, mut response: Response) -> Response {
+        let headers = response.headers_mut();
+        if let Ok(tag) = self.0.parse() {
+            headers.insert(header::ETAG, tag);
+        }
+        // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+        headers.insert(header::VARY, HeaderValue::from_static("accept"));
+        response
+    }
+}
+
 /// What goes before a body: format, name for those who save it, and tag.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
     format: Format,
     name: String,
-    tag: String,
+    tag: Tag,
 }
 
 impl Head {
-    /// The tag is a weak one, since the body may be compressed on its way.
-    pub(crate) fn new(format: Format, name: &str, determined_by: &blake3::Hasher) -> Self {
-        let tag = format!("W/\"{}\"", determined_by.finalize().to_hex());
+    pub(crate) fn new(format: Format, name: &str, tag: Tag) -> Self {
         Self { format, name: name.to_owned(), tag }
     }
 
     /// The response with this body.
     pub(crate) fn response(self, body: Body) -> Response {
-        let mut response = body.into_response();
+        let mut response = self.tag.on(body.into_response());
         let headers = response.headers_mut();
-        if let Ok(tag) = self.tag.parse() {
-            headers.insert(header::ETAG, tag);
-        }
-        // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
-        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
         headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.format.media_type()));
-        headers.insert(header::VARY, HeaderValue::from_static("accept"));
         let disposition = format!("inline; filename=\"{}.{}\"", self.name, self.format.extension());
         if let Ok(disposition) = disposition.parse() {
             headers.insert(header::CONTENT_DISPOSITION, disposition);

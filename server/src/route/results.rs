@@ -17,7 +17,7 @@ use serde::{Deserialize, Deserializer};
 use crate::answer::artifact::{self, Recording, SpectrumSource};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
+use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat, Tag};
 use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
@@ -89,15 +89,19 @@ pub(crate) async fn profile(
     let profile = artifact::stored(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
     if !format.is_picture() {
-        return part(&app, profile, fields, format, file_name).await;
+        return part(&app, profile, fields, format, file_name, &headers).await;
     }
     let title = caption(&app.store, &id, n, "Profile").await?;
+    let tag = Tag::of(format, &(profile.blob(), &fields, &title));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.view(format.memory(profile.memory().await?)).await?;
     place
         .answer(move || {
             let table = profile.read(None)?;
             let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, draw)
+            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
         })
         .await
 }
@@ -175,7 +179,7 @@ async fn whole_table(
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
     let table = artifact::stored(&app.store, &id, n, name).await?;
-    part(&app, table, query.fields, format, file_name(&id, n, name)).await
+    part(&app, table, query.fields, format, file_name(&id, n, name), &headers).await
 }
 
 /// A stored table, or some columns of it, in a format that is no picture; Parquet goes out as it lies there.
@@ -185,9 +189,14 @@ async fn part(
     fields: Option<Vec<String>>,
     format: Format,
     file_name: String,
+    headers: &HeaderMap,
 ) -> Result<Response> {
     if format == Format::Parquet && fields.is_none() {
-        return whole_file(app, stored, &file_name).await;
+        return whole_file(app, stored, &file_name, headers).await;
+    }
+    let tag = Tag::of(format, &(stored.blob(), &fields));
+    if let Some(unchanged) = tag.unchanged(headers) {
+        return Ok(unchanged);
     }
     let place = app.view(format.memory(stored.memory().await?)).await?;
     place
@@ -195,17 +204,24 @@ async fn part(
             let table = stored.open()?;
             let layout = format::select(table.layout().clone(), fields.as_deref())?;
             let cut = table.cut(layout, 0..usize::MAX, 1)?;
-            Ok(Answer::of_part(stored, cut, format, &file_name, &fields))
+            Ok(Answer::of_part(stored, cut, format, &file_name, tag))
         })
         .await
 }
 
 /// A table as it is stored.
-pub(super) async fn whole_file(app: &App, stored: Stored, file_name: &str) -> Result<Response> {
+pub(super) async fn whole_file(
+    app: &App,
+    stored: Stored,
+    file_name: &str,
+    headers: &HeaderMap,
+) -> Result<Response> {
+    let tag = Tag::of(Format::Parquet, &stored.blob());
+    if let Some(unchanged) = tag.unchanged(headers) {
+        return Ok(unchanged);
+    }
     let place = app.file().await?;
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(stored.blob().to_string().as_bytes());
-    let head = Head::new(Format::Parquet, file_name, &hasher);
+    let head = Head::new(Format::Parquet, file_name, tag);
     let length = stored.length();
     let mut response = head.response(stored.body(0..length, place).await?);
     response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
@@ -296,7 +312,7 @@ pub(crate) async fn history(
     let file_name = file_name(&id, n, tables::HISTORY.name);
     let recording = Recording::load(&app.store, &id, n).await?;
     if format == Format::Parquet && query.is_whole() {
-        return whole_file(&app, recording.history, &file_name).await;
+        return whole_file(&app, recording.history, &file_name, &headers).await;
     }
     let title = caption(&app.store, &id, n, "History").await?;
     let shows_bit = format.is_picture() && choice.is_none() && query.fields.is_none();
@@ -305,6 +321,11 @@ pub(crate) async fn history(
         false => None,
     };
     let snapshots = snapshots.map(|stored| Snapshots::new(stored, &recording.statics)).transpose()?;
+    let blob_of_snapshots = snapshots.as_ref().map(|snapshots| snapshots.stored().blob());
+    let tag = Tag::of(format, &(recording.blobs(), blob_of_snapshots, &query, &title));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let reading_snapshots = match &snapshots {
         Some(snapshots) => {
             let shown = snapshots.count().min(MOST_SNAPSHOTS_SHOWN) * COLUMNS_OF_BIT;
@@ -337,10 +358,9 @@ pub(crate) async fn history(
                 let part = history.cut(layout, samples, stride)?;
                 if let Some(most) = extremes {
                     let table = rows_of_extremes(&recording.history, &part, most)?;
-                    return Answer::of_table(table, None, format, &file_name);
+                    return Answer::of_table(table, None, format, &file_name, Some(tag));
                 }
-                let selection = (recording.statics.blob(), &query);
-                return Ok(Answer::of_part(recording.history, part, format, &file_name, &selection));
+                return Ok(Answer::of_part(recording.history, part, format, &file_name, tag));
             }
             let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
             let columns = layout.columns.len();
@@ -363,7 +383,7 @@ pub(crate) async fn history(
             };
             let draw =
                 |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, draw)
+            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
         })
         .await
 }
@@ -428,7 +448,7 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
 }
 
 /// Which part of one node's orbit is wanted.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OrbitQuery {
@@ -493,6 +513,10 @@ pub(crate) async fn orbit(
     }
     let recording = Recording::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Orbit").await?;
+    let tag = Tag::of(format, &(recording.blobs(), &query, &title));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
     place
         .answer(move || {
@@ -502,13 +526,13 @@ pub(crate) async fn orbit(
             let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
             drop(motion);
             let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
-            Answer::of_table_or_picture(table, None, format, &file_name, draw)
+            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
         })
         .await
 }
 
 /// Which full spectrum is wanted.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrumQuery {
@@ -593,10 +617,14 @@ pub(crate) async fn spectrum(
     let source = SpectrumSource::load(&app.store, &id, n).await?;
     let title = caption(&app.store, &id, n, "Full spectrum").await?;
     let point = app.store.point(&id, n.into()).await?;
+    let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
+    let tag = Tag::of(format, &(source.blobs(), &query, &title, resolved_hz));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.view(format.memory(source.memory().await?)).await?;
     place
         .answer(move || {
-            let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
             let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
             let (node, table) = match source {
                 SpectrumSource::Recording(recording) => {
@@ -612,7 +640,7 @@ pub(crate) async fn spectrum(
             let table = spectrum::mark_resolved(table, resolved_hz);
             let file_name = file_name(&id, n, &format!("spectrum-{node}"));
             let draw = |table: &Table| chart::spectrum(table, &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, draw)
+            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
         })
         .await
 }

@@ -3,16 +3,19 @@
 
 use axum::Json;
 use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::{IntoResponse, Response};
 use drillsweep_api::scene::{self, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{Format, Tag};
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]
-use crate::openapi::answers::Problems;
+use crate::openapi::answers::{Conditional, Problems};
 use crate::route::results::PointPath;
 
 /// What a point's scenario calls for and takes
@@ -26,18 +29,24 @@ use crate::route::results::PointPath;
         path = "/v1/sweeps/{id}/points/{n}/plan",
         tag = "points",
         operation_id = "get_plan",
-        params(PointPath),
-        responses((status = 200, description = "The plan", body = Plan), Problems)
+        params(PointPath, Conditional),
+        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is right"), Problems)
     )
 )]
 pub(crate) async fn plan(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
-) -> Result<Json<Plan>> {
+    headers: HeaderMap,
+) -> Result<Response> {
     let point = point(&app, &id, n).await?;
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
+    let tag = Tag::of(Format::Json, &("plan", &point.key, &speed));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.plans.enter(1).await?;
-    place.run(move || Ok(Json(scene::plan(&point.scenario, speed.as_deref())?))).await
+    let plan: Plan = place.run(move || Ok(scene::plan(&point.scenario, speed.as_deref())?)).await?;
+    Ok(tag.on(Json(plan).into_response()))
 }
 
 /// Which modes are wanted.
@@ -72,18 +81,24 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
         path = "/v1/sweeps/{id}/points/{n}/modes",
         tag = "points",
         operation_id = "get_modes",
-        params(PointPath, ModesQuery),
-        responses((status = 200, description = "The modes, by frequency", body = Modes), Problems)
+        params(PointPath, ModesQuery, Conditional),
+        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is right"), Problems)
     )
 )]
 pub(crate) async fn modes(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
     Query(ModesQuery { to_hz }): Query<ModesQuery>,
-) -> Result<Json<Modes>> {
+    headers: HeaderMap,
+) -> Result<Response> {
     let point = point(&app, &id, n).await?;
+    let tag = Tag::of(Format::Json, &("modes", &point.key, to_hz));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.plans.enter(1).await?;
-    place.run(move || Ok(Json(scene::modes_up_to(&point.scenario, to_hz)?))).await
+    let modes: Modes = place.run(move || Ok(scene::modes_up_to(&point.scenario, to_hz)?)).await?;
+    Ok(tag.on(Json(modes).into_response()))
 }
 
 async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {

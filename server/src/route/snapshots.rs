@@ -10,7 +10,7 @@ use serde::Deserialize;
 use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, TableFormat};
+use crate::answer::format::{self, Answer, Format, TableFormat, Tag};
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
 #[cfg(feature = "openapi")]
@@ -82,7 +82,7 @@ pub(crate) async fn show(
     let file_name = file_name(&id, n, tables::SNAPSHOTS.name);
     let stored = artifact::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
     if format == Format::Parquet && query.is_whole() {
-        return whole_file(&app, stored, &file_name).await;
+        return whole_file(&app, stored, &file_name, &headers).await;
     }
     let statics = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?;
     let snapshots = Snapshots::new(stored, &statics)?;
@@ -90,6 +90,10 @@ pub(crate) async fn show(
     if let Some(node) = node.filter(|node| *node > snapshots.nodes()) {
         let detail = format!("the string has the nodes 1 to {}", snapshots.nodes());
         return Err(Error::parameter("node", Some(&node.to_string()), detail));
+    }
+    let tag = Tag::of(format, &(snapshots.stored().blob(), snapshots.nodes(), &query));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
     }
     let place = app.view(format.memory(snapshots.stored().memory().await?)).await?;
     place
@@ -106,8 +110,7 @@ pub(crate) async fn show(
                 .attribute("interval", times.interval() * stride as f64);
             let layout = format::select(layout, query.fields.as_deref())?;
             let part = snapshots.part(table, layout, &frames, (node, stride))?;
-            let nodes = snapshots.nodes();
-            Ok(Answer::of_part(snapshots.into_stored(), part, format, &file_name, &(nodes, &query)))
+            Ok(Answer::of_part(snapshots.into_stored(), part, format, &file_name, tag))
         })
         .await
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 use crate::answer::artifact::Recording;
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::format::{Answer, Format, TableFormat, Tag};
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]
@@ -18,7 +18,7 @@ use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
 /// Which spectrogram is wanted.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrogramQuery {
@@ -110,11 +110,15 @@ pub(crate) async fn show(
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let recording = Recording::load(&app.store, &id, n).await?;
     let point = app.store.point(&id, n.into()).await?;
+    let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
+    let tag = Tag::of(format, &(recording.blobs(), &query, resolved_hz));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let reading = recording.memory_of_orbit().await? + MOST_AMPLITUDES as u64 * OF_AMPLITUDE;
     let place = app.view(format.memory(reading)).await?;
     place
         .answer(move || {
-            let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
             let SpectrogramQuery { from, to, window_s, step_s, window, range_hz, .. } = query;
             let motion = recording.motion_of(choice, from, to)?;
             let request =
@@ -122,7 +126,7 @@ pub(crate) async fn show(
             let table = motion.label(spectrogram(&motion.columns(), &request)?);
             let table = spectrum::mark_resolved(table, resolved_hz);
             let file_name = file_name(&id, n, &format!("spectrogram-{}", motion.node));
-            Answer::of_table(table, None, format, &file_name)
+            Answer::of_table(table, None, format, &file_name, Some(tag))
         })
         .await
 }

@@ -11,14 +11,14 @@ use serde::Deserialize;
 use crate::answer::artifact::Recording;
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::format::{Answer, Format, TableFormat, Tag};
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
 /// Which nodes and which window.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StatisticsQuery {
@@ -74,6 +74,10 @@ pub(crate) async fn show(
         (node, depth) => Some(Choice::from_parameters(node, depth, query.nearest)?),
     };
     let recording = Recording::load(&app.store, &id, n).await?;
+    let tag = Tag::of(format, &(recording.blobs(), &query));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
     let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
     place
         .answer(move || {
@@ -90,7 +94,7 @@ pub(crate) async fn show(
                 table.push(motion.node, motion.measured_depth, &motion.columns())?;
             }
             let file_name = file_name(&id, n, STATISTICS.name);
-            Answer::of_table(table.finish(), query.fields.as_deref(), format, &file_name)
+            Answer::of_table(table.finish(), query.fields.as_deref(), format, &file_name, Some(tag))
         })
         .await
 }

@@ -829,7 +829,7 @@ pub(crate) async fn table(
                 table = table.attribute("warnings", findings.warnings.clone());
             }
             let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-            Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), |table| {
+            Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), None, |table| {
                 chart::sweep(table, &parameters, fields, findings, title, &view)
             })
         })

@@ -134,7 +134,7 @@ pub(crate) async fn show(
     place
         .answer(move || {
             let name = format!("sweep-{id}-verification");
-            Answer::of_table(verified.table(), fields.as_deref(), format, &name)
+            Answer::of_table(verified.table(), fields.as_deref(), format, &name, None)
         })
         .await
 }

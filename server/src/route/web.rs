@@ -45,7 +45,7 @@ static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
 /// The page on which sweeps are watched.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
     static PAGE: LazyLock<io::Result<String>> =
-        LazyLock::new(|| Ok(html("index.html")?.replace("</head>", &preloads()?)));
+        LazyLock::new(|| Ok(html("index.html")?.replace("</title>\n", &format!("</title>\n{}", imports()?))));
     html_response(&PAGE, &uri)
 }
 
@@ -74,30 +74,12 @@ fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Respons
     Ok((headers, usual(), text.as_str()).into_response())
 }
 
-/// What the page's head ends with: the modules that every view needs, which a browser would otherwise find one after the other by their
-/// imports, and what each module imports, so that the page fetches those of a view at once.
-fn preloads() -> io::Result<String> {
-    let imports: BTreeMap<&str, &[&str]> = FILES
-        .iter()
-        .filter(|(.., imported)| !imported.is_empty())
-        .map(|(path, .., imported)| (*path, *imported))
-        .collect();
-    let mut needed = vec!["main.js"];
-    let mut next = 0;
-    while let Some(path) = needed.get(next) {
-        let further = imports.get(path).copied().unwrap_or_default();
-        let fresh: Vec<&str> = further.iter().copied().filter(|path| !needed.contains(path)).collect();
-        needed.extend(fresh);
-        next += 1;
-    }
-    let links = needed
-        .iter()
-        .map(|path| format!("  <link rel=\"modulepreload\" href=\"/web/{}/{path}\">\n", *VERSION));
+/// What each module of the page imports: it fetches those of a view at once, which a browser would find one after the other.
+fn imports() -> io::Result<String> {
+    let imports = FILES.iter().filter(|(.., imported)| !imported.is_empty());
+    let imports: BTreeMap<&str, &[&str]> = imports.map(|(path, .., imported)| (*path, *imported)).collect();
     let imports = serde_json::to_string(&imports).map_err(io::Error::other)?;
-    Ok(format!(
-        "{}  <script type=\"application/json\" id=\"imports\">{imports}</script>\n</head>",
-        links.collect::<String>()
-    ))
+    Ok(format!("  <script type=\"application/json\" id=\"imports\">{imports}</script>\n"))
 }
 
 /// A file of the page, compressed as it is stored where the browser takes that.

@@ -8,7 +8,7 @@ use drillsweep_server::Config;
 use drillsweep_table::{Column, parquet};
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, DURATION, RATE};
+use crate::bench::{Answer, Bench, DURATION, RATE};
 
 /// A sweep of two points, the first with a result, the second diverged.
 async fn finished() -> (Bench, String) {
@@ -214,41 +214,81 @@ async fn a_point_shows_its_summary_and_provenance() {
 
 #[tokio::test]
 async fn what_the_client_has_a_copy_of_is_not_sent_again() {
-    let bench = Bench::new().await;
+    let mut bench = Bench::new().await;
     let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
     let path = format!("/v1/sweeps/{}", bench.submit(body).await);
     bench.succeed().await;
-    let again = async |path: &str, tag: &str| {
-        let request = Request::get(path).header(header::IF_NONE_MATCH, tag).body(Body::empty()).unwrap();
-        bench.send(request).await
-    };
     let table = format!("{path}/table");
     let orbit = format!("{path}/points/1/orbit?node=49&from=1&to=2");
-    let mut tags = std::collections::HashSet::new();
-    for path in [
-        format!("{path}/points/1/profile"),
-        format!("{path}/points/1/statics?format=parquet"),
-        format!("{path}/points/1/spectrum?node=49&from=1&to=2&format=svg"),
-        format!("{table}?format=csv"),
-        table.clone(),
+    // What takes reading and computing, and depends on the point's result or scenario alone.
+    let views = [
         orbit.clone(),
-    ] {
-        let first = bench.get(&path).await;
+        format!("{path}/points/1/orbit?node=49&from=1&to=2&max_points=100"),
+        format!("{path}/points/1/profile"),
+        format!("{path}/points/1/history?node=49&from=1&to=2&format=svg"),
+        format!("{path}/points/1/history?node=49&max_points=100&decimation=minmax"),
+        format!("{path}/points/1/history?node=49&max_points=100"),
+        format!("{path}/points/1/spectrum?node=49&from=1&to=2&format=svg"),
+        format!("{path}/points/1/spectrum?node=49&from=1&to=2&window=hann"),
+        format!("{path}/points/1/statistics?node=49&from=1&to=2"),
+        format!("{path}/points/1/statics?fields=node"),
+    ];
+    let others =
+        [format!("{path}/points/1/statics?format=parquet"), format!("{table}?format=csv"), table.clone()];
+    let mut tags = std::collections::HashMap::new();
+    for path in views.iter().chain(&others) {
+        let first = bench.get(path).await;
+        assert_eq!(first.status, StatusCode::OK, "{path}: {}", first.text());
         let tag = first.headers[header::ETAG].to_str().unwrap().to_owned();
-        let unchanged = again(&path, &format!("\"other\", {tag}")).await;
+        let unchanged = again(&bench, path, &format!("\"other\", {tag}")).await;
         assert_eq!((unchanged.status, unchanged.body.len()), (StatusCode::NOT_MODIFIED, 0), "{path}");
         assert_eq!(unchanged.headers[header::ETAG], tag);
-        let other = again(&path, "\"other\"").await;
+        let other = again(&bench, path, "\"other\"").await;
         assert_eq!((other.status, &other.body), (StatusCode::OK, &first.body), "{path}");
-        tags.insert(tag);
+        tags.insert(tag, path);
     }
-    assert_eq!(tags.len(), 6, "every body has a tag of its own");
+    assert_eq!(tags.len(), views.len() + others.len(), "every body has a tag of its own: {tags:?}");
     // The table changes with the sweep, the orbit does not.
     let tag_of = async |path: &str| bench.get(path).await.headers[header::ETAG].to_str().unwrap().to_owned();
     let (table_tag, orbit_tag) = (tag_of(&table).await, tag_of(&orbit).await);
     bench.succeed().await;
-    assert_eq!(again(&table, &table_tag).await.status, StatusCode::OK);
-    assert_eq!(again(&orbit, &orbit_tag).await.status, StatusCode::NOT_MODIFIED);
+    assert_eq!(again(&bench, &table, &table_tag).await.status, StatusCode::OK);
+    assert_eq!(again(&bench, &orbit, &orbit_tag).await.status, StatusCode::NOT_MODIFIED);
+
+    // Nothing is read or computed for it: it needs no place where there is none.
+    bench.reconfigure(Config {
+        large_answers: 0,
+        large_answer_bytes: 0,
+        large_answers_waiting: 0,
+        ..Config::default()
+    });
+    for (tag, path) in tags.iter().filter(|(_, path)| views.contains(path)) {
+        assert_eq!(again(&bench, path, tag).await.status, StatusCode::NOT_MODIFIED, "{path}");
+        again(&bench, path, "\"other\"").await.problem(503, "unavailable");
+    }
+}
+
+async fn again(bench: &Bench, path: &str, tag: &str) -> Answer {
+    bench.send(Request::get(path).header(header::IF_NONE_MATCH, tag).body(Body::empty()).unwrap()).await
+}
+
+#[tokio::test]
+async fn a_point_whose_modes_and_plan_are_known_is_not_computed_again() {
+    let bench = Bench::new().await;
+    let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
+    let path = format!("/v1/sweeps/{}", bench.submit(body).await);
+    let mut tags = std::collections::HashSet::new();
+    for view in ["1/modes?to_hz=2", "1/modes?to_hz=1", "2/modes?to_hz=2", "1/plan", "2/plan"] {
+        let path = format!("{path}/points/{view}");
+        let first = bench.get(&path).await;
+        let tag = first.headers[header::ETAG].to_str().unwrap().to_owned();
+        let unchanged = again(&bench, &path, &tag).await;
+        assert_eq!((unchanged.status, unchanged.body.len()), (StatusCode::NOT_MODIFIED, 0), "{view}");
+        assert_eq!(unchanged.headers[header::ETAG], tag);
+        assert!(unchanged.headers[header::CACHE_CONTROL].to_str().unwrap().contains("no-cache"));
+        tags.insert(tag);
+    }
+    assert_eq!(tags.len(), 5, "every answer has a tag of its own");
 }
 
 #[tokio::test]

@@ -1,0 +1,126 @@
+// What the first view needs, asked for while the page is still being read: its modules, which a browser would otherwise find one after the
+// other, each when the one before has come and run, and what the service knows of it. Modules run after the page's first picture at the
+// earliest; this is no module, so that it runs at once, and they find it as `ahead`.
+
+const ahead = (() => {
+  /** Points up to which the whole table of a sweep is one answer. */
+  const WHOLE = 3000;
+  /** How long an answer waits for the view to ask for it; later it may not be true any more. */
+  const KEPT_MS = 3000;
+
+  /**
+   * What shows each part of a view, by its name in the link; the first where the link names none.
+   * @type {Record<string, Record<string, string>>}
+   */
+  const PARTS = {
+    sweep: {
+      map: "sweep-map.js",
+      scatter: "sweep-scatter.js",
+      parallel: "sweep-parallel.js",
+      effects: "sweep-effects.js",
+      difference: "sweep-difference.js",
+      table: "sweep-table.js",
+      failures: "sweep-failures.js",
+    },
+    point: {
+      profiles: "point-profiles.js",
+      motion: "point-motion.js",
+      spectrogram: "point-spectrogram.js",
+      string: "point-string.js",
+      well: "point-well.js",
+      energy: "point-energy.js",
+      about: "point-about.js",
+    },
+  };
+
+  /** What each module imports, as the server says in the page. @type {Record<string, string[]>} */
+  const imports = JSON.parse(document.getElementById("imports")?.textContent || "{}");
+  const folder = /** @type {HTMLScriptElement} */ (document.currentScript).src;
+  /** @type {Set<string>} */
+  const preloaded = new Set();
+  /** Answers that no view has asked for yet, by address. @type {Map<string, Promise<Response>>} */
+  const answers = new Map();
+
+  /** @returns {import("./router.js").Route} what the link asks for */
+  function route() {
+    const [path, query] = (location.hash.replace(/^#/, "") || "/sweeps").split("?", 2);
+    return { path: path.split("/").filter(Boolean).map(decode), query: new URLSearchParams(query ?? "") };
+  }
+
+  /** @param {string} segment */
+  function decode(segment) {
+    try {
+      return decodeURIComponent(segment);
+    } catch {
+      return segment;
+    }
+  }
+
+  /**
+   * @param {string[]} path of the link
+   * @returns {string} the view's name; empty where there is none
+   */
+  function viewOf(path) {
+    if (path[0] === "sweeps" && path.length === 1) return "sweeps";
+    if (path[0] === "sweeps" && path.length === 2) return "sweep";
+    if (path[0] === "sweeps" && path[2] === "points" && path.length === 4) return "point";
+    return path.length === 1 && (path[0] === "compare" || path[0] === "new") ? path[0] : "";
+  }
+
+  /** Has the modules come that show what a link asks for. @param {import("./router.js").Route} route */
+  function preload({ path, query }) {
+    const view = viewOf(path);
+    if (!view) return;
+    load(`${view}.js`);
+    const parts = PARTS[view];
+    if (parts) load(parts[query.get("view") ?? ""] ?? Object.values(parts)[0]);
+  }
+
+  /** Has a module come with all that it imports. @param {string} name its file */
+  function load(name) {
+    if (preloaded.has(name)) return;
+    preloaded.add(name);
+    const link = document.createElement("link");
+    Object.assign(link, { rel: "modulepreload", href: new URL(name, folder).href });
+    document.head.append(link);
+    imports[name]?.forEach(load);
+  }
+
+  /**
+   * The answer to a request that has been sent already, once.
+   * @param {string} url
+   * @returns {Promise<Response> | undefined}
+   */
+  function sent(url) {
+    const answer = answers.get(url);
+    answers.delete(url);
+    return answer;
+  }
+
+  /** @param {string} url */
+  function send(url) {
+    const answer = fetch(url, { headers: { Accept: "application/json" } });
+    // Who asks for it hears of it.
+    answer.catch(() => {});
+    answers.set(url, answer);
+  }
+
+  /** Sends for the table of a sweep that has been sent for, once it is known to be small. @param {string} sweep */
+  function sendTable(sweep) {
+    const size = answers.get(sweep)?.then(async (answer) => answer.ok && (await answer.clone().json()).counts.total <= WHOLE);
+    size?.then((isSmall) => isSmall && send(`${sweep}/table?format=json`)).catch(() => {});
+  }
+
+  const first = route();
+  const [id, ordinal] = [first.path[1], first.path[3]].map(encodeURIComponent);
+  const view = viewOf(first.path);
+  send("/v1/quantities");
+  send("/v1/session");
+  if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
+  if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
+  if (view === "sweep") sendTable(`/v1/sweeps/${id}`);
+  load("main.js");
+  preload(first);
+  setTimeout(() => answers.clear(), KEPT_MS);
+  return { WHOLE, route, viewOf, preload, sent };
+})();

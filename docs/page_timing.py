@@ -20,7 +20,7 @@ OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
-# When the link is changed and when something is there [ms], as the page's own clock has it, which starts with the page's loading.
+# When the link is changed and when something is there [ms], by the page's own clock, which starts with its loading.
 SHOWN = """([link, selector]) => new Promise((resolve) => {
     const start = performance.now();
     const end = () => resolve([start, performance.now()]);

@@ -1,7 +1,9 @@
 //! Which format a table is served in, and how.
 
 use std::fmt::Debug;
+use std::fs::File;
 use std::io;
+use std::sync::LazyLock;
 
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
@@ -292,15 +294,31 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
     }
 }
 
+/// What tells this program from others that may write the same otherwise, of the same version too: the hash of its file. Where that cannot be
+/// read, each start counts as a program of its own.
+static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
+    Ok(hash) => hash.to_hex().to_string(),
+    Err(error) => {
+        tracing::warn!(%error, "the program's file cannot be read: clients' copies hold until the next start only");
+        uuid::Uuid::now_v7().to_string()
+    }
+});
+
+fn hash_of_program() -> io::Result<blake3::Hash> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(File::open(std::env::current_exe()?)?)?;
+    Ok(hasher.finalize())
+}
+
 /// What a body goes by, a weak entity tag, since it may be compressed on its way.
 #[derive(Debug, Clone)]
 pub(crate) struct Tag(String);
 
 impl Tag {
-    /// Of a body that depends on this alone besides its format and what writes it: the names of stored contents, and what is asked of
+    /// Of a body that depends on this alone besides its format and the program: the names of stored contents, and what is asked of
     /// them. So it is known before the body is, which need not be made for a client that has it.
     pub(crate) fn of(format: Format, depends_on: &impl Debug) -> Self {
-        let depends_on = (env!("CARGO_PKG_VERSION"), format, depends_on);
+        let depends_on = (&*PROGRAM, format, depends_on);
         Self::of_hash(&blake3::hash(format!("{depends_on:?}").as_bytes()))
     }
 
@@ -308,9 +326,10 @@ impl Tag {
         Self(format!("W/\"{}\"", hash.to_hex()))
     }
 
-    /// The answer to a client that says that it has a copy with this tag; none to one that does not.
+    /// The answer to a client that says that it has a copy with this tag; none to one that does not. Who has any copy at all (`*`) does
+    /// not say that there is such an answer: making it shows that.
     pub(crate) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
-        let known = headers.typed_get::<IfNoneMatch>()?;
+        let known = headers.typed_get::<IfNoneMatch>().filter(|known| *known != IfNoneMatch::any())?;
         let tag: ETag = self.0.parse().ok()?;
         if known.precondition_passes(&tag) {
             return None;

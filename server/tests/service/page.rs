@@ -213,6 +213,17 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
             assert!(said.iter().any(|path| path == imported), "{module} imports {imported}: {said:?}");
         }
     }
+    // It knows by name those that views are imported from.
+    let text_of = async |module: &str| bench.get(&format!("{folder}{module}")).await.text().to_owned();
+    let ahead = text_of("ahead.js").await;
+    let named: Vec<&str> =
+        ahead.split('"').filter(|part| part.starts_with(['s', 'p']) && part.ends_with(".js")).collect();
+    let parts = [text_of("sweep.js").await, text_of("point.js").await].concat();
+    let imported: Vec<&str> =
+        parts.split("await import(\"./").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let distinct: std::collections::BTreeSet<&str> = imported.into_iter().collect();
+    assert!(distinct.len() > 10, "{distinct:?}");
+    assert_eq!(named.into_iter().collect::<std::collections::BTreeSet<_>>(), distinct);
 
     // What has a copy is told that it is still right; another version has no files here.
     let tag = page.headers[header::ETAG].clone();

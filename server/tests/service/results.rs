@@ -255,6 +255,11 @@ async fn what_the_client_has_a_copy_of_is_not_sent_again() {
     assert_eq!(again(&bench, &table, &table_tag).await.status, StatusCode::OK);
     assert_eq!(again(&bench, &orbit, &orbit_tag).await.status, StatusCode::NOT_MODIFIED);
 
+    // Any copy is none of what there is not.
+    let nowhere = format!("{path}/points/1/orbit?node=4900");
+    again(&bench, &nowhere, "*").await.problem(404, "node-not-recorded");
+    assert_eq!(again(&bench, &orbit, "*").await.status, StatusCode::NOT_MODIFIED);
+
     // Nothing is read or computed for it: it needs no place where there is none.
     bench.reconfigure(Config {
         large_answers: 0,

@@ -306,7 +306,9 @@ static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
 
 fn hash_of_program() -> io::Result<blake3::Hash> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(File::open(std::env::current_exe()?)?)?;
+    // What runs, where Linux tells: another file may have taken its path since it was started.
+    let file = File::open("/proc/self/exe").or_else(|_| File::open(std::env::current_exe()?))?;
+    hasher.update_reader(file)?;
     Ok(hasher.finalize())
 }
 

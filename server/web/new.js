@@ -89,6 +89,7 @@ export async function show(main, route, signal) {
         const say = () => fill(hint, [label(row.name) !== row.name.replaceAll("_", " ") && label(row.name), servedUnit(row.name) && `in ${servedUnit(row.name)}`].filter(Boolean).join(", "));
         const path = h("input", { value: row.name, list: "paths", "aria-label": isAxis ? "Parameter" : "Field", size: 26, oninput: () => {
           row.name = path.value.trim();
+          name();
           say();
           changed();
         } });
@@ -96,13 +97,20 @@ export async function show(main, route, signal) {
           row.values = values.value;
           changed();
         } });
-        say();
-        path.title = meaning(row.name);
-        return h("div", { class: "controls", style: "margin-bottom:.35rem", "data-pointer": `/${kind}/${row.name}` }, path, values, h("button", { type: "button", "aria-label": `Remove ${row.name}`, onclick: () => {
+        const remove = h("button", { type: "button", onclick: () => {
           rows.splice(index, 1);
           drawRows(place, rows, kind);
           changed();
-        } }, "✕"), hint);
+        } }, "✕");
+        const line = h("div", { class: "controls", style: "margin-bottom:.35rem" }, path, values, remove, hint);
+        const name = () => {
+          line.dataset.pointer = `/${kind}/${row.name}`;
+          remove.setAttribute("aria-label", `Remove ${row.name}`);
+          path.title = meaning(row.name);
+        };
+        name();
+        say();
+        return line;
       }),
       h("button", { type: "button", onclick: () => {
         rows.push({ name: "", values: "" });
@@ -189,7 +197,7 @@ export async function show(main, route, signal) {
     if (name.value.trim()) body.name = name.value.trim();
     if (form.preset) body.preset = form.preset;
     else body.scenario = parsed(scenario.value, "/scenario");
-    const set = Object.fromEntries(changes.filter((row) => row.name).map((row) => [row.name, read(row.values)]));
+    const set = Object.fromEntries(changes.filter((row) => row.name).map((row) => [row.name, changeOf(row)]));
     if (form.accuracy) set.accuracy = form.accuracy;
     const stations = pasted(survey.read);
     if (stations) set[SURVEY] = stations;
@@ -385,6 +393,12 @@ function pasted(survey) {
   } catch (error) {
     throw error instanceof NoSurvey ? new Unreadable(`/set/${SURVEY}`, error.message) : error;
   }
+}
+
+/** What a change sets its field to. @param {{name: string, values: string}} row */
+function changeOf({ name, values }) {
+  if (values.trim() === "") throw new Unreadable(`/set/${name}`, "A value is missing");
+  return read(values);
 }
 
 /** A value of the scenario: JSON, or else a word. @param {string} text */

@@ -173,6 +173,28 @@ def test_a_problem_stands_at_its_field(opened: Opens, troubles: list[str]) -> No
     troubles[:] = [text for text in troubles if "status of 422" not in text]
 
 
+def test_a_change_waits_for_its_value_and_tells_it_there(opened: Opens, troubles: list[str]) -> None:
+    page = opened("#/new?preset=paper-200m")
+    submit = page.get_by_role("button", name="Submit")
+    expect(submit).to_be_enabled()
+    page.get_by_role("button", name="Add a change").click()
+    page.get_by_role("combobox", name="Field").last.fill("duration")
+    # The service is not asked about what is not written yet: its refusal would stand on the console.
+    row = page.locator('[data-pointer="/set/duration"]')
+    expect(row.get_by_text("A value is missing")).to_be_visible()
+    expect(submit).to_be_disabled()
+    assert troubles == []
+    value = row.get_by_role("textbox", name="Value", exact=True)
+    value.fill("-1")
+    expect(row.locator("[data-problem]")).to_be_visible()
+    expect(row.get_by_text("A value is missing")).to_be_hidden()
+    troubles[:] = [text for text in troubles if "status of 422" not in text]
+    value.fill("0.5")
+    expect(submit).to_be_enabled()
+    page.get_by_role("button", name="Remove duration").click()
+    expect(row).to_have_count(0)
+
+
 def test_a_survey_is_pasted_from_a_spreadsheet(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m")
     scenario = page.get_by_role("region", name="Scenario", exact=True)

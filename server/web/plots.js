@@ -132,7 +132,7 @@ function followZoom(place) {
   /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
     const known = drawn.get(place);
     if (!known || adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
-    keepZoom(keyOf(place), /** @type {any} */ (place)._fullLayout, known.layout, known.whole);
+    keepZoom(keyOf(place), place, known.layout, known.whole);
   });
 }
 
@@ -158,10 +158,9 @@ function attach(place, signal) {
  * @param {any} layout
  */
 async function zoom(Plotly, place, layout) {
-  const full = /** @type {any} */ (place)._fullLayout;
   const axes = JSON.stringify([layout.shows, ...Object.keys(layout).filter((name) => /^[xy]axis/.test(name)).map((name) => layout[name].quantity ?? layout[name].title)]);
   const before = drawn.get(place);
-  drawn.set(place, { layout, axes, whole: wholeOf(full, layout) });
+  drawn.set(place, { layout, axes, whole: wholeOf(place, layout) });
   if (before && before.axes !== axes) return forgetZoom(keyOf(place));
   const changes = zoomed(keyOf(place), layout);
   if (Object.keys(changes).length) await adjust(place, changes);
@@ -263,12 +262,28 @@ export function colourBar(title) {
   return { title: { text: title, side: "right", font: { size: 12 } }, thickness: 14, outlinewidth: 0, tickfont: { color: text }, exponentformat: "power" };
 }
 
+/** Parts that ticks leave a range in, about: of steps of 1, 2 and 5 at least two fall in any range. */
+const PARTS = 6;
+
 /** Ticks of a colour that is shown by its decimal logarithm. @param {number} least @param {number} largest logarithms */
 export function logTicks(least, largest) {
+  const every = Math.max(1, Math.ceil((largest - least) / (2 * PARTS)));
   const at = [];
-  for (let power = Math.floor(least); power <= Math.ceil(largest); power += 1) {
+  for (let power = Math.floor(least / every) * every; power <= Math.ceil(largest); power += every) {
     for (const digit of largest - least > 2.5 ? [1] : [1, 2, 5]) at.push(Math.log10(digit) + power);
   }
   const within = at.filter((value) => value >= least - 1e-9 && value <= largest + 1e-9);
+  if (within.length < 2) return evenTicks(10 ** least, 10 ** largest);
   return { tickvals: within, ticktext: within.map((value) => String(Number((10 ** value).toPrecision(3)))) };
+}
+
+/** The same of a range within which there are no two round numbers. @param {number} from @param {number} to the values themselves */
+function evenTicks(from, to) {
+  if (from === to) return { tickvals: [Math.log10(from)], ticktext: [String(Number(from.toPrecision(3)))] };
+  const size = 10 ** Math.floor(Math.log10((to - from) / PARTS));
+  const step = size * ([1, 2, 5].find((digit) => digit * size * PARTS >= to - from) ?? 10);
+  const first = Math.ceil(from / step);
+  const values = Array.from({ length: Math.floor(to / step) - first + 1 }, (_, index) => (first + index) * step);
+  const digits = Math.ceil(Math.log10(to / step)) + 1;
+  return { tickvals: values.map(Math.log10), ticktext: values.map((value) => String(Number(value.toPrecision(Math.min(15, digits))))) };
 }

@@ -38,24 +38,25 @@ export function zoomed(key, layout) {
 
 /**
  * How a picture is drawn before it is zoomed.
- * @param {any} full plotly's layout
+ * @param {any} place that plotly draws in
  * @param {any} layout
  * @returns {Record<string, any>}
  */
-export function wholeOf(full, layout) {
+export function wholeOf(place, layout) {
+  const full = place._fullLayout;
   const axes = Object.keys(layout).filter((name) => /^[xy]axis\d*$/.test(name) && full[name]?.range);
-  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene ? { camera: cameraOf(full) } : {}) };
+  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene ? { camera: cameraOf(place) } : {}) };
 }
 
 /**
  * Keeps in the link how a picture is zoomed.
  * @param {string} key of the picture
- * @param {any} full plotly's layout
+ * @param {any} place that plotly draws in
  * @param {any} layout
  * @param {Record<string, any>} whole
  */
-export function keepZoom(key, full, layout, whole) {
-  const parts = Object.entries(wholeOf(full, layout)).flatMap(([name, now]) => {
+export function keepZoom(key, place, layout, whole) {
+  const parts = Object.entries(wholeOf(place, layout)).flatMap(([name, now]) => {
     const drawn = whole[name];
     const width = Math.abs(drawn[1] - drawn[0]) || 1;
     if (now.every((/** @type {number} */ end, /** @type {number} */ index) => Math.abs(end - drawn[index]) <= SAME * width)) return [];
@@ -70,9 +71,10 @@ export function forgetZoom(key) {
   keep({ [`zoom.${key}`]: null });
 }
 
-/** @param {any} full plotly's layout */
-function cameraOf(full) {
-  const { eye, center } = full.scene.camera;
+/** @param {any} place that plotly draws in */
+function cameraOf(place) {
+  // Of a picture that was turned by the mouse plotly's complete layout keeps the camera of before.
+  const { eye, center } = { ...place._fullLayout.scene.camera, ...place.layout.scene?.camera };
   return [eye.x, eye.y, eye.z, center.x, center.y, center.z];
 }
 

@@ -226,6 +226,34 @@ def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Ope
     expect(size).not_to_contain_text("bias")
 
 
+@pytest.mark.parametrize("view", ["point", "compare"])
+def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) -> None:
+    shown = f"#/sweeps/{sweep.id}/points/1?view=well"
+    page = opened(shown if view == "point" else f"#/compare?points={sweep.id}:1,{sweep.id}:2&view=well")
+    picture = drawn(page, "^(The well and the string in it|Well)$")
+    picture.scroll_into_view_if_needed()
+    camera = "place => place._fullLayout.scene._scene.getCamera().eye"
+    before = picture.evaluate(camera)
+    box = picture.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.6 * box["height"], steps=5)
+    page.mouse.up()
+    until(page, lambda: "zoom.well=camera" in page.url)
+    turned = picture.evaluate(camera)
+    assert turned != pytest.approx(before, abs=0.3)
+    page.get_by_label("Colour", exact=True).select_option(label="friction coefficient C_f")
+    bar = "place => place.data.flatMap(({ line }) => line.colorbar?.title.text ?? [])"
+    until(page, lambda: "friction coefficient" in str(picture.evaluate(bar)))
+    # The camera is put back once the picture is drawn; it comes to rest a little after the mouse is let go.
+    page.wait_for_timeout(500)
+    assert picture.evaluate(camera) == pytest.approx(turned, abs=0.1)
+    other = opened(f"#{page.url.partition('#')[2]}")
+    picture = drawn(other, "^(The well and the string in it|Well)$")
+    until(other, lambda: picture.evaluate(camera) == pytest.approx(turned, abs=0.1))
+
+
 def test_the_link_holds_the_time_and_the_view_of_the_string(opened: Opens, recorded: Sweep) -> None:
     page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&exaggerate=300")
     picture = scene(page)

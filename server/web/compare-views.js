@@ -7,12 +7,14 @@ import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spect
 import { colourBar, draw, inks, lineScale } from "./plots.js";
 import { ledger } from "./point-energy.js";
 import { drawProfiles, QUANTITIES, tableOf } from "./point-profiles.js";
-import { displaced, onNodes } from "./point-well.js";
+import { displaced, exaggeration, onNodes, saysExaggeration } from "./point-well.js";
 import { label, say, shown, title, unit } from "./units.js";
 
 /** Samples of a line. */
 const SHOWN = 6000;
-/** How many times a string's distance from the axis of its hole is drawn. */
+/** Clearances that differ by less are one [m]. */
+const SAME_CLEARANCE = 1e-6;
+/** How many times a string's distance from the axis of its hole is drawn, unless the link says so. */
 const EXAGGERATION = 100;
 /** Part of a well's length by which coloured wells are drawn aside of each other. */
 const APART = 0.12;
@@ -30,6 +32,7 @@ const APART = 0.12;
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
  * @property {string[]} lacking sentences about what points lack, which a view adds to
+ * @property {string[]} says sentences of the caption, which a view adds to
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
  * @property {AbortSignal} signal
  */
@@ -145,11 +148,32 @@ function orbits(comparison) {
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawOrbits(place, comparison) {
   const found = await orbits(comparison);
-  const clearance = Math.max(...found.map(([, one]) => one.clearance));
+  const holes = holesOf(found);
+  const clearance = Math.max(...holes.map((hole) => hole.clearance));
   const traces = found.map(([point, { orbit, lowSide }]) => orbitTrace(orbit, lowSide, { color: point.colour }, point.name));
   const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
   if (!found.length) return draw(place, [], {}, comparison.signal);
-  return draw(place, [holeTrace(clearance), ...traces], { ...orbitLayout(isZoomed, traces, clearance), legend: { orientation: "v" } }, comparison.signal);
+  const isOne = holes.length === 1;
+  const which = (/** @type {Compared[]} */ points) => `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
+  const colourOf = (/** @type {Compared[]} */ points) => (isOne || points.length > 1 ? inks().soft : points[0].colour);
+  comparison.says.push(isOne ? "On the grey circle the node touches the wall." : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`);
+  const annotations = isOne ? [] : holes.map((hole) => ({ x: 0, y: shown("radius", [hole.clearance])[0], text: `wall of ${which(hole.points)}`, showarrow: false, yanchor: "bottom", font: { size: 11, color: colourOf(hole.points) } }));
+  return draw(place, [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces], { ...orbitLayout(isZoomed, traces, clearance), annotations, legend: { orientation: "v" } }, comparison.signal);
+}
+
+/**
+ * The holes around the nodes that are shown: points of one clearance have one.
+ * @param {[Compared, {clearance: number}][]} found
+ */
+function holesOf(found) {
+  /** @type {{clearance: number, points: Compared[]}[]} */
+  const holes = [];
+  for (const [point, { clearance }] of found) {
+    const same = holes.find((hole) => Math.abs(hole.clearance - clearance) < SAME_CLEARANCE);
+    if (same) same.points.push(point);
+    else holes.push({ clearance, points: [point] });
+  }
+  return holes;
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
@@ -212,9 +236,16 @@ function asideOf({ north, east, measured_depth }) {
   return Math.hypot(along, across) ? { north: -across * apart, east: along * apart } : { north: 0, east: APART * measured_depth[last] };
 }
 
+/** How many times the distance from the axis of the hole is drawn. @param {URLSearchParams} query */
+export function wellFactor(query) {
+  return exaggeration(query, EXAGGERATION);
+}
+
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawWells(place, comparison) {
   const colour = wellColour(comparison.query);
+  const factor = wellFactor(comparison.query);
+  comparison.says.push(saysExaggeration("The strings at rest; their", factor));
   const found = await each(comparison, async (point) => {
     const [{ columns: statics }, table] = await Promise.all(["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) => comparison.table(point, name)));
     const { columns } = table ?? { columns: statics };
@@ -226,10 +257,11 @@ async function drawWells(place, comparison) {
   const [cmin, cmax] = [finite.reduce((a, b) => Math.min(a, b), Infinity), finite.reduce((a, b) => Math.max(a, b), -Infinity)];
   const barOf = found.find(([, { values }]) => values)?.[0];
   const aside = colour && found.length > 1 ? asideOf(found[0][1].statics) : null;
+  if (aside) comparison.says.push("Wells are drawn aside of each other, so that each is seen.");
   const traces = found.map(([point, { statics, values }], order) => {
     const beside = (/** @type {number[]} */ path, /** @type {number} */ step) => path.map((value) => value + order * step);
     const axis = { north: beside(statics.north, aside?.north ?? 0), east: beside(statics.east, aside?.east ?? 0), down: statics.true_vertical_depth };
-    const path = displaced(statics, axis, EXAGGERATION);
+    const path = displaced(statics, axis, factor);
     const line = colour && values ? { color: shown(colour, values), colorscale: lineScale(), cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
     const last = statics.measured_depth.length - 1;
     // Where colours tell values, numbers tell the wells apart.

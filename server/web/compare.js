@@ -3,13 +3,14 @@
 import { get, Problem } from "./api.js";
 import { dragWindow } from "./brush.js";
 import { RANGES, rangeOf } from "./compare-many.js";
-import { VIEWS, wellColour } from "./compare-views.js";
+import { VIEWS, wellColour, wellFactor } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, pythonNode, requestLines } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, DASHES, LINES } from "./plots.js";
 import { profileTables, QUANTITIES, quantityTicks, tableOf } from "./point-profiles.js";
+import { exaggerationChoice } from "./point-well.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
 import { label, say } from "./units.js";
@@ -118,7 +119,7 @@ export async function show(main, route, signal) {
   function drawControls() {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => change({ [name]: value });
     if (view === "profiles") return fill(controls, ticks.element);
-    if (view === "well") return fill(controls, choice("Colour", [["", "of each point"], ...QUANTITIES.map(([name]) => /** @type {[string, string]} */ ([name, label(name)]))], wellColour(query) ?? "", set("colour")));
+    if (view === "well") return fill(controls, exaggerationChoice(wellFactor(query), set("exaggerate")), choice("Colour", [["", "of each point"], ...QUANTITIES.map(([name]) => /** @type {[string, string]} */ ([name, label(name)]))], wellColour(query) ?? "", set("colour")));
     if (!isWindowed) return fill(controls);
     const { from, to } = window_();
     const time = (/** @type {string} */ name, /** @type {number} */ value) => {
@@ -164,6 +165,7 @@ export async function show(main, route, signal) {
       },
       table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, signal),
       lacking: [],
+      says: [],
       nodes: new Map(),
       signal,
     };
@@ -178,7 +180,7 @@ export async function show(main, route, signal) {
     }
     fill(lacking, comparison.lacking.map((sentence) => h("p", {}, sentence)));
     const shownNodes = [...comparison.nodes.entries()].sort(([a], [b]) => a - b).map(([, text]) => text);
-    fill(caption, view === "orbit" && "Looking downhole, the low side down. On the grey circle the node touches the wall. ", shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, view === "well" && wellColour(query) && points.length > 1 && "Wells are drawn aside of each other, so that each is seen. ", hasTime && " Drag across the picture to choose a window; the other views follow.");
+    fill(caption, view === "orbit" && "Looking downhole, the low side down. ", comparison.says.map((sentence) => `${sentence} `), shownNodes.length > 0 && `The recorded node of each point that is nearest to ${say("measured_depth", depth())}: ${shownNodes.join("; ")}.`, hasTime && " Drag across the picture to choose a window; the other views follow.");
   }
 
   const { table: shownTable } = VIEWS[view];

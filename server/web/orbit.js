@@ -34,11 +34,12 @@ export function orbitTrace(table, lowSide, line, name) {
 /**
  * The hole: a node on this circle touches the wall.
  * @param {number} clearance [m]
+ * @param {string} [colour]
  */
-export function holeTrace(clearance) {
+export function holeTrace(clearance, colour = inks().soft) {
   const radius = Number(shown("radius", [clearance])[0]);
   const angles = Array.from({ length: 361 }, (_, degree) => (degree * Math.PI) / 180);
-  return { type: "scatter", mode: "lines", x: angles.map((angle) => radius * Math.cos(angle)), y: angles.map((angle) => radius * Math.sin(angle)), line: { color: inks().soft, width: 1.6 }, hoverinfo: "skip", showlegend: false };
+  return { type: "scatter", mode: "lines", x: angles.map((angle) => radius * Math.cos(angle)), y: angles.map((angle) => radius * Math.sin(angle)), line: { color: colour, width: 1.6 }, hoverinfo: "skip", showlegend: false };
 }
 
 /**

@@ -9,6 +9,7 @@ import { nodeFrames } from "./well-frames.js";
 
 /** How many times the string's distance from the axis of the hole is drawn. */
 const EXAGGERATIONS = ["1", "20", "100", "300"];
+const USUAL = 20;
 
 /**
  * @param {import("./point.js").PointContext} context
@@ -20,7 +21,7 @@ export function well(context) {
   const controls = h("div", { class: "controls" });
   const caption = h("figcaption", {});
   const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
-  const factor = () => (EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : 20);
+  const factor = () => exaggeration(query, USUAL);
 
   async function redraw() {
     const name = colour();
@@ -28,7 +29,7 @@ export function well(context) {
       context.keep({ [key]: value });
       attend(redraw(), context.signal);
     };
-    fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor()), set("exaggerate")));
+    fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), exaggerationChoice(factor(), set("exaggerate")));
     const statics = (await context.table("statics")).columns;
     const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
     const values = onNodes(table, name, statics.measured_depth.length);
@@ -38,7 +39,7 @@ export function well(context) {
     const { soft, line: faint } = inks();
     const texts = values.map((value, index) => `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`);
     const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: faint, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
-    fill(caption, `The string at rest; its distance from the axis of the hole is drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}. Drag to turn, scroll to come nearer.`);
+    fill(caption, `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`);
     await draw(
       place,
       [
@@ -62,6 +63,25 @@ export function well(context) {
       return { asked, python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n") };
     },
   };
+}
+
+/**
+ * How many times the distance from the axis is drawn, as the link says.
+ * @param {URLSearchParams} query
+ * @param {number} usual
+ */
+export function exaggeration(query, usual) {
+  return EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : usual;
+}
+
+/** @param {number} factor @param {(value: string) => void} onChange */
+export function exaggerationChoice(factor, onChange) {
+  return choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor), onChange);
+}
+
+/** @param {string} whose @param {number} factor */
+export function saysExaggeration(whose, factor) {
+  return `${whose} distance from the axis of the hole is drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.`;
 }
 
 /**

@@ -221,6 +221,41 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
     assert "true_vertical_depth" in tables["statics[1]"]
 
 
+def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, named: Sweep) -> None:
+    axes = {"well.hole_diameter": [0.2159, 0.26]}
+    holes = client.submit("paper-200m", set=SHORT, axes=axes, name="two holes").wait(timeout=120.0)
+    page = opened(f"#/compare?points={key(holes)},{key(holes, 2)}&view=orbit&depth=57.73&zoom=hole")
+    circles = "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, line }) => [x[0], line.color])"
+    picture = drawn(page, "Orbits")
+    orbits = picture.evaluate("place => place.data.filter(({ showlegend }) => showlegend).map(({ line }) => line.color)")
+    statics = [point.statics() for point in (holes.point(1), holes.point(2))]
+    clearances = [float(table["clearance"][list(table["node"]).index(49)]) for table in statics]
+    shown = picture.evaluate(circles)
+    assert [radius for radius, _ in shown] == pytest.approx([1e3 * clearance for clearance in clearances])
+    assert [colour for _, colour in shown] == orbits
+    caption = page.locator("figcaption")
+    for number, clearance in enumerate(clearances, 1):
+        expect(caption).to_contain_text(f"point {number} {float(f'{1e3 * clearance:.4g}'):g} mm from the axis")
+    expect(caption).not_to_contain_text("grey")
+    # Points of one hole have one.
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=orbit&depth=57.73")
+    assert len(drawn(page, "Orbits").evaluate(circles)) == 1
+    expect(page.locator("figcaption")).to_contain_text("On the grey circle the node touches the wall.")
+
+
+def test_compared_wells_say_how_far_from_the_axis_strings_are_drawn(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=well")
+    picture = drawn(page, "^Well$")
+    caption = page.locator("figcaption")
+    expect(caption).to_contain_text("drawn 100 times as large")
+    read = "place => [...place.data[0].y]"
+    before = picture.evaluate(read)
+    page.get_by_label("Distance from the axis").select_option("1")
+    expect(caption).to_contain_text("drawn to scale")
+    until(page, lambda: picture.evaluate(read) != before)
+    assert "exaggerate=1" in page.url
+
+
 def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=history&from=0&to=0.5")
     picture = drawn(page, "Histories").locator(".nsewdrag").first

@@ -6,6 +6,27 @@ import { shown, title, unit } from "./units.js";
 /** Lines of a spectrum that are named in its picture. */
 const NAMED = 6;
 
+/** Frequencies up to which full spectra are shown [Hz]. */
+const RANGES = ["5", "20", "50", "100"];
+
+/**
+ * The frequencies up to which a spectrum can be shown: as far as samples at a rate have any.
+ * @param {number} rate [Hz]
+ */
+export function rangesOf(rate) {
+  return RANGES.filter((text) => Number(text) <= rate / 2);
+}
+
+/**
+ * How far a spectrum is shown, as the link says [Hz].
+ * @param {URLSearchParams} query
+ * @param {number} rate of the samples [Hz]
+ */
+export function spectrumRange(query, rate) {
+  const offered = rangesOf(rate);
+  return Number(offered.find((text) => text === query.get("range")) ?? (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)));
+}
+
 /**
  * Displacements across the hole and from the low side up, in served units.
  * Forward whirl, with the rotation of the string, goes clockwise.
@@ -134,28 +155,46 @@ function readable(peaks, last) {
 /**
  * What a line is a multiple of, such as `2 × rotation`, where it is one nearer than half the resolution.
  * @param {number} frequency [Hz]
- * @param {number} rotation [Hz]
+ * @param {number} base [Hz]
  * @param {number} resolution [Hz]
+ * @param {string} name of the base
  */
-export function multiple(frequency, rotation, resolution) {
-  if (rotation <= 0) return "";
-  const order = Math.round(Math.abs(frequency) / rotation);
-  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * rotation) <= resolution / 2 ? `${order} × rotation` : "";
+export function multiple(frequency, base, resolution, name) {
+  if (base <= 0) return "";
+  const order = Math.round(Math.abs(frequency) / base);
+  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * base) <= resolution / 2 ? `${order} × ${name}` : "";
 }
 
-/** Part of a frequency within which a mode counts as that of a line: contacts that lift off shift lines. */
-const NEAR = 0.03;
+/** Part of a frequency within which a mode counts as that of a line, beside half the resolution: contacts that lift off shift lines. */
+const NEAR = 0.01;
+/** Half of the band about a line in which modes are counted: a part of its frequency, and so many times what is near. */
+const [BAND, WIDER] = [0.25, 5];
+/** Modes that may be near a line by chance, where one is named. */
+const BY_CHANCE = 0.3;
+
+/** @typedef {{frequency_hz: number, whirl: number, kind: string, growth_rate: number, measured_depth: number}} Mode */
 
 /**
- * The mode that is nearest to a line and not of the other sense of whirl; null where none is near.
+ * The mode that is nearest to a line and not of the other sense of whirl; where modes are so dense that one is near any line by chance,
+ * how many there are about it instead.
  * @param {number} frequency [Hz], negative of backward whirl
- * @param {{frequency_hz: number, whirl: number, kind: string, growth_rate: number, measured_depth: number}[]} modes
+ * @param {Mode[]} modes
  * @param {number} resolution [Hz]
+ * @returns {{mode: Mode | null, among: {count: number, from: number, to: number} | null}}
  */
 export function modeOf(frequency, modes, resolution) {
-  const distance = (/** @type {any} */ mode) => Math.abs(mode.frequency_hz - Math.abs(frequency));
-  const within = Math.max(resolution, NEAR * Math.abs(frequency));
+  const line = Math.abs(frequency);
+  const distance = (/** @type {Mode} */ mode) => Math.abs(mode.frequency_hz - line);
   // Motion to and fro has both senses.
-  const near = modes.filter((mode) => distance(mode) <= within && mode.whirl * frequency > -0.5 * Math.abs(frequency));
-  return near.reduce((/** @type {any} */ best, mode) => (best && distance(best) <= distance(mode) ? best : mode), null);
+  const alike = modes.filter((mode) => mode.whirl * frequency > -0.5 * line);
+  const within = resolution / 2 + NEAR * line;
+  const half = Math.max(BAND * line, WIDER * within);
+  // Beyond the highest mode none were looked for.
+  const highest = modes.reduce((most, mode) => Math.max(most, mode.frequency_hz), line);
+  const [from, to] = [Math.max(0, line - half), Math.min(highest, line + half)];
+  const count = alike.filter((mode) => mode.frequency_hz >= from && mode.frequency_hz <= to).length;
+  const near = alike.filter((mode) => distance(mode) <= within);
+  if (!near.length) return { mode: null, among: null };
+  if ((count * 2 * within) / (to - from) > BY_CHANCE) return { mode: null, among: { count, from, to } };
+  return { mode: near.reduce((best, mode) => (distance(best) <= distance(mode) ? best : mode)), among: null };
 }

@@ -5,15 +5,17 @@ import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { pythonNode } from "./lines.js";
 import { attend } from "./notices.js";
-import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, rangesOf, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
-import { biasOver, STATISTICS, verifiedWindow } from "./statistics.js";
+import { biasOver, spectrumWindow, STATISTICS, verifiedWindow } from "./statistics.js";
 import { say, shown, unit } from "./units.js";
 
 /** Samples in a picture: two for each pixel of a wide screen. */
 const SHOWN = 4000;
 /** Samples that a spectrum needs. */
 const LEAST = 8;
+/** Modes are looked for up to this frequency at most [Hz]. */
+const HIGHEST_MODE_HZ = 50;
 /** How long a window that is dragged must rest before the service is asked for it. */
 const REST_MS = 100;
 
@@ -55,6 +57,9 @@ export function motion(context) {
   };
   const isZoomed = () => (query.get("zoom") ?? "motion") === "motion";
   const isLog = () => query.get("amplitude") === "log";
+  const range = () => spectrumRange(query, recording.rate_hz);
+  /** Modes are looked for as far as the spectrum goes, and the service does. */
+  const modesUpTo = () => Math.min(range(), HIGHEST_MODE_HZ);
   const weighting = () => (query.get("window") === "rectangular" ? "rectangular" : "hann");
 
   /** @param {string} name @param {string} value */
@@ -83,6 +88,10 @@ export function motion(context) {
       choice("Orbit shows", [["motion", "the motion"], ["hole", "the whole hole"]], isZoomed() ? "motion" : "hole", (value) => {
         set("zoom", value);
         void drawOrbit();
+      }),
+      choice("Frequencies up to", rangesOf(recording.rate_hz).map((text) => [text, `${text} Hz`]), String(range()), (value) => {
+        set("range", value);
+        void drawWindow();
       }),
       choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], isLog() ? "log" : "linear", (value) => {
         set("amplitude", value);
@@ -247,7 +256,7 @@ export function motion(context) {
   function ofWindow(from, to) {
     return Promise.all([
       context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
-      context.table("spectrum", { ...selector(), from, to, window: weighting(), peaks: 10 }),
+      context.table("spectrum", { ...selector(), from, to, window: weighting(), range_hz: range(), peaks: 10 }),
       context.table("statistics", { ...selector(), from, to }),
     ]);
   }
@@ -290,26 +299,59 @@ export function motion(context) {
     fill(statistics, h("h2", {}, "Statistics of the window"), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)])));
   }
 
-  /** The modes about the equilibrium, which the service looks for once. @type {Promise<any> | undefined} */
-  let modes;
+  /**
+   * What stands beside a line of the spectrum: its bias where it is the highest of a window that the summary has.
+   * @param {number} frequency [Hz]
+   * @returns {(name: string) => string}
+   */
+  function biasOf(frequency) {
+    const suffix = `_${windowed.lines.attributes.node}_w${spectrumWindow(point.scenario, span())}`;
+    const summarised = point.summary[`line_frequency_hz${suffix}`];
+    // The summary weights by Hann's window.
+    const isIt = weighting() === "hann" && typeof summarised === "number" && Math.abs(frequency - summarised) < windowed.lines.attributes.resolution / 2;
+    return (name) => (isIt ? context.bias(name + suffix) : "");
+  }
+
+  /**
+   * Of what a line of the spectrum is a multiple: of the rotation, or else of the highest line.
+   * @param {number} frequency [Hz]
+   */
+  function kindOf(frequency) {
+    const { resolution } = windowed.lines.attributes;
+    const turns = multiple(frequency, operation.rotation_speed_rpm / 60, resolution, "rotation");
+    const highest = Math.abs(namedLines(windowed.lines)[0].frequency);
+    const harmonic = Math.abs(frequency) > 1.5 * highest ? multiple(frequency, highest, resolution, say("frequency", highest)) : "";
+    return { text: turns || harmonic, isHarmonic: harmonic !== "" };
+  }
+
+  /** The modes about the equilibrium up to a frequency, which the service looks for once. @type {Map<number, Promise<any>>} */
+  const modes = new Map();
 
   /** Puts the modes beside the lines, once they are found. */
   async function drawModes() {
     const { lines } = windowed;
-    const found = await (modes ??= get(`${context.path}/modes`, { to_hz: 20 }, signal).catch((error) => ({ modes: [], problem: error.message })));
+    const highest = modesUpTo();
+    const asked = modes.get(highest) ?? get(`${context.path}/modes`, { to_hz: highest }, signal).catch((error) => ({ modes: [], problem: error.message }));
+    modes.set(highest, asked);
+    const found = await asked;
     if (windowed?.lines !== lines) return;
     for (const cell of /** @type {NodeListOf<HTMLElement>} */ (listed.querySelectorAll("[data-frequency]"))) {
-      const mode = modeOf(Number(cell.dataset.frequency), found.modes, lines.attributes.resolution);
-      fill(cell, mode && `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`);
+      const { mode, among } = modeOf(Number(cell.dataset.frequency), found.modes, lines.attributes.resolution);
+      if (among) fill(cell, h("span", { class: "soft" }, `among ${among.count} modes from ${say("frequency", among.from, 3)} to ${say("frequency", among.to, 3)}`));
+      else fill(cell, mode && `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`);
     }
-    fill(about, found.problem ?? `Beside each line stands the mode about the equilibrium that is nearest to it, within the resolution or 3 % of the frequency; ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}.`);
+    fill(about, found.problem ?? `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}.`);
   }
   const about = h("p", { class: "small soft", role: "status" });
 
   function drawLines() {
     const { lines } = windowed;
-    const turns = operation.rotation_speed_rpm / 60;
-    const rows = namedLines(lines).map((line) => h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency)), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude)), h("td", {}, multiple(line.frequency, turns, lines.attributes.resolution)), h("td", { "data-frequency": line.frequency }, "…")));
+    const named = namedLines(lines);
+    const rows = named.map((line) => {
+      const is = kindOf(line.frequency);
+      const bias = biasOf(line.frequency);
+      return h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency) + bias("line_frequency_hz")), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude) + bias("line_amplitude")), h("td", {}, is.text), h("td", is.isHarmonic ? {} : { "data-frequency": line.frequency }, is.isHarmonic ? "" : "…"));
+    });
     const resolved = lines.attributes.resolved_hz ?? point.summary.resolved_hz;
     fill(
       listed,
@@ -341,11 +383,11 @@ export function motion(context) {
         asked: [
           { table: "history", query: selector() },
           { table: "orbit", query: ofWindow },
-          { table: "spectrum", query: { ...ofWindow, window: weighting() } },
+          { table: "spectrum", query: { ...ofWindow, window: weighting(), range_hz: range() } },
           { table: "statistics", query: ofWindow },
-          { table: "modes", query: { to_hz: 20 }, isDocument: true },
+          { table: "modes", query: { to_hz: modesUpTo() }, isDocument: true },
         ],
-        python: `history = point.history(${whole}).to_pandas()\norbit = point.orbit(${cut}).to_pandas()\nspectrum = point.spectrum(${cut}, window="${weighting()}").to_pandas()\nstatistics = point.statistics(${cut}).to_pandas()\nmodes = point.modes(to_hz=20)["modes"]\nplot.orbit(point, ${cut})\nplot.spectrum(point, ${cut}, window="${weighting()}")`,
+        python: `history = point.history(${whole}).to_pandas()\norbit = point.orbit(${cut}).to_pandas()\nspectrum = point.spectrum(${cut}, window="${weighting()}", range_hz=${range()}).to_pandas()\nstatistics = point.statistics(${cut}).to_pandas()\nmodes = point.modes(to_hz=${modesUpTo()})["modes"]\nplot.orbit(point, ${cut})\nplot.spectrum(point, ${cut}, window="${weighting()}", range_hz=${range()})`,
       };
     },
   };

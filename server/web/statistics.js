@@ -23,6 +23,20 @@ export function verifiedWindow({ recording, duration }) {
   return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
 }
 
+/** Samples that a spectrum needs. */
+const FEWEST = 8;
+
+/**
+ * The number of the scenario's window of spectra that a window is, from 1; 0 of any other.
+ * @param {any} scenario
+ * @param {{from: number, to: number}} window [s]
+ */
+export function spectrumWindow({ recording, duration }, window) {
+  const first = Math.ceil(((duration * 5) / 6) * recording.rate_hz) / recording.rate_hz;
+  const usual = (duration - first) * recording.rate_hz >= FEWEST ? [{ from: first, to: duration }] : [];
+  return 1 + (recording.spectrum_windows ?? usual).findIndex((/** @type {{from: number, to: number}} */ known) => isSame(window, known, duration));
+}
+
 /**
  * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
  * @param {any} scenario
@@ -31,6 +45,14 @@ export function verifiedWindow({ recording, duration }) {
  */
 export function biasOver(scenario, { from, to }, bias) {
   const verified = verifiedWindow(scenario);
-  const isVerified = [from - verified.from, to - verified.to].every((apart) => Math.abs(apart) <= SAME * scenario.duration);
-  return isVerified ? bias : () => "";
+  return isSame({ from, to }, verified, scenario.duration) ? bias : () => "";
+}
+
+/**
+ * @param {{from: number, to: number}} one
+ * @param {{from: number, to: number}} other
+ * @param {number} duration of the run [s]
+ */
+function isSame(one, other, duration) {
+  return [one.from - other.from, one.to - other.to].every((apart) => Math.abs(apart) <= SAME * duration);
 }

@@ -13,7 +13,7 @@ from pathlib import Path
 from urllib.parse import parse_qs
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
@@ -252,6 +252,87 @@ def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) 
     other = opened(f"#{page.url.partition('#')[2]}")
     picture = drawn(other, "^(The well and the string in it|Well)$")
     until(other, lambda: picture.evaluate(camera) == pytest.approx(turned, abs=0.1))
+
+
+def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Opens, client: Client) -> None:
+    windows = [{"from": 0.0, "to": 0.4}, {"from": 0.1, "to": 0.5}]
+    changes = SHORT | {"recording.spectrum_windows": windows}
+    verified = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, verify=1).wait(timeout=180.0)
+    bias = float(verified.verification()["bias_line_frequency_hz_49_w2"][0])
+    page = opened(f"#/sweeps/{verified.id}/points/1?view=motion&node=1&from=0.1&to=0.5&range=100")
+    lines = page.get_by_role("region", name="Lines, scrollable").get_by_role("row")
+    shown = f"{float(f'{abs(bias):.2g}'):g} Hz)"
+    expect(lines.filter(has_text="(bias ")).to_have_count(1)
+    expect(lines.nth(1)).to_contain_text(shown)
+    for window in ("from=0.1&to=0.45", "from=0.1&to=0.5&window=rectangular"):
+        page.goto("about:blank")
+        page.goto(f"{client.server}/#/sweeps/{verified.id}/points/1?view=motion&node=1&{window}")
+        expect(lines.nth(1)).to_be_visible()
+        expect(lines.filter(has_text="(bias ")).to_have_count(0)
+
+
+def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=1")
+    last = "place => Math.max(...place.data[0].x)"
+    picture = drawn(page, "Full spectrum of node 49")
+    assert 15.0 < picture.evaluate(last) <= 20.0
+    with page.expect_request(re.compile(r"/modes\?to_hz=50$")):
+        page.get_by_label("Frequencies up to").select_option("100")
+    until(page, lambda: 90.0 < picture.evaluate(last) <= 100.0)
+    assert "range=100" in page.url
+    lines = shown_lines(page)
+    assert "range_hz=100" in lines["curl"]
+    assert "range_hz=100" in lines["Python"]
+
+
+def test_a_mode_is_named_beside_a_line_only_where_that_says_something(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion")
+    drawn(page, "Full spectrum of node")
+    module = page.evaluate("document.querySelector('script[src$=\"main.js\"]').src.replace('main.js', 'orbit.js')")
+    read = """async ([module, line, frequencies, resolution]) => {
+        const { modeOf } = await import(module);
+        const modes = frequencies.map((frequency_hz) => ({ frequency_hz, whirl: 1, kind: "lateral" }));
+        const { mode, among } = modeOf(line, modes, resolution);
+        return [mode?.frequency_hz ?? null, among?.count ?? null];
+    }"""
+
+    def beside(line: float, frequencies: list[float], resolution: float) -> list[float | None]:
+        return list(page.evaluate(read, [module, line, frequencies, resolution]))
+
+    alone = [0.9, 2.0, 3.1, 4.4]
+    assert beside(2.03, alone, 0.1) == [2.0, None]
+    assert beside(2.1, alone, 0.1) == [None, None]
+    # Backward whirl is none of theirs.
+    assert beside(-2.03, alone, 0.1) == [None, None]
+    dense = [0.05 * count for count in range(1, 200)]
+    assert beside(2.03, dense, 0.1) == [None, 20]
+    # With a run of 0.4 s every line is near some mode.
+    table = page.get_by_role("region", name="Lines, scrollable")
+    expect(table.get_by_text(re.compile(r"among \d+ modes from")).first).to_be_visible()
+
+
+def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sweep) -> None:
+    page = opened("#/nowhere")
+
+    def harmonics(route: Route) -> None:
+        """A spectrum whose lines are at 2.16 Hz and twice that."""
+        answer = route.fetch()
+        spectrum = answer.json()
+        spectrum["attributes"]["resolution"] = 0.05
+        spectrum["attributes"]["peaks"] = [
+            {"frequency": frequency, "amplitude": amplitude, "whirl": "forward", "is_resolved": True}
+            for frequency, amplitude in ((2.16, 0.002), (4.32, 0.001), (5.0, 0.0005))
+        ]
+        route.fulfill(response=answer, json=spectrum)
+
+    page.route("**/spectrum?**", harmonics)
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion"))
+    rows = page.get_by_role("region", name="Lines, scrollable").get_by_role("row")
+    expect(rows).to_have_count(4)
+    is_column = [rows.nth(number).get_by_role("cell").nth(3).text_content() for number in (1, 2, 3)]
+    assert is_column == ["", "2 \N{MULTIPLICATION SIGN} 2.16 Hz", ""]
+    # Of what is a multiple no mode is told.
+    expect(rows.nth(2).get_by_role("cell").nth(4)).to_have_text("")
 
 
 def test_the_link_holds_the_time_and_the_view_of_the_string(opened: Opens, recorded: Sweep) -> None:

@@ -92,7 +92,7 @@ export async function show(main, route, signal) {
   function add(sweeps) {
     for (const sweep of sweeps) {
       if (known.has(sweep.id)) continue;
-      const entry = { sweep, row: h("tr", {}), pace: new Pace() };
+      const entry = { sweep, row: h("tr", { "data-sweep": sweep.id }), pace: new Pace() };
       entry.pace.note(sweep);
       known.set(sweep.id, entry);
       drawRow(entry.row, sweep, entry.pace);
@@ -106,8 +106,15 @@ export async function show(main, route, signal) {
     }
   }
 
+  /** Whether a sweep belongs in the list, as the service decides it. @param {any} sweep */
+  function passes(sweep) {
+    const { state, name, owner, tag } = filters();
+    return (!state || sweep.state === state) && (!owner || sweep.owner === owner) && (!tag || (sweep.tags ?? []).includes(tag)) && (sweep.name ?? "").toLowerCase().includes(name.toLowerCase());
+  }
+
   /** @param {any} sweep */
   function update(sweep) {
+    if (!passes(sweep)) return forget(sweep.id);
     const entry = known.get(sweep.id);
     if (!entry) return;
     entry.sweep = sweep;
@@ -139,6 +146,7 @@ export async function show(main, route, signal) {
 
   /** @param {string} id */
   function forget(id) {
+    if (!known.has(id)) return;
     // Where the selected sweep was, its neighbour is.
     if (id === selected && body.rows.length > 1) move(known.get(id)?.row === body.rows[body.rows.length - 1] ? -1 : 1);
     known.get(id)?.row.remove();
@@ -146,19 +154,26 @@ export async function show(main, route, signal) {
     add([]);
   }
 
+  /** Numbers the looks at the first page, so that an older one is dropped. */
+  let looks = 0;
   /** Reads the first page of the list again. */
   async function poll() {
     const mine = generation;
+    const look = ++looks;
     const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
-    if (mine !== generation) return;
+    if (mine !== generation || look !== looks) return;
+    // Identifiers grow with time: what that page would have and has not does not pass the filters any more.
+    const [listed, last] = [new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)), page.next ? page.sweeps.at(-1).id : ""];
+    for (const id of [...known.keys()]) if (id > last && !listed.has(id)) forget(id);
     const fresh = page.sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id));
     for (const sweep of page.sweeps) update(sweep);
-    for (const sweep of fresh.reverse()) {
-      const entry = { sweep, row: h("tr", {}), pace: new Pace() };
+    for (const sweep of fresh) {
+      const entry = { sweep, row: h("tr", { "data-sweep": sweep.id }), pace: new Pace() };
       entry.pace.note(sweep);
       known.set(sweep.id, entry);
       drawRow(entry.row, sweep, entry.pace);
-      body.prepend(entry.row);
+      const below = [...body.rows].find((row) => (row.dataset.sweep ?? "") < sweep.id);
+      body.insertBefore(entry.row, below ?? null);
     }
     if (fresh.length) add([]);
   }
@@ -285,14 +300,15 @@ export function progressPart(sweep, pace) {
   const left = pace.left();
   const words = [`${counts.succeeded} of ${counts.total} succeeded`];
   if (counts.running) words.push(`${counts.running} running`);
-  if (counts.failed) words.push(`${counts.failed} failed`);
+  const isMarked = sweep.state === "completed" && counts.failed > 0;
+  if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
   if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
   if (sweep.state === "running") words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
   const percent = Math.floor(100 * sweep.progress);
   return h(
     "div",
     {},
-    h("span", { class: `state ${sweep.state}` }, sweep.state),
+    h("span", { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` }, isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state),
     !isFinal(sweep) && [h("span", { class: "soft small" }, ` ${percent} %`), h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` })],
     h("div", { class: "small soft" }, words.join(", ")),
   );

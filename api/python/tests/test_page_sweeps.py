@@ -730,3 +730,49 @@ def complete(database: Path, known: Sweep) -> None:
             store.execute("UPDATE work SET state = 'done'")
             store.execute("UPDATE sweep SET points_done = points_queued, points_queued = 0, finished = created")
             store.execute(trigger)
+
+
+def test_a_sweep_that_passes_the_filters_no_more_leaves_the_list(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        names = ["oldest", "stays", "leaves"]
+        sweeps = {name: client.submit("paper-200m", set=SHORT, name=name, tags=["kept"]) for name in names}
+        page = opened("#/sweeps?state=running", address=idle)
+        rows = page.get_by_role("table", name="Sweeps").locator("tbody tr")
+        expect(rows).to_have_count(3)
+        sweeps["leaves"].cancel()
+        expect(rows).to_have_count(2)
+        expect(page.get_by_text("2 sweeps.")).to_be_visible()
+        # One that comes back has its old place.
+        sweeps["stays"].pause()
+        expect(rows).to_have_count(1)
+        sweeps["stays"].resume()
+        expect(rows).to_have_count(2)
+        expect(rows.first).to_contain_text("stays")
+        page = opened("#/sweeps?name=OLD", address=idle)
+        expect(rows := page.get_by_role("table", name="Sweeps").locator("tbody tr")).to_have_count(1)
+        sweeps["oldest"].change(name="renamed")
+        expect(rows).to_have_count(0)
+        expect(page.get_by_text("No sweep matches these filters.")).to_be_visible()
+
+
+@pytest.fixture(scope="module")
+def failing(client: Client) -> Sweep:
+    """Two points that fail: without its wall the string is buckled by the weight on bit."""
+    axes = {"flow_rate": [0.013, 0.014], "mud_density": [1200]}
+    changes = {**SHORT, "effects.contact": "off"}
+    return client.submit("paper-200m", set=changes, axes=axes, name="all of it fails").wait(timeout=120.0)
+
+
+def test_a_sweep_in_which_points_failed_is_marked_so(opened: Opens, failing: Sweep, client: Client) -> None:
+    axes = {"flow_rate": [0.013, 0.015], "operation.rotation_speed_rpm": [90]}
+    mark = "element => [getComputedStyle(element).color, getComputedStyle(element, '::before').content]"
+    page = opened(f"#/sweeps/{failing.id}")
+    state = page.locator(".state").filter(has_text="completed, 2 failed")
+    expect(state).to_be_visible()
+    colour, sign = state.evaluate(mark)
+    assert sign == '"✕"'
+    page = opened(f"#/sweeps?name={quote('all of it fails')}")
+    expect(page.locator("tbody .state").first).to_have_text("completed, 2 failed")
+    done = client.submit("paper-200m", set=SHORT, axes=axes, name="nothing fails").wait(timeout=120.0)
+    page = opened(f"#/sweeps/{done.id}")
+    assert page.locator(".state", has_text=re.compile("^completed$")).evaluate(mark) != [colour, sign]

@@ -104,6 +104,8 @@ export async function show(main, route, signal) {
   };
   const part = make(context);
 
+  const tabs = PARTS.map(([name]) => h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }));
+  const drawTabs = () => PARTS.forEach(([name, text], index) => (tabs[index].textContent = name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text));
   const head = h("div", {});
   const pace = new Pace();
   pace.note(sweep);
@@ -143,6 +145,7 @@ export async function show(main, route, signal) {
     context.sweep = sweep;
     pace.note(sweep);
     drawHead();
+    drawTabs();
     attend(learnPace(), signal);
     if (hasResults && waiting === undefined) waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
     if (wasFinal && !isFinal(sweep)) follow(id, { sweep: update }, signal);
@@ -161,11 +164,12 @@ export async function show(main, route, signal) {
   signal.addEventListener("abort", () => clearTimeout(waiting));
 
   drawHead();
+  drawTabs();
   fill(
     main,
     h("nav", { class: "crumbs", "aria-label": "Breadcrumb" }, h("a", { href: "#/sweeps" }, "Sweeps"), " / "),
     head,
-    h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, PARTS.map(([name, text]) => h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }, name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text))),
+    h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, tabs),
     h("section", { class: "panel", "aria-label": PARTS.find(([name]) => name === view)?.[1] ?? "" }, part.element),
     taken,
   );

@@ -776,3 +776,16 @@ def test_a_sweep_in_which_points_failed_is_marked_so(opened: Opens, failing: Swe
     done = client.submit("paper-200m", set=SHORT, axes=axes, name="nothing fails").wait(timeout=120.0)
     page = opened(f"#/sweeps/{done.id}")
     assert page.locator(".state", has_text=re.compile("^completed$")).evaluate(mark) != [colour, sign]
+
+
+def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": [0.016, 0.017, 0.018]}
+    changes = {**SHORT, "effects.contact": "off"}
+    sweep = client.submit("paper-200m", set=changes, axes=axes, name="fails by and by")
+    sweep.pause()
+    page = opened(f"#/sweeps/{sweep.id}?view=table")
+    failed = sweep.refresh().counts.failed
+    tabs = page.get_by_role("navigation", name="Views of the sweep")
+    expect(tabs.get_by_role("link", name=f"Failures ({failed})" if failed else "Failures", exact=True)).to_be_visible()
+    sweep.resume()
+    expect(tabs.get_by_role("link", name="Failures (3)")).to_be_visible(timeout=60_000)

@@ -789,3 +789,17 @@ def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Cli
     expect(tabs.get_by_role("link", name=f"Failures ({failed})" if failed else "Failures", exact=True)).to_be_visible()
     sweep.resume()
     expect(tabs.get_by_role("link", name="Failures (3)")).to_be_visible(timeout=60_000)
+
+
+@pytest.mark.parametrize(
+    ("least", "largest"),
+    [(2.27, 2.51), (1.1, 4.9), (1.0, 1.0000001), (9.7, 9.9), (0.0031, 0.0049), (1e-7, 1e3), (1e-200, 1e200)],
+)
+def test_a_logarithmic_scale_has_ticks_in_any_range(opened: Opens, least: float, largest: float) -> None:
+    ends = [math.log10(least), math.log10(largest)]
+    found = module(opened(), "plots.js", "module.logTicks(...argument)", ends)
+    assert 2 <= len(found["tickvals"]) <= 13
+    assert all(ends[0] - 1e-9 <= value <= ends[1] + 1e-9 for value in found["tickvals"])
+    said = [float(text) for text in found["ticktext"]]
+    assert said == pytest.approx([10**value for value in found["tickvals"]], rel=1e-9)
+    assert len(set(said)) == len(said)

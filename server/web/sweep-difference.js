@@ -7,11 +7,15 @@ import { attend } from "./notices.js";
 import { canvas, colourBar, DASHES, draw, LINES } from "./plots.js";
 import { go, link } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
-import { distinct, SweepTable, sweptBy } from "./table.js";
+import { distinct, SHORT, SweepTable, sweptBy } from "./table.js";
 import { label, number, say, title, unit } from "./units.js";
 
 /** Blue below, red above, apart by lightness as well for those who cannot tell them. */
 const DIVERGING = "RdBu";
+/** Of further parameters that differ, how many are told. */
+const DIFFERENCES = 6;
+/** What tells scenarios apart, but not what they simulate. */
+const NAMES = new Set(["name", "description"]);
 /** Coordinates this near to each other, relative to their size, are one. */
 const SAME = 1e-9;
 
@@ -37,6 +41,8 @@ export function difference(context) {
   let fields = { mine: ["ordinal"], theirs: ["ordinal"] };
   /** @type {Other | undefined} */
   let other;
+  /** Points whose scenarios were asked for, by address. @type {Map<string, Promise<any>>} */
+  const scenarios = new Map();
 
   const nameOf = (/** @type {any} */ sweep) => sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
   const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
@@ -121,7 +127,9 @@ export function difference(context) {
     const [first, second] = [nameOf(context.sweep), nameOf(other.sweep)];
     const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
     const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
-    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`, biasesOf(colour, first, second).map((found) => ` ${found}`));
+    const further = h("strong", {});
+    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`, biasesOf(colour, first, second).map((found) => ` ${found}`), further);
+    attend(tellApart(further, pairs[0].ordinal, other, pairs[0].partner.ordinal, [x, y]), signal);
     place.setAttribute("aria-label", `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
     const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
     const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}${context.biases.beside(colour, pair.ordinal)}`, `other: ${say(colour, pair.partner.value)}${other?.biases.beside(colour, pair.partner.ordinal) ?? ""}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
@@ -183,6 +191,31 @@ export function difference(context) {
     return { held, choices, rows };
   }
 
+  /**
+   * Says what else differs between the points of both than their results: across and up they are the same, and all else of a slice is that
+   * of any of its points.
+   * @param {HTMLElement} place
+   * @param {number} mine a point of this sweep
+   * @param {Other} whose the other sweep
+   * @param {number} theirs its partner there
+   * @param {(string | undefined)[]} shown what is across and up
+   */
+  async function tellApart(place, mine, whose, theirs, shown) {
+    const [here, there] = await Promise.all([scenarioOf(context.sweep.id, mine), scenarioOf(whose.sweep.id, theirs)]);
+    const differing = apart(here, there).filter(([path]) => !shown.some((axis) => axis === path || (axis && axis === SHORT[path])));
+    if (!differing.length) return;
+    const words = differing.slice(0, DIFFERENCES).map(([path, one, another]) => `${label(path)} ${say(path, another)} instead of ${say(path, one)}`);
+    const further = differing.length - words.length;
+    fill(place, ` ${nameOf(whose.sweep)} also has other parameters than ${nameOf(context.sweep)}: ${words.join(", ")}${further ? `, and ${further} more` : ""}.`);
+  }
+
+  /** @param {string} sweep @param {number} ordinal @returns {Promise<any>} */
+  async function scenarioOf(sweep, ordinal) {
+    const path = `/v1/sweeps/${encodeURIComponent(sweep)}/points/${ordinal}`;
+    const point = await (scenarios.get(path) ?? scenarios.set(path, get(path, {}, signal)).get(path));
+    return point.scenario;
+  }
+
   /** What was found of the biases of both. @param {string} colour @param {string} first @param {string} second */
   function biasesOf(colour, first, second) {
     return [[first, context.biases.say(colour)], [second, other?.biases.say(colour)]].filter(([, found]) => found).map(([name, found]) => `${name}: ${found}`);
@@ -194,6 +227,24 @@ export function difference(context) {
     fields: () => fields.mine,
     others: () => (other && query.get("with") === other.sweep.id ? [{ id: other.sweep.id, path: other.table.path, fields: fields.theirs }] : []),
   };
+}
+
+/**
+ * The fields in which two scenarios differ, each with both values.
+ * @param {any} one
+ * @param {any} another
+ * @param {string} [path] where both stand
+ * @returns {[path: string, one: unknown, another: unknown][]}
+ */
+function apart(one, another, path = "") {
+  const isBoth = [one, another].every((value) => typeof value === "object" && value !== null);
+  if (isBoth && Array.isArray(one) === Array.isArray(another)) {
+    const names = [...new Set([...Object.keys(one), ...Object.keys(another)])].filter((name) => path || !NAMES.has(name));
+    return names.flatMap((name) => apart(one[name], another[name], Array.isArray(one) ? `${path}[${name}]` : path ? `${path}.${name}` : name));
+  }
+  const isSameNumber = typeof one === "number" && typeof another === "number" && isSame(one, another);
+  const inWords = (/** @type {unknown} */ value) => (value === null || value === undefined ? "none" : typeof value === "object" ? "another" : value);
+  return one === another || isSameNumber ? [] : [[path, inWords(one), inWords(another)]];
 }
 
 /** @param {string[]} axes @param {string} colour */

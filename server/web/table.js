@@ -70,7 +70,7 @@ export class SweepTable {
 }
 
 /** Paths of a scenario that the table calls by a shorter name. @type {Record<string, string>} */
-const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
+export const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
 
 /**
  * The swept parameters, as the table calls them: in the request's order, how it gives the values of each, and what it calls them.

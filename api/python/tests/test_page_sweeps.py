@@ -803,3 +803,18 @@ def test_a_logarithmic_scale_has_ticks_in_any_range(opened: Opens, least: float,
     said = [float(text) for text in found["ticktext"]]
     assert said == pytest.approx([10**value for value in found["tickvals"]], rel=1e-9)
     assert len(set(said)) == len(said)
+
+
+def test_a_difference_tells_what_else_the_sweeps_differ_in(opened: Opens, named: Sweep, other: Sweep) -> None:
+    # The other one turns at 90 rpm, by a change.
+    view = f"#/sweeps/{named.id}?view=difference&colour=contact_count&with={other.id}"
+    speed = "operation.rotation_speed_rpm"
+    page = opened(f"{view}&at.{speed}=120")
+    drawn(page, "difference of")
+    caption = page.locator("figcaption")
+    expect(caption).to_contain_text(
+        re.compile("also has other parameters than .*: rotation speed 90 rpm instead of 120 rpm")
+    )
+    page.get_by_role("combobox", name="rotation speed").select_option("90")
+    expect(caption).to_contain_text("2 points that both have")
+    expect(caption).not_to_contain_text("other parameters")

@@ -3,6 +3,7 @@
 import { choice, fill, h } from "./dom.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "./plots.js";
+import { link } from "./router.js";
 import { keyboard } from "./sweep-cursor.js";
 import { finer } from "./sweep-finer.js";
 import { ends, layered } from "./sweep-layers.js";
@@ -23,7 +24,9 @@ export function map(context) {
   const controls = h("div", { class: "controls" });
   const region = finer(context);
   const cursor = keyboard(place, context.open);
-  const element = h("div", {}, controls, h("figure", {}, place, caption, cursor.element), region.element);
+  const empty = h("p", { class: "empty", hidden: true });
+  const figure = h("figure", {}, place, caption, cursor.element);
+  const element = h("div", {}, controls, empty, figure, region.element);
   region.element.addEventListener("closed", () => {
     void adjust(place, { dragmode: "zoom", selections: [] });
   });
@@ -70,6 +73,13 @@ export function map(context) {
       axes.length > 0 && isGrid && h("button", { "aria-expanded": String(!region.element.hidden), onclick: () => begin() }, "Finer grid"),
       slices.map(({ axis, all, value }) => choice(label(axis), all.map((entry) => [String(entry), say(axis, entry)]), String(value), set(`at.${axis}`))),
     );
+    const isAllFailed = !query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
+    empty.hidden = !isAllFailed;
+    figure.hidden = isAllFailed;
+    if (isAllFailed) {
+      fill(empty, "All points of this sweep failed: why is told under ", h("a", { href: link(["sweeps", context.sweep.id], { view: "failures" }) }, "Failures"), ".");
+      return;
+    }
     const sides = y ? [x, y] : [x];
     /** @param {any} [range] of a region, as shown; without one the whole map */
     const chooseRegion = (range) => region.choose(sides.map((name, order) => {
@@ -204,5 +214,5 @@ export function undelayed(redraw, context) {
 
 /** The result that an engineer asks for first. @param {string[]} results */
 export function preferred(results) {
-  return results.find((name) => name.startsWith("orbit_radius_rms")) ?? results.find((name) => name === "friction_coefficient_max") ?? results.find((name) => name !== "state") ?? "state";
+  return results.find((name) => name.startsWith("orbit_radius_rms")) ?? results.find((name) => name === "friction_coefficient_max") ?? results.find((name) => !["state", "error_time", "error_node"].includes(name)) ?? "state";
 }

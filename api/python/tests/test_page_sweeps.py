@@ -818,3 +818,11 @@ def test_a_difference_tells_what_else_the_sweeps_differ_in(opened: Opens, named:
     page.get_by_role("combobox", name="rotation speed").select_option("90")
     expect(caption).to_contain_text("2 points that both have")
     expect(caption).not_to_contain_text("other parameters")
+
+
+def test_the_first_view_of_a_sweep_that_failed_leads_to_its_failures(opened: Opens, failing: Sweep) -> None:
+    page = opened(f"#/sweeps/{failing.id}")
+    expect(page.get_by_text("All points of this sweep failed")).to_be_visible()
+    expect(page.get_by_role("figure", name="Map of the sweep")).to_be_hidden()
+    page.get_by_role("region", name="Map").get_by_role("link", name="Failures").click()
+    expect(page.get_by_role("link", name="2", exact=True)).to_be_visible()

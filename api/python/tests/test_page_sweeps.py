@@ -826,3 +826,22 @@ def test_the_first_view_of_a_sweep_that_failed_leads_to_its_failures(opened: Ope
     expect(page.get_by_role("figure", name="Map of the sweep")).to_be_hidden()
     page.get_by_role("region", name="Map").get_by_role("link", name="Failures").click()
     expect(page.get_by_role("link", name="2", exact=True)).to_be_visible()
+
+
+def test_intervals_of_indices_are_shown_to_their_ends(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": Range(0.01, 0.06), "mud_density": Range(1200, 2100)}
+    drawn_points = client.submit(
+        "paper-200m", set=SHORT, axes=axes, design="latin_hypercube", samples=16, seed=3, outputs="summary"
+    )
+    drawn_points.wait(timeout=180.0)
+    page = opened(f"#/sweeps/{drawn_points.id}?view=effects&result=tension_top")
+    picture = drawn(page, "Shares of the variance")
+    read = """place => {
+        const [{ x, error_x }] = place.data;
+        const ends = x.flatMap((value, at) => [value - error_x.arrayminus[at], value + error_x.array[at]]);
+        return { ends, range: place.layout.xaxis.range };
+    }"""
+    found = picture.evaluate(read)
+    assert min(found["ends"]) < -0.01, "an interval that reaches below what was shown"
+    assert found["range"][0] <= min(found["ends"])
+    assert max(found["ends"]) <= found["range"][1]

@@ -42,7 +42,9 @@ export function parallel(context) {
     };
     const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));
-    const names = [...new Set([...axes, beside, colour])];
+    const usual = [...new Set([...axes, beside, colour])];
+    const moved = (query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
+    const names = [...new Set([...moved, ...usual])];
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
     const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
     if (!rows.length) {
@@ -56,7 +58,11 @@ export function parallel(context) {
     const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
     toldOf = (line) => read(Number(ordinals[rows[line]]), names, columns.map((column) => column[rows[line]]));
     shape.removeAllListeners?.("plotly_restyle");
-    shape.on?.("plotly_restyle", () => context.keep({ brush: written(shape.data[0].dimensions) || null }));
+    shape.on?.("plotly_restyle", () => {
+      const { dimensions } = shape.data[0];
+      const order = dimensions.map((/** @type {{name: string}} */ { name }) => name).join(",");
+      context.keep({ brush: written(dimensions) || null, order: order === usual.join(",") ? null : order });
+    });
   }
 
   /** Says which point a line is of. @param {number} ordinal @param {string[]} names @param {unknown[]} values */

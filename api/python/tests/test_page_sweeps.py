@@ -845,3 +845,22 @@ def test_intervals_of_indices_are_shown_to_their_ends(opened: Opens, client: Cli
     assert min(found["ends"]) < -0.01, "an interval that reaches below what was shown"
     assert found["range"][0] <= min(found["ends"])
     assert max(found["ends"]) <= found["range"][1]
+
+
+def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
+    picture = drawn(page, "Parallel coordinates")
+    order = "place => place.data[0].dimensions.map(({ name }) => name)"
+    before = picture.evaluate(order)
+    titles = picture.locator(".axis-title")
+    first, second = (titles.nth(number).bounding_box() for number in range(2))
+    assert first is not None
+    assert second is not None
+    page.mouse.move(first["x"] + first["width"] / 2, first["y"] + first["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(second["x"] + second["width"], second["y"] + second["height"] / 2, steps=10)
+    page.mouse.up()
+    moved = [before[1], before[0], *before[2:]]
+    until(page, lambda: f"order={'%2C'.join(moved)}" in page.url)
+    copy = opened(f"#{page.url.partition('#')[2]}")
+    assert drawn(copy, "Parallel coordinates").evaluate(order) == moved

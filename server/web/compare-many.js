@@ -1,10 +1,10 @@
-// What points are compared by side by side, a picture each with one scale of colours, and rotation at the bit.
+// What points are compared by side by side, a picture each with one scale of colours, and rotation at the ends of the string.
 
-import { each, noteNode } from "./compare-views.js";
+import { each, Lacking, noteNode } from "./compare-views.js";
 import { fill, h } from "./dom.js";
 import { canvas, draw } from "./plots.js";
 import { contactMap, largestShown } from "./point-contacts.js";
-import { endsOf, RECORD_ENDS, twoPanels } from "./point-rotation.js";
+import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE, twoPanels } from "./point-rotation.js";
 import { describe, drawSpectrogram, largestOf } from "./point-spectrogram.js";
 import { frames } from "./snapshots.js";
 import { stringPlayer } from "./string-player.js";
@@ -47,10 +47,12 @@ export async function drawSpectrograms(place, comparison) {
 }
 
 /**
- * What there is of a point's snapshots; the service says why there are none.
+ * What there is of a point's snapshots; it is said where there are none.
  * @param {Comparison} comparison @param {Compared} point
  */
 async function snapshotsThere(comparison, point) {
+  // The service would refuse, which the browser writes of.
+  if (!point.detail.scenario.recording.snapshots) throw new Lacking("it recorded no snapshots of the whole string (recording.snapshots)");
   const [snapshots, statics] = await Promise.all([comparison.table(point, "snapshots", { max_frames: 1 }), comparison.table(point, "statics")]);
   const { snapshots: count, nodes, first, interval } = snapshots.attributes;
   // One was served, so that the interval is that of all.
@@ -80,13 +82,34 @@ export async function drawStrings(place, comparison) {
   await player.load();
 }
 
-/** Rotation speed and torque at the bit. @param {HTMLElement} place @param {Comparison} comparison */
-export async function drawBits(place, comparison) {
-  const found = await each(comparison, (point) => endsOf(contextOf(comparison, point), comparison.window));
-  const traces = found.flatMap(([point, ends]) => {
-    const lines = ends.lines.filter(({ end }) => end === "bit");
-    if (!lines.length) comparison.lacking.push(`Point ${point.number} is missing: ${RECORD_ENDS}`);
+/** The end of the string whose rotation is compared. @param {{query: URLSearchParams}} comparison @returns {"bit" | "top"} */
+export function endOf({ query }) {
+  return query.get("end") === "top" ? "top" : "bit";
+}
+
+/**
+ * Rotation speed and torque at one end: from the histories where all points have it there, else from the snapshots where all do, so that
+ * no two are sampled differently where that can be.
+ * @param {HTMLElement} place @param {Comparison} comparison
+ */
+export async function drawEnds(place, comparison) {
+  const { window, sources } = comparison;
+  const end = endOf(comparison);
+  const at = (/** @type {import("./point-rotation.js").EndLine[]} */ lines) => lines.filter((line) => line.end === end);
+  const found = await each(comparison, async (point) => ({ history: at(await endsOfHistory(contextOf(comparison, point), window)) }));
+  const isInHistories = found.every(([, { history }]) => history.length);
+  const snapshots = await Promise.all(found.map(async ([point]) => (isInHistories ? [] : at(await endsOfSnapshots(contextOf(comparison, point), window)))));
+  const isInSnapshots = !isInHistories && snapshots.every((lines) => lines.length);
+  const traces = found.flatMap(([point, { history }], order) => {
+    const isOfHistory = history.length > 0 && !isInSnapshots;
+    const lines = isOfHistory ? history : snapshots[order];
+    if (!lines.length) comparison.lacking.push(`Point ${point.number} is missing: ${end === "bit" ? RECORD_ENDS : "Rotation speed and torque at the top are in snapshots, or in the history of the first node where it is recorded; this point has neither."}`);
+    else sources.set(point.number, isOfHistory ? "history" : "snapshots");
     return lines.map(({ quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: point.name, legendgroup: String(point.number), showlegend: quantity !== "torque", line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" }));
   });
-  return draw(place, traces, { shows: comparison.window, dragmode: "select", selectdirection: "h", ...twoPanels() }, comparison.signal);
+  const names = [...new Set(sources.values())];
+  if (names.length === 1) comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
+  if (names.length > 1) comparison.says.push(`${[...sources].map(([number, source]) => `Point ${number} is from its ${source}`).join(", ")}: sampled differently.`);
+  if (names.length) comparison.says.push(TORQUE);
+  return draw(place, traces, { shows: [window, end], dragmode: "select", selectdirection: "h", ...twoPanels() }, comparison.signal);
 }

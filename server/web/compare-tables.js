@@ -4,7 +4,7 @@ import { get } from "./api.js";
 import { Biases } from "./bias.js";
 import { each, noteNode } from "./compare-views.js";
 import { fill, h } from "./dom.js";
-import { costFacts } from "./point-about.js";
+import { accuracyFacts, accuracyReasons, costFacts } from "./point-about.js";
 import { biasOver, STATISTICS } from "./statistics.js";
 import { say } from "./units.js";
 
@@ -88,6 +88,12 @@ export async function drawModes(place, comparison) {
       .map((/** @type {any} */ mode, /** @type {number} */ index) => [String(index + 1), `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`]);
   });
   drawTable(place, "Modes", found.map(([point]) => point), rowsOf(found));
+}
+
+/** How far the numbers can be trusted. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawAccuracy(place, comparison) {
+  const found = await each(comparison, async ({ detail }) => /** @type {[string, string][]} */ ([...accuracyFacts(detail), ...accuracyReasons(detail).map(([of, text]) => [`${of}: condition or reason`, text])]));
+  drawTable(place, "Accuracy", found.map(([point]) => point), rowsOf(found));
 }
 
 /** What the runs cost. @param {HTMLElement} place @param {Comparison} comparison */

@@ -1,11 +1,11 @@
 // What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
 
 import { Problem } from "./api.js";
-import { drawBits, drawContactMaps, drawSpectrograms, drawStrings } from "./compare-many.js";
-import { drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
-import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
+import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./compare-many.js";
+import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
+import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
 import { colourBar, draw, inks, lineScale } from "./plots.js";
-import { ledger } from "./point-energy.js";
+import { ACCOUNTS, ledger } from "./point-energy.js";
 import { drawProfiles, QUANTITIES, tableOf } from "./point-profiles.js";
 import { displaced, exaggeration, onNodes, saysExaggeration } from "./point-well.js";
 import { label, say, shown, title, unit } from "./units.js";
@@ -32,6 +32,7 @@ const APART = 0.12;
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
  * @property {string[]} lacking sentences about what points lack, which a view adds to
+ * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
  * @property {AbortSignal} signal
@@ -59,13 +60,14 @@ export const VIEWS = {
   spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, isOfNode: true, draw: drawSpectra },
   statistics: { name: "Statistics", table: "statistics", isWindowed: true, isOfNode: true, kind: "table", draw: drawStatistics },
   spectrogram: { name: "Spectrograms", table: "spectrogram", isWindowed: true, isOfNode: true, kind: "several", draw: drawSpectrograms },
-  bit: { name: "Rotation at the bit", table: "history", build: "whole", isWindowed: true, hasTime: true, draw: drawBits },
+  bit: { name: "Rotation at bit and top", table: "history", build: "whole", isWindowed: true, hasTime: true, draw: drawEnds },
   string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
   contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
   well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
   modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
   effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },
+  accuracy: { name: "Accuracy", table: "", kind: "table", isDocument: true, draw: drawAccuracy },
   cost: { name: "Cost", table: "", kind: "table", isDocument: true, draw: drawCost },
 };
 
@@ -78,6 +80,9 @@ function withoutResult({ summary, state, error }) {
   if (error) return `it failed (${error.class}): ${error.reason}`;
   return state === "cancelled" ? "it was cancelled" : `it is ${state}, without results yet`;
 }
+
+/** What a point lacks that a view needs, in words. */
+export class Lacking extends Error {}
 
 /**
  * What a view needs of each point, of those that have it; what the others lack is said.
@@ -95,6 +100,7 @@ export async function each({ points, lacking, signal }, read, part = "") {
       try {
         return { point, value: await read(point) };
       } catch (error) {
+        if (error instanceof Lacking) return { point, lacks: `Point ${point.number} is missing: ${error.message}.` };
         if (signal.aborted || !(error instanceof Problem) || error.status === 401) throw error;
         return { point, lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.` };
       }
@@ -212,12 +218,27 @@ async function drawRotation(place, comparison) {
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawSpectra(place, comparison) {
+  const range = comparedRange(comparison);
   const found = await each(comparison, async (point) => {
-    const spectrum = await comparison.table(point, "spectrum", { ...comparison.node, ...comparison.window, window: "hann" });
+    const spectrum = await comparison.table(point, "spectrum", { ...comparison.node, ...comparison.window, window: "hann", range_hz: range });
     noteNode(comparison, point, spectrum.attributes.node, spectrum.attributes.measured_depth);
-    return spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name);
+    return spectrum;
   });
-  return draw(place, found.map(([, trace]) => trace), spectrumLayout(null, comparison.query.get("amplitude") === "log"), comparison.signal);
+  const least = found.reduce((/** @type {[Compared, any] | null} */ best, one) => (one[1].attributes.resolved_hz < (best?.[1].attributes.resolved_hz ?? range) ? one : best), null);
+  if (least) comparison.says.push(`Shaded: beyond what the time steps of point ${least[0].number} resolve${found.length > 1 ? ", the lowest of all" : ""}, ${say("frequency", least[1].attributes.resolved_hz)}.`);
+  const traces = found.map(([point, spectrum]) => spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name));
+  const layout = spectrumLayout(found.map(([point, table]) => ({ table, colour: point.colour })), comparison.query.get("amplitude") === "log");
+  return draw(place, traces, { ...layout, shows: range }, comparison.signal);
+}
+
+/** How far compared spectra are shown [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
+export function comparedRange({ query, points }) {
+  return spectrumRange(query, comparedRate(points));
+}
+
+/** The rate of what was recorded most slowly [Hz]. @param {Compared[]} points */
+export function comparedRate(points) {
+  return Math.min(...points.map((point) => point.detail.scenario.recording.rate_hz));
 }
 
 /** The quantity that colours wells; none where each has the colour of its point. @param {URLSearchParams} query */
@@ -273,11 +294,28 @@ async function drawWells(place, comparison) {
   return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } }, comparison.signal);
 }
 
+/** The account whose energy is compared over time; empty where all are by what they changed. @param {URLSearchParams} query */
+export function energyAccount(query) {
+  return ACCOUNTS.find((name) => name === query.get("account")) ?? "";
+}
+
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawEnergy(place, comparison) {
+  const account = energyAccount(comparison.query);
+  if (account) return drawAccount(place, comparison, account);
   const found = await each(comparison, async (point) => ledger((await comparison.table(point, "energy")).columns));
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
   const { symbol } = unit("kinetic");
   const traces = found.map(([point, one]) => ({ type: "bar", name: point.name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: point.colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
-  return draw(place, traces, { barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, comparison.signal);
+  return draw(place, traces, { shows: "", barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison @param {string} account of the ledger */
+async function drawAccount(place, comparison, account) {
+  const found = await each(comparison, async (point) => {
+    const { columns } = await comparison.table(point, "energy");
+    if (!columns[account]) throw new Lacking(`its ledger has no account of ${label(account)}`);
+    return { ...overTime(point, columns.time, shown(account, columns[account])), type: "scatter" };
+  });
+  return draw(place, found.map(([, trace]) => trace), { shows: account, xaxis: { title: "time [s]" }, yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account } }, comparison.signal);
 }

@@ -2,13 +2,15 @@
 
 import { get, Problem } from "./api.js";
 import { dragWindow } from "./brush.js";
-import { RANGES, rangeOf } from "./compare-many.js";
-import { VIEWS, wellColour, wellFactor } from "./compare-views.js";
+import { endOf, RANGES, rangeOf } from "./compare-many.js";
+import { comparedRange, comparedRate, energyAccount, VIEWS, wellColour, wellFactor } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, pythonNode, requestLines } from "./lines.js";
 import { attend } from "./notices.js";
+import { rangesOf } from "./orbit.js";
 import { canvas, DASHES, LINES } from "./plots.js";
+import { ACCOUNTS } from "./point-energy.js";
 import { profileTables, QUANTITIES, quantityTicks, tableOf } from "./point-profiles.js";
 import { exaggerationChoice } from "./point-well.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
@@ -21,6 +23,8 @@ const REST_MS = 200;
 const LEAST = 1e-3;
 /** Sweeps that are offered at once. */
 const OFFERED = 100;
+/** Changes of a scenario at most that tell points of the same words apart. */
+const MOST_CHANGES = 3;
 /** Depths that differ by less are one [m]. */
 const SAME_DEPTH = 1e-3;
 
@@ -35,10 +39,10 @@ export async function show(main, route, signal) {
   const { isWindowed, isOfNode, kind, isDocument, hasTime } = VIEWS[view];
   const [listed, ...asked] = await Promise.all([get("/v1/sweeps", { limit: OFFERED }, signal), ...keys.map((key, order) => pointOf(key, order, signal))]);
   const { sweeps } = listed;
-  const points = asked.flatMap(({ point }) => (point ? [point] : []));
   const unknown = asked.flatMap(({ problem }) => (problem ? [problem] : []));
   const to = (/** @type {string[]} */ chosen, shownView = view) => link(["compare"], { ...Object.fromEntries(currentRoute().query), points: chosen.join(","), view: shownView });
   const nameOf = (/** @type {string} */ id) => sweeps.find((/** @type {any} */ sweep) => sweep.id === id)?.name ?? `Sweep ${id.slice(-8)}`;
+  const points = toldApart(asked.flatMap(({ point }) => (point ? [point] : [])), nameOf);
   const takeOut = (/** @type {string} */ key, /** @type {string} */ which) => h("button", { class: "plain", "aria-label": `Take ${which} out`, onclick: () => go(to(keys.filter((other) => other !== key))) }, "Take out");
 
   const list = h(
@@ -120,6 +124,7 @@ export async function show(main, route, signal) {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => change({ [name]: value });
     if (view === "profiles") return fill(controls, ticks.element);
     if (view === "well") return fill(controls, exaggerationChoice(wellFactor(query), set("exaggerate")), choice("Colour", [["", "of each point"], ...QUANTITIES.map(([name]) => /** @type {[string, string]} */ ([name, label(name)]))], wellColour(query) ?? "", set("colour")));
+    if (view === "energy") return fill(controls, choice("Shows", [["", "what all accounts changed"], ...ACCOUNTS.map((name) => /** @type {[string, string]} */ ([name, `${label(name)} over time`]))], energyAccount(query), set("account")));
     if (!isWindowed) return fill(controls);
     const { from, to } = window_();
     const time = (/** @type {string} */ name, /** @type {number} */ value) => {
@@ -134,6 +139,8 @@ export async function show(main, route, signal) {
       time("to", to),
       h("button", { onclick: () => change({ from: "0", to: String(shortest()) }) }, "Whole run"),
       view === "orbit" && choice("Shows", [["motion", "the motion"], ["hole", "the whole hole"]], query.get("zoom") ?? "motion", set("zoom")),
+      view === "bit" && choice("End of the string", [["bit", "the bit"], ["top", "the top"]], endOf({ query }), set("end")),
+      view === "spectrum" && choice("Frequencies up to", rangesOf(comparedRate(points)).map((text) => [text, `${text} Hz`]), String(comparedRange({ query, points })), set("range")),
       view === "spectrum" && choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], query.get("amplitude") ?? "linear", set("amplitude")),
       view === "spectrogram" && choice("Frequencies up to", RANGES.map((text) => [text, `${text} Hz`]), String(rangeOf({ query })), set("range")),
       view === "spectrogram" && choice("Amplitude", [["log", "logarithmic"], ["linear", "linear"]], query.get("amplitude") === "linear" ? "linear" : "log", set("amplitude")),
@@ -144,6 +151,8 @@ export async function show(main, route, signal) {
 
   let generation = 0;
   let isDraggable = false;
+  /** Tables that points are drawn from, by their numbers, where the view has a choice. @type {Map<number, string>} */
+  let sources = new Map();
 
   async function redraw() {
     const mine = ++generation;
@@ -165,6 +174,7 @@ export async function show(main, route, signal) {
       },
       table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, signal),
       lacking: [],
+      sources: new Map(),
       says: [],
       nodes: new Map(),
       signal,
@@ -172,8 +182,16 @@ export async function show(main, route, signal) {
     const isRecorded = !isOfNode || depths.length > 0;
     if (!isRecorded) comparison.lacking.push("No point here has a recorded node.");
     place.hidden = !isRecorded;
-    if (isRecorded) await VIEWS[view].draw(place, comparison);
+    // Of modes and effects the service computes for seconds.
+    const waiting = kind && isRecorded && !place.hasChildNodes() ? h("p", { class: "soft", role: "status" }, "Loading…") : null;
+    if (waiting) fill(place, waiting);
+    try {
+      if (isRecorded) await VIEWS[view].draw(place, comparison);
+    } finally {
+      waiting?.remove();
+    }
     if (mine !== generation || signal.aborted) return;
+    sources = comparison.sources;
     if (hasTime && isRecorded && !isDraggable) {
       isDraggable = true;
       dragWindow(place, () => {}, (range) => range && range[1] - range[0] > LEAST * shortest() && change({ from: range[0].toFixed(4), to: range[1].toFixed(4) }), signal);
@@ -189,10 +207,11 @@ export async function show(main, route, signal) {
   function requestsOf(point) {
     if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
     if (view === "well") return wellTables().map((table) => ({ table, query: {} }));
-    // At the bit the snapshots come before the history.
-    const table = view === "bit" && point.detail.scenario.recording.snapshots ? "snapshots" : shownTable;
-    return [{ table, query: { ...(isOfNode ? { depth: depth(), nearest: true } : {}), ...(isWindowed ? window_() : {}) } }];
+    const table = sources.get(point.number) ?? shownTable;
+    return [{ table, query: { ...(isOfNode ? { depth: depth(), nearest: true } : {}), ...(isWindowed ? window_() : {}), ...(hasRange ? { range_hz: range() } : {}) } }];
   }
+  const hasRange = view === "spectrum" || view === "spectrogram";
+  const range = () => (view === "spectrum" ? comparedRange({ query, points }) : rangeOf({ query }));
 
   /** The tables behind the wells: the equilibrium, and what has the quantity that colours them. */
   function wellTables() {
@@ -201,10 +220,11 @@ export async function show(main, route, signal) {
   }
 
   function pythonLines() {
-    const window = isOfNode ? pythonNode(node(), window_()) : isWindowed ? `time=(${window_().from}, ${window_().to})` : "";
+    const cut = isOfNode ? pythonNode(node(), window_()) : isWindowed ? `time=(${window_().from}, ${window_().to})` : "";
+    const window = hasRange ? `${cut}, range_hz=${range()}` : cut;
     if (view === "profiles") return profileTables(ticks.names()).map(({ table, fields }) => `${table} = [point.${table}().to_pandas()[${python(fields)}] for point in points]`).join("\n");
     if (view === "well") return wellTables().map((table) => `${table} = [point.${table}().to_pandas() for point in points]`).join("\n");
-    if (isDocument) return shownTable ? `documents = [point.${shownTable}() for point in points]` : "documents = [point.provenance for point in points]";
+    if (isDocument) return shownTable ? `documents = [point.${shownTable}() for point in points]` : `documents = [point.${view === "accuracy" ? "summary" : "provenance"} for point in points]`;
     if (view === "orbit" || view === "spectrum") return `for point in points:\n    plot.${view}(point, ${window})`;
     if (view === "bit") return points.map((point) => `point${point.number} = client.sweep("${point.id}").point(${point.ordinal}).${requestsOf(point)[0].table}(${window}).to_pandas()`).join("\n");
     return `tables = [point.${shownTable}(${window}).to_pandas() for point in points]`;
@@ -252,6 +272,42 @@ async function pointOf(key, order, signal) {
     if (!(error instanceof Problem) || error.status !== 404) throw error;
     return { problem: { key, text: `Point ${order + 1} of the link was not found: ${error.message}.` } };
   }
+}
+
+/**
+ * The points, those that have the same words told apart by what differs: a few numbers or choices of their scenarios, or else their sweeps.
+ * @param {Compared[]} points
+ * @param {(id: string) => string} nameOf a sweep
+ * @returns {Compared[]}
+ */
+function toldApart(points, nameOf) {
+  const wordsOf = (/** @type {Compared} */ point) => parameters(point.detail.parameters);
+  return points.map((point) => {
+    const alike = points.filter((other) => wordsOf(other) === wordsOf(point));
+    if (alike.length === 1) return point;
+    const scenarios = alike.map((other) => leaves(other.detail.scenario));
+    const own = leaves(point.detail.scenario);
+    // What was recorded makes no other motion.
+    const paths = [...new Set(scenarios.flatMap((one) => [...one.keys()]))].filter((path) => !path.startsWith("recording.") && scenarios.some((one) => one.get(path) !== own.get(path)));
+    const isTold = paths.length > 0 && paths.length <= MOST_CHANGES;
+    const changes = isTold ? parameters(Object.fromEntries(paths.map((path) => [path, own.get(path)]))) : nameOf(point.id);
+    const isOnlyOrdinal = !isTold && alike.some((other) => other !== point && nameOf(other.id) === nameOf(point.id));
+    return { ...point, name: `${point.number}: ${[wordsOf(point), changes, isOnlyOrdinal && `point ${point.ordinal}`].filter(Boolean).join(", ")}` };
+  });
+}
+
+/**
+ * Numbers, words and truths of a document, by their paths; what stands in lists is left out.
+ * @param {any} document
+ * @param {string} [path]
+ * @returns {Map<string, any>}
+ */
+function leaves(document, path = "") {
+  const entries = Object.entries(document).flatMap(([name, value]) => {
+    if (value === null || Array.isArray(value)) return [];
+    return typeof value === "object" ? [...leaves(value, `${path}${name}.`)] : [/** @type {[string, any]} */ ([path + name, value])];
+  });
+  return new Map(entries);
 }
 
 /**

@@ -116,34 +116,35 @@ export function namedLines(table) {
 }
 
 /**
- * @param {any} table of the spectrum whose lines are named; null names none
+ * Layout of full spectra: what the steps of one of them do not resolve is shaded, and the highest lines are named in their colours.
+ * @param {{table: any, colour?: string}[]} spectra
  * @param {boolean} isLog
  */
-export function spectrumLayout(table, isLog) {
+export function spectrumLayout(spectra, isLog) {
   const { soft } = inks();
-  const resolved = table?.attributes.resolved_hz;
-  const last = table ? Math.max(...table.columns.frequency.map(Math.abs)) : 0;
-  const beyond = resolved && resolved < last ? [[resolved, last], [-last, -resolved]] : [];
+  const resolved = Math.min(...spectra.map(({ table }) => table.attributes.resolved_hz ?? Infinity));
+  const last = spectra.reduce((most, { table }) => table.columns.frequency.reduce((/** @type {number} */ far, /** @type {number} */ value) => Math.max(far, Math.abs(value)), most), 0);
+  const beyond = resolved < last ? [[resolved, last], [-last, -resolved]] : [];
+  const lines = spectra.flatMap(({ table, colour }) => namedLines(table).map((line) => ({ ...line, colour }))).sort((a, b) => b.amplitude - a.amplitude);
   return {
     xaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
     yaxis: { title: title("amplitude"), quantity: "amplitude", type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
     shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
-    annotations: table
-      ? readable(namedLines(table), last).map((peak) => {
-          const height = Number(shown("amplitude", [peak.amplitude])[0]);
-          return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11 } };
-        })
-      : [],
+    annotations: readable(lines, last).map((peak) => {
+      const height = Number(shown("amplitude", [peak.amplitude])[0]);
+      return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11, color: peak.colour } };
+    }),
   };
 }
 
 /**
  * The lines whose names do not cover that of a higher one.
- * @param {ReturnType<typeof namedLines>} peaks from the highest down
+ * @template {{frequency: number, amplitude: number}} Line
+ * @param {Line[]} peaks from the highest down
  * @param {number} last highest frequency of the picture [Hz]
  */
 function readable(peaks, last) {
-  /** @type {ReturnType<typeof namedLines>} */
+  /** @type {Line[]} */
   const kept = [];
   for (const peak of peaks) {
     const isCovered = kept.some((other) => Math.sign(other.frequency) === Math.sign(peak.frequency) && Math.abs(other.frequency - peak.frequency) < 0.25 * last && other.amplitude - peak.amplitude < 0.06 * peaks[0].amplitude);

@@ -50,13 +50,14 @@ function factsPart(heading, facts, more = []) {
   return h("section", { class: "panel", "aria-label": heading }, h("h2", {}, heading), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])), more);
 }
 
-/** @param {import("./point.js").PointContext} context */
-function accuracyPart({ point, bias }) {
-  const { summary, provenance = {} } = point;
-  const { time, mesh, spread } = provenance.errors ?? {};
+/**
+ * How far the numbers of a point can be trusted.
+ * @param {any} point
+ * @returns {[string, string][]}
+ */
+export function accuracyFacts({ summary }) {
   const percent = (/** @type {any} */ value) => (typeof value === "number" ? `${number(100 * value, 2)} %` : "not known");
-  /** @type {[string, string][]} */
-  const facts = [
+  return [
     ["Time steps: error of statistics", percent(summary.time_error)],
     ["Mesh: error of the mean radius", percent(summary.mesh_error_mean_radius)],
     ["Spread of an ensemble", percent(summary.relative_spread)],
@@ -65,9 +66,24 @@ function accuracyPart({ point, bias }) {
     ["Unresolved steps", String(summary.unresolved_steps ?? "–")],
     ["Energy that the ledger misses", say("energy_residual_ratio", summary.energy_residual_ratio, 2)],
   ];
-  const reasons = [time?.condition, mesh?.reason && `Mesh: ${mesh.reason}`, spread?.reason && `Spread: ${spread.reason}`].filter(Boolean);
+}
+
+/**
+ * On what condition the estimates of errors hold, and why some are not known.
+ * @param {any} point
+ * @returns {[string, string][]}
+ */
+export function accuracyReasons({ provenance = {} }) {
+  const { time, mesh, spread } = provenance.errors ?? {};
+  const reasons = [["Time steps", time?.condition], ["Mesh", mesh?.reason], ["Spread", spread?.reason]];
+  return /** @type {[string, string][]} */ (reasons.filter(([, text]) => text));
+}
+
+/** @param {import("./point.js").PointContext} context */
+function accuracyPart({ point, bias }) {
+  const { summary } = point;
   const biased = Object.keys(summary).filter((name) => name.startsWith("orbit_radius_rms") && bias(name));
-  return factsPart("How far to trust it", facts, [reasons.map((reason) => h("p", { class: "small soft" }, reason)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
+  return factsPart("How far to trust it", accuracyFacts(point), [accuracyReasons(point).map(([of, text]) => h("p", { class: "small soft" }, `${of}: ${text}`)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
 }
 
 /**

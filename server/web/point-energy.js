@@ -8,6 +8,9 @@ const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
 const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
 const HELD = ["kinetic", "stored"];
 
+/** All accounts, and what the ledger misses. */
+export const ACCOUNTS = [...SUPPLIED, ...DISSIPATED, ...HELD, "residual"];
+
 /**
  * The accounts that a ledger has, what is supplied first, and by what each has changed over the run.
  * @param {any} columns

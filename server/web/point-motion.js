@@ -237,7 +237,7 @@ export function motion(context) {
     if (dragged !== range) return;
     brush?.paintTrace(orbitTrace(cut, place().lowSide, { color: LINES[0] }));
     showStatistics(from, to, (name) => say(name, statistics.columns[name][0]), String(statistics.attributes.samples));
-    await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumLayout(lines, isLog()), signal);
+    await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumLayout([{ table: lines }], isLog()), signal);
   }
 
   /** @param {[number, number] | null} range */
@@ -274,7 +274,7 @@ export function motion(context) {
     if (!windowed) return;
     const { node, depth } = place();
     spectrum.setAttribute("aria-label", `Full spectrum of node ${node} at ${say("measured_depth", depth)}`);
-    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout(windowed.lines, isLog()), signal);
+    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout([{ table: windowed.lines }], isLog()), signal);
   }
 
   function drawStatistics() {

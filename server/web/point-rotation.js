@@ -5,7 +5,7 @@ import { h } from "./dom.js";
 import { python } from "./lines.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { frames, snapshotsOf } from "./snapshots.js";
-import { shown, title } from "./units.js";
+import { say, shown, title } from "./units.js";
 
 /** Nodes of all snapshots together from which the lines are taken. */
 const TAKEN = 300_000;
@@ -28,19 +28,21 @@ export const RECORD_ENDS = "Rotation speed and torque at the bit are not in this
  * @returns {Promise<{lines: EndLine[], source: "snapshots" | "history" | ""}>}
  */
 export async function endsOf(context, window) {
-  const there = await snapshotsOf(context);
-  if (there?.names.includes("torque")) return { lines: await fromSnapshots(context, window, there.nodes), source: "snapshots" };
-  const lines = await fromHistory(context, window);
+  const snapshots = await endsOfSnapshots(context, window);
+  if (snapshots.length) return { lines: snapshots, source: "snapshots" };
+  const lines = await endsOfHistory(context, window);
   return { lines, source: lines.length ? "history" : "" };
 }
 
 /**
  * @param {import("./point.js").PointContext} context
  * @param {{from: number, to: number}} window
- * @param {number} nodes
  * @returns {Promise<EndLine[]>}
  */
-async function fromSnapshots(context, window, nodes) {
+export async function endsOfSnapshots(context, window) {
+  const there = await snapshotsOf(context);
+  if (!there?.names.includes("torque")) return [];
+  const { nodes } = there;
   const { count, first, interval, columns } = await frames(context, QUANTITIES, window, nodes, TAKEN);
   const time = Array.from({ length: count }, (_, frame) => first + frame * interval);
   return QUANTITIES.flatMap((quantity) => /** @type {["bit" | "top", number][]} */ ([["bit", nodes], ["top", 1]]).map(([end, node]) => ({ end, node, quantity, time, values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]) })));
@@ -51,7 +53,7 @@ async function fromSnapshots(context, window, nodes) {
  * @param {{from: number, to: number}} window
  * @returns {Promise<EndLine[]>}
  */
-async function fromHistory(context, window) {
+export async function endsOfHistory(context, window) {
   try {
     // One sample tells the columns.
     const [statics, sample] = await Promise.all([context.table("statics", { fields: "node" }), context.table("history", { max_points: 1 })]);
@@ -86,6 +88,17 @@ export function endsRequest(lines) {
   };
 }
 
+/** What the torque at an end is. */
+export const TORQUE = "The torque is what the string carries in its last element at that end.";
+
+/**
+ * How that differs from the torque on bit.
+ * @param {any} point
+ */
+function sayTorqueOnBit({ scenario }) {
+  return `At the bit it moves about the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by the friction of the wall on the bit and the inertia of what is below the middle of that element.`;
+}
+
 /** @param {import("./point.js").PointContext} context */
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
@@ -102,7 +115,7 @@ export function rotation(context) {
       if (!lines.length) return lines;
       const has = (/** @type {string} */ end) => lines.some((line) => line.end === end);
       const colours = { bit: { rotation_speed: LINES[0], torque: LINES[1] }, top: { rotation_speed: LINES[5], torque: LINES[3] } };
-      caption.textContent = `From the ${source === "snapshots" ? "snapshots" : "recorded history"}. ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}At the bit the torque on bit is constant.`;
+      caption.textContent = `From the ${source === "snapshots" ? "snapshots" : "recorded history"}. ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
       await draw(
         place,
         lines.map(({ end, quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`, line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 }, hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>" })),

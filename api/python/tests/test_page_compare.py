@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
-from test_page import COMPARED, REFUSED, Opens, browser, drawn, named, opened, troubles, until
+from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drawn, named, opened, troubles, until
 from test_page_points import run_curl, run_python, said, shown_lines
 from test_tokens import make_token
 
@@ -181,6 +181,11 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
         assert [shown[0], shown[-1]] == said
     page.get_by_role("link", name="Cost", exact=True).click()
     assert cells(page, "Cost", "Elements")[0] == str((has[0].provenance or {})["elements"])
+    page.get_by_role("link", name="Accuracy", exact=True).click()
+    resolved = [float((point.summary or {})["resolved_hz"]) for point in has]
+    shown = cells(page, "Accuracy", "Resolved up to")
+    assert [float(text.split(" Hz")[0]) for text in (shown[0], shown[-1])] == pytest.approx(resolved, rel=1e-3)
+    assert len(cells(page, "Accuracy", "Mesh: error of the mean radius")) == len(shown)
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
 
@@ -221,13 +226,77 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
     assert "true_vertical_depth" in tables["statics[1]"]
 
 
+def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
+    picture = drawn(page, "Full spectra")
+    names = picture.evaluate("place => place.layout.annotations.map(({ text, font }) => [text, font.color])")
+    colours = picture.evaluate("place => place.data.map(({ line }) => line.color)")
+    own = [named.point(number).spectrum(node=49, time=(0.5 / 3, 0.5), window="hann", range_hz=100) for number in (1, 2)]
+    lines = [
+        f"{'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
+        for table in own
+        for peak in table.attributes["peaks"]
+    ]
+    assert names
+    assert {text for text, _ in names} <= set(lines)
+    assert {colour for _, colour in names} <= set(colours)
+    shades = picture.evaluate("place => place.layout.shapes.map(({ x0 }) => x0)")
+    resolved = min(table.attributes["resolved_hz"] for table in own)
+    assert shades[:1] == pytest.approx([resolved] if resolved < 100 else [])
+    assert len(page.locator("figcaption", has_text="Shaded:").all()) == (resolved < 100)
+
+
+def test_energy_is_compared_over_time(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=energy")
+    picture = drawn(page, "^Energy$")
+    page.get_by_label("Shows", exact=True).select_option("kinetic")
+    read = "place => place.data.map(({ x, y }) => ({ x: [...x], y: [...y] }))"
+    table = named.point(2).energy()
+    until(page, lambda: len(picture.evaluate(read)[0]["x"]) == len(table["time"]))
+    np.testing.assert_allclose(picture.evaluate(read)[1]["x"], table["time"], rtol=1e-6)
+    assert "account=kinetic" in page.url
+
+
+def test_points_of_the_same_words_are_told_apart(opened: Opens, client: Client) -> None:
+    axes = {"flow_rate": [0.01]}
+    speeds = [
+        client.submit("paper-200m", set=SHORT | {"operation.rotation_speed_rpm": speed}, axes=axes, name="speeds")
+        for speed in (110, 120)
+    ]
+    again = client.submit("paper-200m", set=SHORT | {"operation.rotation_speed_rpm": 120}, axes=axes, name="again")
+    for sweep in (*speeds, again):
+        sweep.wait(timeout=120.0)
+    page = opened(f"#/compare?points={key(speeds[0])},{key(speeds[1])}&view=orbit")
+    shown = names(page, "Orbits")
+    assert [re.sub(".*rotation speed ", "", name) for name in shown] == ["110 rpm", "120 rpm"]
+    page = opened(f"#/compare?points={key(speeds[1])},{key(again)}&view=orbit")
+    assert [name.rpartition(", ")[2] for name in names(page, "Orbits")] == ["speeds", "again"]
+
+
+def test_what_takes_seconds_says_so(opened: Opens, named: Sweep) -> None:
+    page = opened("#/nowhere")
+    asked: list[Route] = []
+    page.route("**/modes?**", lambda route: asked.append(route))
+    page.goto(page.url.replace("#/nowhere", f"#/compare?points={key(named)}&view=modes"))
+    waiting = page.get_by_role("region", name="Modes, scrollable").get_by_text("Loading")
+    expect(waiting).to_be_visible()
+    until(page, lambda: len(asked) == 1)
+    asked[0].continue_()
+    assert cells(page, "Modes", "1")
+    expect(waiting).to_have_count(0)
+
+
 def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, named: Sweep) -> None:
     axes = {"well.hole_diameter": [0.2159, 0.26]}
     holes = client.submit("paper-200m", set=SHORT, axes=axes, name="two holes").wait(timeout=120.0)
     page = opened(f"#/compare?points={key(holes)},{key(holes, 2)}&view=orbit&depth=57.73&zoom=hole")
-    circles = "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, line }) => [x[0], line.color])"
+    circles = (
+        "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, line }) => [x[0], line.color])"
+    )
     picture = drawn(page, "Orbits")
-    orbits = picture.evaluate("place => place.data.filter(({ showlegend }) => showlegend).map(({ line }) => line.color)")
+    orbits = picture.evaluate(
+        "place => place.data.filter(({ showlegend }) => showlegend).map(({ line }) => line.color)"
+    )
     statics = [point.statics() for point in (holes.point(1), holes.point(2))]
     clearances = [float(table["clearance"][list(table["node"]).index(49)]) for table in statics]
     shown = picture.evaluate(circles)
@@ -292,16 +361,24 @@ def test_snapshots_are_compared_side_by_side(
     picture = page.get_by_role("application", name=re.compile("The string moving in its hole, 1:"))
     expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
     expect(missing).to_contain_text("Point 2 is missing")
-    page.get_by_role("link", name="Rotation at the bit").click()
-    bit = elsewhere.point(1).snapshots(node=int(elsewhere.point(1).statics()["node"][-1]), time=(0.5 / 3, 0.5))
-    speed = drawn(page, "Rotation at the bit").evaluate("place => [...place.data[0].y]")
-    np.testing.assert_allclose(speed, bit["rotation_speed"], rtol=1e-6)
-    # The history has the bit as well.
-    drawn_points = "place => new Set(place.data.map((line) => line.legendgroup)).size"
-    assert drawn(page, "Rotation at the bit").evaluate(drawn_points) == 2
-    expect(page.get_by_text("Point 2 is missing")).to_have_count(0)
-    # The browser writes of every answer that refuses.
-    troubles[:] = [text for text in troubles if "status of 404" not in text]
+    # Nothing was asked for that is not there.
+    assert troubles == []
+    page.get_by_role("link", name="Rotation at bit and top").click()
+    picture = drawn(page, "Rotation at bit and top")
+    speeds = "place => place.data.filter(({ yaxis }) => yaxis === 'y').map(({ y }) => [...y])"
+    # The histories of all have the bit, at the same rate.
+    caption = page.locator("figcaption")
+    expect(caption).to_contain_text("From the recorded histories.")
+    for speed, sweep in zip(picture.evaluate(speeds), (elsewhere, named), strict=True):
+        bit = int(sweep.point(1).statics()["node"][-1])
+        history = sweep.point(1).history(node=bit, time=(0.5 / 3, 0.5))
+        np.testing.assert_allclose(speed, history[f"rotation_speed_{bit}"], rtol=1e-6)
+    page.get_by_label("End of the string").select_option("top")
+    expect(missing).to_contain_text("Point 2 is missing: Rotation speed and torque at the top")
+    expect(caption).to_contain_text("From the snapshots.")
+    top = elsewhere.point(1).snapshots(node=1, time=(0.5 / 3, 0.5))
+    torque = picture.evaluate("place => [...place.data.find(({ yaxis }) => yaxis === 'y2').y]")
+    np.testing.assert_allclose(torque, top["torque"] / 1e3, rtol=1e-6)
 
 
 def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> None:
@@ -325,7 +402,7 @@ def test_no_view_of_a_comparison_keeps_anybody_out(
 ) -> None:
     page = opened("", color_scheme=theme)
     views = ["profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string"]
-    views += ["contacts", "well", "energy", "modes", "effects", "cost"]
+    views += ["contacts", "well", "energy", "energy&account=kinetic", "modes", "effects", "accuracy", "cost"]
     links = [f"#/compare?points={key(named)},{key(elsewhere)}&view={view}" for view in views]
     links += [f"#/sweeps/{elsewhere.id}/points/1?view={view}" for view in ("string", "spectrogram")]
     links += [f"#/sweeps/{named.id}/points/1?view=string"]
@@ -376,6 +453,7 @@ def test_the_dialog_that_asks_for_a_token_keeps_nobody_out(
         ("energy", {"time", "kinetic"}),
         ("modes", {"modes"}),
         ("effects", {"effects"}),
+        ("accuracy", {"summary"}),
         ("cost", {"provenance"}),
     ],
 )
@@ -389,6 +467,6 @@ def test_the_lines_of_a_comparison_read_what_it_shows(
     assert len(answers) == 2
     assert all(columns <= set(found) for found in answers.values())
     tables = run_python(lines["Python"])
-    is_table = view not in ("modes", "effects", "cost")
+    is_table = view not in ("modes", "effects", "accuracy", "cost")
     is_drawn = view.startswith("spectrum&")
     assert not is_table or is_drawn or sum(columns <= set(found) for found in tables.values()) == 2

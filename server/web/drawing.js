@@ -20,14 +20,20 @@ function addressOf(build) {
   return new URL(FILES[build], import.meta.url).href;
 }
 
-/** Has the file of a build come while data do. It is compiled only for a picture, or where the data take long. @param {Build} build */
-export function fetchAhead(build) {
-  const href = addressOf(build);
-  if (loaded.has("whole") || loading.has(build) || document.head.querySelector(`link[href="${href}"]`)) return;
-  const link = document.createElement("link");
-  Object.assign(link, { rel: "preload", as: "script", href });
-  document.head.append(link);
-  setTimeout(() => loaded.has("whole") || load(build).catch(() => {}), LONG_MS);
+/** Builds whose files were sent for. @type {Set<Build>} */
+const fetched = new Set();
+
+/**
+ * Has the file of a build come while data do. It is compiled only for a picture, or where the data take long.
+ * @param {Build} build
+ * @param {HTMLElement} place of the picture: once its view is left nothing is compiled for it
+ */
+export function fetchAhead(build, place) {
+  if (loaded.has("whole") || loading.has(build)) return;
+  // A preload that is not used, since its view was left or another build is there, would be complained of.
+  if (!fetched.has(build)) fetch(addressOf(build)).catch(() => {});
+  fetched.add(build);
+  setTimeout(() => place.isConnected && !loaded.has("whole") && load(build).catch(() => {}), LONG_MS);
 }
 
 /**

@@ -47,9 +47,10 @@ export function inks() {
  * @param {import("./drawing.js").Build} [build] of the drawing library that it will need
  */
 export function canvas(name, key, size = "", build = "flat") {
+  const place = h("div", { class: `plot ${size}`, role: "figure", "aria-label": name, "data-zoom": key });
   // While the data come.
-  fetchAhead(build);
-  return h("div", { class: `plot ${size}`, role: "figure", "aria-label": name, "data-zoom": key });
+  fetchAhead(build, place);
+  return place;
 }
 
 /** How long no picture has been sketched and nothing is awaited when the drawing library is compiled, and how long that waits at most. */

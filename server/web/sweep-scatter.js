@@ -16,7 +16,7 @@ const MANY = 3000;
  */
 export function scatter(context) {
   const { table, query } = context;
-  const place = canvas("Scatter of the points", "scatter", "tall");
+  const place = canvas("Scatter of the points", "scatter", "tall", context.sweep.counts.total > MANY ? "whole" : "flat");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
 

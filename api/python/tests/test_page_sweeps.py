@@ -864,3 +864,30 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     until(page, lambda: f"order={'%2C'.join(moved)}" in page.url)
     copy = opened(f"#{page.url.partition('#')[2]}")
     assert drawn(copy, "Parallel coordinates").evaluate(order) == moved
+
+
+LEFT = """({ url }) => {
+    const [real, later] = [fetch, setTimeout];
+    // Slower machines take longer to show the other view than the library waits for data.
+    window.setTimeout = (call, delay) => later(call, delay === 900 ? 4000 : delay);
+    window.fetch = (asked, ...more) => {
+        if (!String(asked).includes("/profile?")) return real(asked, ...more);
+        location.hash = url;
+        return new Promise(() => {});
+    };
+}"""
+"""Leaves a view of profiles for another one before their data have come."""
+
+
+def test_no_build_of_the_drawing_library_is_compiled_for_a_view_that_was_left(opened: Opens, named: Sweep) -> None:
+    page = opened("#/nowhere")
+    warnings: list[str] = []
+    page.on("console", lambda message: warnings.append(message.text) if "preload" in message.text else None)
+    point = f"#/sweeps/{named.id}/points/1"
+    page.add_init_script(f"({LEFT})({json.dumps({'url': f'{point}?view=well'})})")
+    page.goto(f"{page.url.partition('#')[0]}?{point}")
+    drawn(page, "The well and the string in it")
+    # Chromium complains of what is preloaded and not used a few seconds after the page has loaded.
+    page.wait_for_timeout(6000)
+    assert page.locator("head script[src*=plotly-cartesian]").count() == 0
+    assert warnings == []

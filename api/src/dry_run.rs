@@ -18,6 +18,9 @@ pub struct DryRun {
     pub total: u64,
     /// Points whose result is already there and would not be computed again.
     pub known: u64,
+    /// How many of the points have a result at each named accuracy, by its name, as if that had been asked for; absent where they
+    /// are not looked up: more than 5000 points, and an axis that is of the accuracy itself.
+    pub known_at: Option<IndexMap<String, u64>>,
     /// The plan of the first point: effects and why, size, steps and processor time at each accuracy, and what its equilibrium shows.
     pub plan: Option<Plan>,
     /// Processor time that the points and reference runs not yet known are expected to take together \[s\], from the plans of
@@ -66,11 +69,12 @@ pub struct PlannedPoint {
 
 impl DryRun {
     /// What an expanded request would become: `known` of its points have a result, and `known_references` of the runs that verify
-    /// some; `speed_json` is what a worker measured last, and `workers` are there to share the rest.
+    /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is what a worker measured last, and `workers` are there to share the rest.
     pub fn new(
         expansion: &Expansion,
         known: u64,
         known_references: u64,
+        known_at: Option<IndexMap<String, u64>>,
         speed_json: Option<&str>,
         workers: usize,
     ) -> Self {
@@ -95,6 +99,7 @@ impl DryRun {
         Self {
             total: expansion.points.len() as u64,
             known,
+            known_at,
             plan: plans.into_iter().next().map(|plan| match expansion.points.first() {
                 Some(first) => plan.with_equilibrium(&expansion.scenario(first)),
                 None => plan,
@@ -164,28 +169,30 @@ mod tests {
         let speed = json!({"statics_per_node": 0.0, "start_per_node": [0.0, 0.0, 0.0, 0.0], "step_per_node":
             [[1e-7, 2e-7, 3e-7], [1e-6, 1e-6, 1e-6], [2e-6, 2e-6, 2e-6], [5e-7, 5e-7, 5e-7]],
             "large_mesh_factor": 2.0});
-        let planned = DryRun::new(&expansion(), 40, 0, Some(&speed.to_string()), 2);
+        let known_at = IndexMap::from([("draft".to_owned(), 3)]);
+        let planned = DryRun::new(&expansion(), 40, 0, Some(known_at.clone()), Some(&speed.to_string()), 2);
         // 60 points of 120,000 steps of 297 nodes.
         let wanted = 60.0 * 120_000.0 * 297.0 * 3e-7;
         assert!((planned.cpu_time.unwrap() / wanted - 1.0).abs() < 1e-12);
         assert_eq!(planned.wall_time, planned.cpu_time.map(|time| 0.5 * time));
         assert_eq!((planned.total, planned.known, planned.points.len()), (100, 40, 100));
+        assert_eq!(planned.known_at, Some(known_at));
         let plan = planned.plan.clone().unwrap();
         assert_eq!(plan.accuracies[0].name, "explicit");
         // The base case as printed has no damping that grows with frequency.
         assert!(plan.undamped_torsion.unwrap().up_to_the_mesh && plan.warnings.len() == 1);
 
         for speed in [None, Some("of another version")] {
-            let planned = DryRun::new(&expansion(), 0, 0, speed, 2);
+            let planned = DryRun::new(&expansion(), 0, 0, None, speed, 2);
             assert_eq!((planned.cpu_time, planned.wall_time), (None, None));
             assert!(planned.plan.unwrap().effects.iter().all(|effect| effect.active));
         }
-        assert_eq!(DryRun::new(&expansion(), 0, 0, Some(&speed.to_string()), 0).wall_time, None);
+        assert_eq!(DryRun::new(&expansion(), 0, 0, None, Some(&speed.to_string()), 0).wall_time, None);
 
         let mut verified = request.clone();
         verified["verify"] = json!(0.05);
         let verified = expand(&serde_json::from_value(verified).unwrap()).unwrap();
-        let with_references = DryRun::new(&verified, 40, 1, Some(&speed.to_string()), 2);
+        let with_references = DryRun::new(&verified, 40, 1, None, Some(&speed.to_string()), 2);
         let verification = with_references.verification.as_ref().unwrap();
         assert_eq!((verification.total, verification.known, verification.points.len()), (5, 1, 5));
         let reference = expand(
@@ -193,7 +200,7 @@ mod tests {
                 .unwrap(),
         )
         .unwrap();
-        let of_one = DryRun::new(&reference, 0, 0, Some(&speed.to_string()), 2).cpu_time.unwrap();
+        let of_one = DryRun::new(&reference, 0, 0, None, Some(&speed.to_string()), 2).cpu_time.unwrap();
         let expected = planned.cpu_time.unwrap() + 4.0 * of_one;
         assert!((with_references.cpu_time.unwrap() / expected - 1.0).abs() < 1e-12);
     }

@@ -26,7 +26,9 @@ pub mod view;
 pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::{DeletedSweep, PointEvent};
-pub use expand::{Expansion, PointKey, SweepPoint, check_patch, compose, expand, expand_added, key_text};
+pub use expand::{
+    Expansion, PointKey, PointKeys, SweepPoint, check_patch, compose, expand, expand_added, key_text,
+};
 pub use point::{
     ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureClass, FailureList, MissingFile,
     PointDetail, PointError, PointLinks, PointList, PointRow, PointState, SelectedPointList,

@@ -76,6 +76,7 @@ export async function show(main, route, signal) {
   const planned = h("div", {});
   const previewed = h("div", { class: "controls" });
   const preview = canvas("Preview of the points", "preview");
+  const pointsPart = h("section", { class: "panel", "aria-label": "Preview", hidden: true }, h("h2", {}, "Points"), previewed, h("figure", {}, preview));
   const submit = h("button", { class: "main", type: "submit", disabled: true }, "Submit");
   const paths = h("datalist", { id: "paths" }, ["flow_rate", "mud_density", ...pathNames()].map((entry) => h("option", { value: entry }, label(entry))));
 
@@ -257,6 +258,7 @@ export async function show(main, route, signal) {
       else if (error instanceof Unreadable) mark([{ pointer: error.pointer, detail: error.message }]);
       else general.textContent = error instanceof Error ? error.message : String(error);
       fill(planned, h("p", { class: "soft" }, "The plan appears here once the request can be read."));
+      pointsPart.hidden = true;
     }
   }
 
@@ -265,7 +267,7 @@ export async function show(main, route, signal) {
   /** @param {any[]} points */
   async function drawPreview(points) {
     const names = Object.keys(points[0]?.parameters ?? {});
-    preview.hidden = names.length === 0;
+    pointsPart.hidden = names.length === 0;
     const x = names.includes(over.x) ? over.x : names[0];
     const others = names.filter((entry) => entry !== x);
     const y = others.includes(over.y) ? over.y : others[0];
@@ -325,7 +327,7 @@ export async function show(main, route, signal) {
   fill(
     main,
     h("div", { class: "head" }, h("h1", {}, "New sweep")),
-    h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), h("section", { class: "panel", "aria-label": "Preview" }, h("h2", {}, "Points"), previewed, h("figure", {}, preview)))),
+    h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), pointsPart)),
     taken,
   );
   void plan();
@@ -441,12 +443,16 @@ export function written(axis) {
 function plannedPart(answer) {
   const row = (/** @type {string} */ name, /** @type {any} */ value) => [h("dt", {}, name), h("dd", {}, value)];
   const { plan } = answer;
-  const accuracies = (plan?.accuracies ?? []).map((/** @type {any} */ one, /** @type {number} */ index) => h("tr", {}, h("td", {}, one.name, index === 0 && h("span", { class: "soft" }, " (chosen)")), h("td", { class: "number" }, duration(one.step)), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time) : "–"), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time * (answer.total - answer.known)) : "–")));
+  const accuracies = (plan?.accuracies ?? []).map((/** @type {any} */ one, /** @type {number} */ index) => {
+    const known = index === 0 ? answer.known : answer.known_at?.[one.name];
+    const time = (/** @type {number} */ points) => (points ? duration(one.cpu_time * points) : "none");
+    return h("tr", {}, h("td", {}, one.name, index === 0 && h("span", { class: "soft" }, " (chosen)")), h("td", { class: "number" }, duration(one.step)), h("td", { class: "number" }, one.cpu_time ? duration(one.cpu_time) : "–"), h("td", { class: "number" }, known ?? "not looked up"), h("td", { class: "number" }, one.cpu_time ? `${known === undefined ? "at most " : ""}${time(answer.total - (known ?? 0))}` : "–"));
+  });
   const footprint = plan?.footprint ?? {};
   const growing = plan?.undamped_torsion?.growing_modes;
   return [
     h("dl", { class: "facts" }, row("Points", String(answer.total)), row("Known already", `${answer.known}, not computed again`), answer.verification && row("Verified", `${answer.verification.total}, ${answer.verification.known} of the reference runs known already`), row("Time", answer.known === answer.total ? "none: all results are there" : answer.wall_time !== undefined && answer.wall_time !== null ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time; no worker is there now` : "not known"), row("Storage", answer.table_bytes ? `about ${bytes(answer.table_bytes)} before compression` : "nothing further"), plan && row("Tables of a point", `about ${bytes(footprint.table_bytes)} before compression at each accuracy${footprint.snapshot_bytes ? `, of that ${bytes(footprint.snapshot_bytes)} of snapshots` : ""}`), plan && row("String", `${plan.elements} elements, ${number(plan.simulated_time)} s simulated`)),
-    accuracies.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "All on one core"))), h("tbody", {}, accuracies)) : null,
+    accuracies.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "Known points"), h("th", { class: "number" }, "Others on one core"))), h("tbody", {}, accuracies)) : null,
     (plan?.warnings ?? []).map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
     growing ? h("p", { class: "small soft" }, `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz.`) : null,
   ];

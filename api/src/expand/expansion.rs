@@ -1,12 +1,18 @@
 //! What a request expands into, and what a point is known by.
 
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::scenario::{Outputs, Problem, Scenario};
+use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
 use crate::problem::FieldProblem;
 use crate::request::AxisName;
+
+/// Points up to which a dry run looks up results at each named accuracy: each takes as many keys again.
+const OTHER_ACCURACIES: usize = 5000;
+
+/// Keys of points, each with that of the same point with everything kept, where it keeps less.
+pub type PointKeys = Vec<(PointKey, Option<PointKey>)>;
 
 /// What a request expands into: one scenario, and what each point changes in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +38,25 @@ impl Expansion {
             let _ = set_number(&mut scenario, name.scenario_path(), value);
         }
         scenario
+    }
+
+    /// The keys that the points would have at each named accuracy, by its name, each with that of the same point in full where it keeps
+    /// less. None of more than 5000 points, and where an axis is of the accuracy itself.
+    pub fn keys_by_accuracy(&self) -> Option<IndexMap<&'static str, PointKeys>> {
+        let is_of_accuracy = |axis: &AxisName| axis.scenario_path().starts_with("accuracy.");
+        if self.points.len() > OTHER_ACCURACIES || self.axes.iter().any(is_of_accuracy) {
+            return None;
+        }
+        let keys_at = |accuracy: AccuracyPreset| {
+            let keys = |point: &SweepPoint| {
+                let mut scenario = Scenario { accuracy: Accuracy::Preset(accuracy), ..self.scenario(point) };
+                let point = SweepPoint::new(point.ordinal, Vec::new(), &mut scenario);
+                (point.key, point.fuller_key)
+            };
+            (accuracy.name(), self.points.iter().map(keys).collect())
+        };
+        let named = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
+        Some(named.into_iter().map(keys_at).collect())
     }
 
     /// What a point changes in the base, by path: with [`compose`] the point's scenario again.
@@ -184,6 +209,28 @@ mod tests {
         let found = problems(of(json!({"orbits": {"nodes": [{"node": 49}, {"node": 48}], "decimation": 0}})));
         let pointers: Vec<_> = found.iter().map(|(pointer, ..)| pointer.as_str()).collect();
         assert_eq!(pointers, ["/outputs/orbits/decimation", "/outputs/orbits/nodes/1/node"]);
+    }
+
+    #[test]
+    fn points_have_at_each_accuracy_the_keys_as_if_asked_for() {
+        let of = |accuracy: &str, axes: Value| {
+            let set = json!({"accuracy": accuracy});
+            expansion(json!({"preset": "paper-200m", "set": set, "outputs": "summary", "axes": axes}))
+        };
+        let axes = json!({"flow_rate": {"values": [0.01, 0.04]}});
+        let by_accuracy = of("draft", axes.clone()).keys_by_accuracy().unwrap();
+        assert_eq!(by_accuracy.keys().copied().collect::<Vec<_>>(), ["draft", "standard", "reference"]);
+        for (accuracy, keys) in by_accuracy {
+            let asked_for = of(accuracy, axes.clone());
+            let expected: Vec<_> =
+                asked_for.points.iter().map(|point| (point.key, point.fuller_key)).collect();
+            assert_eq!(keys, expected, "{accuracy}");
+        }
+        let of_steps =
+            expansion(json!({"preset": "paper-200m", "axes": {"accuracy.step": {"values": [1e-3]}}}));
+        assert_eq!(of_steps.keys_by_accuracy(), None);
+        let many = of("draft", json!({"flow_rate": {"from": 0.01, "to": 0.06, "count": 5001}}));
+        assert_eq!(many.keys_by_accuracy(), None);
     }
 
     #[test]

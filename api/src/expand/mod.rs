@@ -8,7 +8,7 @@ mod points;
 mod problems;
 mod references;
 
-pub use expansion::{Expansion, PointKey, SweepPoint, compose, key, key_text};
+pub use expansion::{Expansion, PointKey, PointKeys, SweepPoint, compose, key, key_text};
 pub use members::check_patch;
 
 use base::{check_without_axes, resolve, set_fields};

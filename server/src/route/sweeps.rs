@@ -9,9 +9,9 @@ use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{
-    AppendRequest, ColumnList, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, ProblemDetails,
-    ProblemKind, RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest, SweepState,
-    check_patch, expand, expand_added, sample,
+    AppendRequest, ColumnList, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, PointKeys,
+    ProblemDetails, ProblemKind, RunRequest, Sweep, SweepDeletion, SweepList, SweepPatch, SweepRequest,
+    SweepState, check_patch, expand, expand_added, sample,
 };
 use drillsweep_chart as chart;
 use drillsweep_store::{
@@ -19,7 +19,7 @@ use drillsweep_store::{
     SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
 use drillsweep_table::quantity::{Name, tables};
-use indexmap::IndexSet;
+use indexmap::{IndexMap, IndexSet};
 use jiff::Timestamp;
 use serde::Deserialize;
 use tokio::runtime::Handle;
@@ -220,20 +220,41 @@ fn not_computed(sweep: &NewSweep, points: &[i64], verifications: &[i64]) -> Erro
 }
 
 async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
-    let known = async |expansion: Option<&Expansion>| {
-        let points = expansion.into_iter().flat_map(|expansion| &expansion.points);
-        let keys: Vec<_> = points.map(|point| (point.key, point.fuller_key)).collect();
-        match cache {
-            CachePolicy::Refresh => Ok(0),
-            CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await,
-        }
+    let known = async |keys: PointKeys| match cache {
+        CachePolicy::Refresh => Ok(0),
+        CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await,
     };
-    let (known, known_references) =
-        (known(Some(&expansion)).await?, known(expansion.verification.as_deref()).await?);
+    let keys_of = |expansion: Option<&Expansion>| {
+        let points = expansion.into_iter().flat_map(|expansion| &expansion.points);
+        points.map(|point| (point.key, point.fuller_key)).collect::<PointKeys>()
+    };
+    let known_points = known(keys_of(Some(&expansion))).await?;
+    let known_references = known(keys_of(expansion.verification.as_deref())).await?;
+    let place = app.plans.enter(1).await?;
+    let (expansion, by_accuracy) = place
+        .run(move || {
+            let by_accuracy = expansion.keys_by_accuracy();
+            Ok((expansion, by_accuracy))
+        })
+        .await?;
+    let known_at = match by_accuracy {
+        Some(by_accuracy) => {
+            let mut counts = IndexMap::new();
+            for (name, keys) in by_accuracy {
+                counts.insert(name.to_owned(), known(keys).await?);
+            }
+            Some(counts)
+        }
+        None => None,
+    };
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
     let place = app.plans.enter(1).await?;
-    place.run(move || Ok(DryRun::new(&expansion, known, known_references, speed.as_deref(), workers))).await
+    let plan = move || {
+        let speed = speed.as_deref();
+        Ok(DryRun::new(&expansion, known_points, known_references, known_at, speed, workers))
+    };
+    place.run(plan).await
 }
 
 /// What distinguishes two requests with the same key.

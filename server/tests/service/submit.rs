@@ -85,6 +85,7 @@ async fn a_dry_run_tells_the_points_and_stores_nothing() {
     let plan = answer.json();
     assert_eq!(plan["total"], 12);
     assert_eq!(plan["known"], 1, "the base case is point 1 and has a result");
+    assert_eq!(plan["known_at"], json!({"draft": 0, "standard": 1, "reference": 0}));
     assert_eq!(plan["points"][11]["parameters"], json!({"flow_rate": 0.06, "mud_density": 2100.0}));
     assert_eq!(bench.get("/v1/sweeps").await.json()["sweeps"].as_array().unwrap().len(), 1);
     let wrong = json!({"preset": "paper-200m", "set": {"mud.flow_index": -1}});

@@ -69,7 +69,8 @@ pub struct PlannedPoint {
 
 impl DryRun {
     /// What an expanded request would become: `known` of its points have a result, and `known_references` of the runs that verify
-    /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is what a worker measured last, and `workers` are there to share the rest.
+    /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is what a worker measured last, and
+    /// `workers` are there to share the rest.
     pub fn new(
         expansion: &Expansion,
         known: u64,

@@ -5,7 +5,7 @@ import { debounced, fill, h } from "./dom.js";
 import { lines, python, shell } from "./lines.js";
 import { notice } from "./notices.js";
 import { MAY_NOT, maySubmit } from "./session.js";
-import { duration, label, say, unit } from "./units.js";
+import { duration, label, say, title, unit } from "./units.js";
 
 const COUNT = 5;
 
@@ -17,12 +17,14 @@ const COUNT = 5;
  * @property {number} count
  */
 
+/** A parameter that is not shown, and its value in the grid: that of the slice that is shown, or one to be chosen. @typedef {{name: string, value: number, isFree: boolean}} Held */
+
 /** What of a sweep's request says how its points are made, or how it is called: not of those that are added. */
 const OF_THE_SWEEP = new Set(["axes", "design", "points", "samples", "seed", "skip", "name", "tags", "verify", "owner", "priority"]);
 
 /**
  * @param {import("./sweep.js").Context} context
- * @returns {{element: HTMLElement, choose: (sides: Side[], held: {name: string, value: number}[]) => void, close: () => void, kept: (names: string[]) => Side[] | null}}
+ * @returns {{element: HTMLElement, choose: (sides: Side[], held: Held[]) => void, close: () => void, kept: (names: string[]) => Side[] | null}}
  *   `kept` is the region that the link has of these parameters
  */
 export function finer(context) {
@@ -32,7 +34,7 @@ export function finer(context) {
   const add = h("button", { class: "main", type: "submit", disabled: true }, "Add");
   /** @type {Side[]} */
   let sides = [];
-  /** @type {{name: string, value: number}[]} */
+  /** @type {Held[]} */
   let held = [];
   let generation = 0;
 
@@ -83,20 +85,33 @@ export function finer(context) {
     };
   }, "The same request");
 
+  /** A field for a number. @param {string} text @param {number} value @param {(value: number) => void} set */
+  function box(text, value, set) {
+    const input = h("input", { type: "number", step: "any", style: "width:8rem", value, oninput: () => {
+      if (input.value === "" || !Number.isFinite(Number(input.value))) return;
+      set(Number(input.value));
+      plan();
+    } });
+    return h("label", { class: "field" }, h("span", {}, text), input);
+  }
+
+  /** @param {Held} one */
+  function heldField(one) {
+    return box(title(one.name), Number((one.value / unit(one.name).size).toPrecision(6)), (value) => {
+      one.value = value * unit(one.name).size;
+      context.keep({ [`at.${one.name}`]: String(one.value) });
+    });
+  }
+
   /** @param {Side} side */
   function fields(side) {
     const { size, symbol } = unit(side.name);
-    const box = (/** @type {string} */ text, /** @type {number} */ value, /** @type {(value: number) => void} */ set) => {
-      const input = h("input", { type: "number", step: "any", style: "width:8rem", value, oninput: () => {
-        if (input.value === "" || !Number.isFinite(Number(input.value))) return;
-        set(Number(input.value));
-        keepRegion();
-        plan();
-      } });
-      return h("label", { class: "field" }, h("span", {}, text), input);
+    const kept = (/** @type {(value: number) => void} */ set) => (/** @type {number} */ value) => {
+      set(value);
+      keepRegion();
     };
     const shownAs = (/** @type {number} */ value) => Number((value / size).toPrecision(6));
-    return h("fieldset", { class: "controls" }, h("legend", {}, label(side.name)), box(symbol ? `From [${symbol}]` : "From", shownAs(side.from), (value) => (side.from = value * size)), box(symbol ? `To [${symbol}]` : "To", shownAs(side.to), (value) => (side.to = value * size)), box("Values", side.count, (value) => (side.count = Math.max(1, Math.round(value)))));
+    return h("fieldset", { class: "controls" }, h("legend", {}, label(side.name)), box(symbol ? `From [${symbol}]` : "From", shownAs(side.from), kept((value) => (side.from = value * size))), box(symbol ? `To [${symbol}]` : "To", shownAs(side.to), kept((value) => (side.to = value * size))), box("Values", side.count, kept((value) => (side.count = Math.max(1, Math.round(value))))));
   }
 
   async function submit(/** @type {Event} */ event) {
@@ -133,13 +148,14 @@ export function finer(context) {
       // To six digits: a pixel's width is less than that.
       sides = chosen.map((side) => ({ ...side, count: side.count || COUNT, from: Number(side.from.toPrecision(6)), to: Number(side.to.toPrecision(6)) }));
       held = others;
+      const [free, sliced] = [held.filter((one) => one.isFree), held.filter((one) => !one.isFree)];
       keepRegion();
       element.hidden = false;
       fill(
         element,
         h("h2", {}, "A finer grid"),
         h("p", { class: "small soft" }, "Drag over a region of the map, or give its bounds."),
-        h("form", { novalidate: true, onsubmit: submit }, sides.map(fields), held.length > 0 && h("p", { class: "small" }, `Held: ${held.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`), planned, wrong, h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close"))),
+        h("form", { novalidate: true, onsubmit: submit }, sides.map(fields), free.length > 0 && h("fieldset", { class: "controls" }, h("legend", {}, "Held, where the drawn points differ"), free.map(heldField)), sliced.length > 0 && h("p", { class: "small" }, `Held: ${sliced.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`), planned, wrong, h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close"))),
         taken,
       );
       plan();

@@ -10,6 +10,8 @@ import { ends, layered } from "./sweep-layers.js";
 import { distinct, isText } from "./table.js";
 import { label, say, sayer, title, unit } from "./units.js";
 
+/** Designs that draw their points: these have no slices. */
+const DRAWN = ["latin_hypercube", "sobol"];
 /** Colours of words, such as states. */
 const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
 
@@ -60,7 +62,8 @@ export function map(context) {
       return { axis, all, value: query.has(`at.${axis}`) && all.includes(asked) ? asked : all[0], column: others[index] };
     });
     const { axes: spans, design = "grid" } = context.sweep.request ?? {};
-    const isGrid = !y || (spans && design === "grid") || distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16;
+    const isDrawn = DRAWN.includes(design);
+    const isGrid = !y || (spans && design === "grid") || (!isDrawn && distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16);
     // A design that draws its points has no slices: all of them are shown.
     const slices = isGrid ? heldValues : [];
     fill(
@@ -70,7 +73,7 @@ export function map(context) {
       choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
       !words && choice("Scale", [["linear", "linear"], ["log", "logarithmic"]], isLog ? "log" : "linear", set("scale")),
       y && isGrid && !words && choice("Drawn as", [["cells", "cells"], ["contour", "contours"]], style, set("style")),
-      axes.length > 0 && isGrid && h("button", { "aria-expanded": String(!region.element.hidden), onclick: () => begin() }, "Finer grid"),
+      axes.length > 0 && h("button", { "aria-expanded": String(!region.element.hidden), onclick: () => begin() }, "Finer grid"),
       slices.map(({ axis, all, value }) => choice(label(axis), all.map((entry) => [String(entry), say(axis, entry)]), String(value), set(`at.${axis}`))),
     );
     const isAllFailed = !query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
@@ -81,6 +84,9 @@ export function map(context) {
       return;
     }
     const sides = y ? [x, y] : [x];
+    /** What a finer grid holds: the slice that is shown, or values to be chosen where all points are. */
+    const further = () => heldValues.map(({ axis, all, value }) => ({ name: axis, value: isGrid ? Number(value) : chosenOr(axis, middle(all.map(Number), context.spans[axis])), isFree: !isGrid }));
+    const chosenOr = (/** @type {string} */ axis, /** @type {number} */ other) => (query.has(`at.${axis}`) ? Number(get(`at.${axis}`, "")) : other);
     /** @param {any} [range] of a region, as shown; without one the whole map */
     const chooseRegion = (range) => region.choose(sides.map((name, order) => {
       const values = distinct(order ? ys : xs).map(Number);
@@ -88,9 +94,9 @@ export function map(context) {
       // Cells reach beyond the values that they stand for.
       const [from, to] = shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
       return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
-    }), heldValues.map(({ axis, value }) => ({ name: axis, value: Number(value) })));
+    }), further());
     const kept = region.kept(sides);
-    if (kept && region.element.hidden) region.choose(kept, heldValues.map(({ axis, value }) => ({ name: axis, value: Number(value) })));
+    if (kept && region.element.hidden) region.choose(kept, further());
     const begin = () => {
       chooseRegion();
       void adjust(place, { dragmode: "select" });
@@ -195,6 +201,16 @@ function once(of) {
     known.set(value, text);
     return text;
   };
+}
+
+/**
+ * The middle of the values of a parameter, to a few digits.
+ * @param {number[]} values in order
+ * @param {any} span how the request gives them
+ */
+function middle(values, span) {
+  const [from, to] = [span?.from ?? values[0], span?.to ?? values[values.length - 1]];
+  return Number((span?.scale === "log" ? Math.sqrt(from * to) : (from + to) / 2).toPrecision(4));
 }
 
 /**

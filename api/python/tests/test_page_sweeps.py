@@ -891,3 +891,41 @@ def test_no_build_of_the_drawing_library_is_compiled_for_a_view_that_was_left(op
     page.wait_for_timeout(6000)
     assert page.locator("head script[src*=plotly-cartesian]").count() == 0
     assert warnings == []
+
+
+def test_a_finer_grid_is_dragged_over_points_that_were_drawn(idle: str, opened: Opens) -> None:
+    speed = "operation.rotation_speed_rpm"
+    axes = {"flow_rate": Range(0.01, 0.05), "mud_density": Range(1200, 1800), speed: Range(80, 120)}
+    with Client(idle) as client:
+        sweep = client.submit(
+            "paper-200m", set=SHORT, axes=axes, design="latin_hypercube", samples=12, outputs="summary"
+        )
+        page = opened(f"#/sweeps/{sweep.id}?view=map&colour=state", address=idle)
+        picture = drawn(page, "over flow rate")
+        page.get_by_role("button", name="Finer grid").click()
+        panel = page.get_by_role("region", name="Finer grid")
+        # Across and up a grid; what is not shown is held, at first in the middle of what was drawn from.
+        expect(panel.get_by_label("rotation speed [rpm]")).to_have_value("100")
+        until(page, lambda: picture.evaluate("place => place.layout.dragmode") == "select")
+        box = picture.locator(".nsewdrag").bounding_box()
+        assert box is not None
+        page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 0.25 * box["height"])
+        page.mouse.down()
+        page.mouse.move(box["x"] + 0.75 * box["width"], box["y"] + 0.75 * box["height"], steps=8)
+        page.mouse.up()
+        dragged = panel.get_by_label("From [m³/s]")
+        until(page, lambda: 0.015 < float(dragged.input_value()) < 0.025)
+        panel.get_by_label("rotation speed [rpm]").fill("90")
+        for values in panel.get_by_label("Values").all():
+            values.fill("3")
+        panel.get_by_role("button", name="Add 9 points").click()
+        expect(page.get_by_text("9 points are added.")).to_be_visible()
+        table = sweep.table().to_pandas()
+        added = table[table["ordinal"] > 12]
+        assert set(added[speed]) == {90}
+        assert (added["flow_rate"].nunique(), added["mud_density"].nunique()) == (3, 3)
+        other = opened(
+            f"#/sweeps/{sweep.id}?view=map&colour=state&finer=flow_rate:0.02:0.03:3,mud_density:1300:1500:2&at.{speed}=95",
+            address=idle,
+        )
+        expect(other.get_by_role("region", name="Finer grid").get_by_label("rotation speed [rpm]")).to_have_value("95")

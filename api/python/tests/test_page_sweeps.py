@@ -924,8 +924,6 @@ def test_a_finer_grid_is_dragged_over_points_that_were_drawn(idle: str, opened: 
         added = table[table["ordinal"] > 12]
         assert set(added[speed]) == {90}
         assert (added["flow_rate"].nunique(), added["mud_density"].nunique()) == (3, 3)
-        other = opened(
-            f"#/sweeps/{sweep.id}?view=map&colour=state&finer=flow_rate:0.02:0.03:3,mud_density:1300:1500:2&at.{speed}=95",
-            address=idle,
-        )
+        kept = f"finer=flow_rate:0.02:0.03:3,mud_density:1300:1500:2&at.{speed}=95"
+        other = opened(f"#/sweeps/{sweep.id}?view=map&colour=state&{kept}", address=idle)
         expect(other.get_by_role("region", name="Finer grid").get_by_label("rotation speed [rpm]")).to_have_value("95")

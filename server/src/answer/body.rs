@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use axum::body::{Body, Bytes};
 use axum::response::Response;
@@ -12,9 +12,9 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 use tokio::time::timeout;
 
 use crate::answer::blocking::beside;
+use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
-use crate::answer::stored::broken_off;
 
 /// Bytes that are sent at once.
 const CHUNK: usize = 256 << 10;
@@ -28,10 +28,14 @@ pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
 /// How long a client may take to make room for a chunk: whoever takes less does not read, but hold what others wait for.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// How often an answer that waits for its client looks whether it is to give way.
+const LOOK: Duration = Duration::from_millis(250);
+
 /// Writes an answer in a thread of its own, which computes when it is its turn and has `held` until it ends. What fails before the
 /// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
 pub(crate) async fn send(
     turns: Arc<Semaphore>,
+    courtesy: Courtesy,
     held: impl Send + 'static,
     prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
 ) -> Result<Response> {
@@ -41,7 +45,7 @@ pub(crate) async fn send(
     beside(move || {
         let _entered = span.enter();
         let _held = held;
-        let mut sink = Sink::new(sender, handle, Some(turns));
+        let mut sink = Sink::new(sender, handle, Some(turns), courtesy);
         let answer = match prepare() {
             Ok(answer) => answer,
             Err(error) => return sink.fail(error),
@@ -89,6 +93,31 @@ pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>
     Body::from_stream(chunks.fuse())
 }
 
+/// What breaks off a body.
+fn broken_off(error: Error) -> io::Error {
+    let detail = error.into_problem().detail;
+    tracing::error!(detail, "an answer was broken off");
+    io::Error::other(detail)
+}
+
+/// Room for a chunk, as soon as the client makes some; none if it has gone away, takes nothing, or is so slow that others are given way to.
+pub(crate) async fn room<'s, T>(
+    sender: &'s mpsc::Sender<T>,
+    courtesy: &mut Courtesy,
+) -> Option<mpsc::Permit<'s, T>> {
+    let began = Instant::now();
+    loop {
+        match timeout(LOOK, sender.reserve()).await {
+            Ok(room) => {
+                courtesy.note(began.elapsed());
+                return room.ok();
+            }
+            Err(_) if began.elapsed() >= PATIENCE || courtesy.gives_way(began.elapsed()) => return None,
+            Err(_) => {}
+        }
+    }
+}
+
 /// Chunks on their way to the client.
 pub(crate) struct Sink {
     sender: mpsc::Sender<Result<Chunk>>,
@@ -97,6 +126,7 @@ pub(crate) struct Sink {
     /// Where turns to compute are had, and the one at hand.
     turns: Option<Arc<Semaphore>>,
     turn: Option<OwnedSemaphorePermit>,
+    courtesy: Courtesy,
     is_abandoned: bool,
 }
 
@@ -106,8 +136,10 @@ impl Sink {
         sender: mpsc::Sender<Result<Chunk>>,
         handle: Handle,
         turns: Option<Arc<Semaphore>>,
+        courtesy: Courtesy,
     ) -> Self {
-        let mut sink = Sink { sender, buffer: Vec::new(), handle, turns, turn: None, is_abandoned: false };
+        let mut sink =
+            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, courtesy, is_abandoned: false };
         sink.take_turn();
         sink
     }
@@ -130,7 +162,7 @@ impl Sink {
         let _ = self.send(Err(error));
     }
 
-    /// Whether the client has gone away, or takes nothing.
+    /// Whether the client has gone away, takes nothing, or takes it so slowly that it was broken off for others.
     pub(crate) fn is_abandoned(&self) -> bool {
         self.is_abandoned
     }
@@ -138,12 +170,16 @@ impl Sink {
     /// Others compute while this one waits for its client.
     fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
         self.turn = None;
-        let sent = self.handle.block_on(async { timeout(PATIENCE, self.sender.send(chunk)).await });
-        if !matches!(sent, Ok(Ok(()))) {
-            self.is_abandoned = true;
-            return Err(io::ErrorKind::BrokenPipe.into());
-        }
+        let Some(room) = self.handle.block_on(room(&self.sender, &mut self.courtesy)) else {
+            return Err(self.abandon());
+        };
+        room.send(chunk);
         Ok(())
+    }
+
+    fn abandon(&mut self) -> io::Error {
+        self.is_abandoned = true;
+        io::ErrorKind::BrokenPipe.into()
     }
 }
 
@@ -160,6 +196,10 @@ impl Write for Sink {
         if self.buffer.len() == CHUNK {
             let chunk = std::mem::take(&mut self.buffer);
             self.send(Ok(Chunk::One(chunk.into())))?;
+            // A client that takes each chunk within a moment may take all of them slowly.
+            if self.courtesy.gives_way(Duration::ZERO) {
+                return Err(self.abandon());
+            }
             self.take_turn();
         }
         Ok(count)

@@ -3,15 +3,18 @@
 use std::io;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use drillsweep_api::{PHYSICS_VERSION, ProblemKind};
 use drillsweep_store::{Artifact, BlobId, BlobStore, Repair, Store, StoreError, WorkKey};
 use drillsweep_table::parquet::{self, ReadAt, StoredTable};
 use drillsweep_table::{Table, TableError};
-use futures::{StreamExt, stream};
 use tokio::runtime::Handle;
+use tokio::sync::mpsc;
 
+use crate::answer::body::{self, Chunk};
+use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
 use crate::answer::records;
 
@@ -126,19 +129,39 @@ impl Stored {
         })
     }
 
-    /// A body of a range of the bytes, which are read as the client takes them; `held` is dropped at its end. The first of them are
-    /// read before there is one, so that what is damaged there is a problem. What is damaged further on breaks it off.
-    pub(crate) async fn body(self, range: Range<u64>, held: impl Send + 'static) -> Result<Body> {
-        let mut stretches = Self::stretches(range);
+    /// A body of a range of the bytes, which are read as the client takes them. The first of them are read before there is one, so that
+    /// what is damaged there is a problem. What is damaged further on breaks it off. One that is read at once takes no place that others
+    /// could hold up; any other asks for its place, which it has to its end.
+    pub(crate) async fn body<H: Send + 'static>(
+        self,
+        range: Range<u64>,
+        place: impl Future<Output = Result<(H, Courtesy)>>,
+    ) -> Result<Body> {
+        let mut stretches = Self::stretches(range).peekable();
         let Some(first) = stretches.next() else { return Ok(Body::empty()) };
-        let first = stream::once(std::future::ready(Ok(self.range(first).await?)));
-        let later = stream::try_unfold((self, stretches, held), async |(stored, mut stretches, held)| {
-            let Some(stretch) = stretches.next() else { return Ok(None) };
-            let bytes = stored.range(stretch).await.map_err(broken_off)?;
-            Ok::<_, io::Error>(Some((bytes, (stored, stretches, held))))
+        if stretches.peek().is_none() {
+            return Ok(self.range(first).await?.into());
+        }
+        let (held, mut courtesy) = place.await?;
+        let first = Chunk::One(self.range(first).await?);
+        let (sender, receiver) = mpsc::channel(1);
+        tokio::spawn(async move {
+            let _held = held;
+            while let Some(stretch) = stretches.next() {
+                let Some(room) = body::room(&sender, &mut courtesy).await else { return };
+                let chunk = match self.range(stretch).await {
+                    Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
+                    Ok(bytes) => Ok(Chunk::One(bytes)),
+                    Err(error) => Err(error),
+                };
+                let is_broken = chunk.is_err();
+                room.send(chunk);
+                if is_broken || stretches.peek().is_some() && courtesy.gives_way(Duration::ZERO) {
+                    return;
+                }
+            }
         });
-        // Compression polls a stream beyond its end.
-        Ok(Body::from_stream(first.chain(later).fuse()))
+        Ok(body::body(Some(first), receiver))
     }
 
     /// The table, to be read in parts by a thread that may wait.
@@ -174,13 +197,6 @@ impl Stored {
             Err(error) => error.into(),
         }
     }
-}
-
-/// What breaks off a body.
-pub(crate) fn broken_off(error: Error) -> io::Error {
-    let detail = error.into_problem().detail;
-    tracing::error!(detail, "an answer was broken off");
-    io::Error::other(detail)
 }
 
 /// Refuses a table that has reached its age.

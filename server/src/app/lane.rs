@@ -10,6 +10,7 @@ use tokio::time::timeout;
 
 use crate::answer::blocking::blocking;
 use crate::answer::body;
+use crate::answer::courtesy::{Courtesy, Queue};
 use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
 
@@ -26,12 +27,14 @@ pub(crate) struct Lane {
     waiting: Semaphore,
     turns: Arc<Semaphore>,
     pace: Arc<Pace>,
+    queue: Arc<Queue>,
 }
 
 /// Memory or a place, until it is dropped.
 pub(crate) struct Place {
     held: Held,
     turns: Arc<Semaphore>,
+    courtesy: Courtesy,
 }
 
 struct Held {
@@ -67,36 +70,52 @@ impl Pace {
 }
 
 impl Lane {
-    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait.
-    pub(crate) fn new(units: usize, at_once: usize, waiting: usize) -> Self {
+    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; after
+    /// `grace` answers whose clients are slow give way to them.
+    pub(crate) fn new(units: usize, at_once: usize, waiting: usize, grace: Duration) -> Self {
         Self {
             units: Arc::new(Semaphore::new(units)),
             all: units,
             waiting: Semaphore::new(waiting),
             turns: Arc::new(Semaphore::new(at_once.max(1))),
             pace: Arc::default(),
+            queue: Queue::new(grace),
         }
+    }
+
+    /// Takes so many units, or where there are fewer all of them, if they are free and nobody waits for them.
+    pub(crate) fn try_enter(&self, units: usize) -> Option<Place> {
+        let permit = self.units.clone().try_acquire_many_owned(self.bounded(units)).ok()?;
+        Some(self.place(permit))
     }
 
     /// Takes so many units, or where there are fewer all of them, in the order of arrival. To be taken before anything large is loaded.
     pub(crate) async fn enter(&self, units: usize) -> Result<Place> {
-        let units = u32::try_from(units.min(self.all).max(1)).unwrap_or(u32::MAX);
-        let place = |permit| Place {
-            held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
-            turns: self.turns.clone(),
-        };
-        if let Ok(permit) = self.units.clone().try_acquire_many_owned(units) {
-            return Ok(place(permit));
+        if let Some(place) = self.try_enter(units) {
+            return Ok(place);
         }
         let too_many = || {
             let reason = "more large answers are asked for than can be computed at once";
             Error::unavailable_for(reason, self.pace.advice())
         };
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
-        match timeout(PATIENCE, self.units.clone().acquire_many_owned(units)).await {
-            Ok(Ok(permit)) => Ok(place(permit)),
+        let _queued = self.queue.wait();
+        match timeout(PATIENCE, self.units.clone().acquire_many_owned(self.bounded(units))).await {
+            Ok(Ok(permit)) => Ok(self.place(permit)),
             // The semaphore is never closed.
             Ok(Err(_)) | Err(_) => Err(too_many()),
+        }
+    }
+
+    fn bounded(&self, units: usize) -> u32 {
+        u32::try_from(units.min(self.all).max(1)).unwrap_or(u32::MAX)
+    }
+
+    fn place(&self, permit: OwnedSemaphorePermit) -> Place {
+        Place {
+            held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
+            turns: self.turns.clone(),
+            courtesy: Courtesy::to(&self.queue),
         }
     }
 }
@@ -120,7 +139,12 @@ impl Place {
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
-        body::send(self.turns, self.held, prepare).await
+        body::send(self.turns, self.courtesy, self.held, prepare).await
+    }
+
+    /// What holds the place, and when it is given up, for a body that is written otherwise.
+    pub(crate) fn into_parts(self) -> (impl Send + 'static, Courtesy) {
+        (self.held, self.courtesy)
     }
 }
 
@@ -128,9 +152,11 @@ impl Place {
 mod tests {
     use super::*;
 
+    const GRACE: Duration = Duration::from_secs(10);
+
     #[tokio::test]
     async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
-        let lane = Arc::new(Lane::new(1, 1, 1));
+        let lane = Arc::new(Lane::new(1, 1, 1, GRACE));
         let first = lane.enter(1).await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
             let lane = lane.clone();
@@ -149,7 +175,7 @@ mod tests {
 
     #[tokio::test]
     async fn work_takes_what_it_needs_and_at_most_all_there_is() {
-        let lane = Lane::new(10, 1, 0);
+        let lane = Lane::new(10, 1, 0, GRACE);
         let small = lane.enter(3).await.map_err(Error::into_problem).expect("there is room");
         let other = lane.enter(7).await.map_err(Error::into_problem).expect("there is just room");
         assert!(lane.enter(1).await.is_err());

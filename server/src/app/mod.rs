@@ -16,6 +16,7 @@ use drillsweep_store::Store;
 use tokio::sync::{Semaphore, watch};
 
 use crate::answer::body::MEMORY_OF_BODY;
+use crate::answer::courtesy::Courtesy;
 use crate::answer::error::Result;
 use crate::answer::extract::BodyPatience;
 use crate::answer::stored::MEMORY_OF_FILE;
@@ -48,10 +49,13 @@ pub struct Config {
     pub connections: ConnectionLimits,
     /// Large answers (tables, pictures, views of histories) that are computed at once, and as many plans and expansions of sweeps.
     pub large_answers: usize,
-    /// Bytes of memory that large answers take together; files that are sent as they are stored take half as much besides.
+    /// Bytes of memory that large answers take together. Those that take a fifth of it at most have two fifths of it besides, for
+    /// themselves, and files that are sent as they are stored have half of it besides.
     pub large_answer_bytes: usize,
     /// Requests for them that may wait; those beyond are told to come back.
     pub large_answers_waiting: usize,
+    /// How long a request for one waits before answers whose clients take them slowly are broken off to make room.
+    pub large_answer_grace: Duration,
 }
 
 impl Default for Config {
@@ -66,6 +70,7 @@ impl Default for Config {
             large_answers: std::thread::available_parallelism().map_or(2, std::num::NonZero::get),
             large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
+            large_answer_grace: Duration::from_secs(10),
         }
     }
 }
@@ -87,6 +92,8 @@ pub(crate) struct App {
     pub(crate) columns: Arc<KnownColumns>,
     /// Memory for views of results, which read and write out tables \[KiB\].
     views: Arc<Lane>,
+    /// The same for views that take little: they do not wait for those that take much.
+    small_views: Arc<Lane>,
     /// Memory for files that are sent as they are stored \[KiB\].
     files: Arc<Lane>,
     /// Places for expanding and planning sweeps, which searches an equilibrium, and for `rk4` estimates how long a step may be.
@@ -95,7 +102,10 @@ pub(crate) struct App {
 
 impl App {
     pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
-        let lane = |units| Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting));
+        let lane = |units| {
+            let grace = config.large_answer_grace;
+            Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, grace))
+        };
         App {
             store,
             stopping,
@@ -106,6 +116,7 @@ impl App {
             feed: Arc::default(),
             columns: Arc::default(),
             views: lane(config.large_answer_bytes / KIB),
+            small_views: lane(config.large_answer_bytes / KIB * 2 / 5),
             files: lane(config.large_answer_bytes / 2 / KIB),
             plans: lane(config.large_answers),
             config: Arc::new(config),
@@ -114,12 +125,20 @@ impl App {
 
     /// Takes so much memory \[bytes\] for a view of a result, and what its body takes on its way.
     pub(crate) async fn view(&self, bytes: u64) -> Result<Place> {
-        self.views.enter(kibibytes(bytes.saturating_add(MEMORY_OF_BODY))).await
+        let memory = kibibytes(bytes.saturating_add(MEMORY_OF_BODY));
+        if memory > self.config.large_answer_bytes / KIB / 5 {
+            return self.views.enter(memory).await;
+        }
+        let free = self.small_views.try_enter(memory).or_else(|| self.views.try_enter(memory));
+        match free {
+            Some(place) => Ok(place),
+            None => self.small_views.enter(memory).await,
+        }
     }
 
-    /// Takes the memory for a file that is sent as it is stored.
-    pub(crate) async fn file(&self) -> Result<Place> {
-        self.files.enter(kibibytes(MEMORY_OF_FILE)).await
+    /// Takes the memory for a file that is sent as it is stored, with when it is given up.
+    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Courtesy)> {
+        Ok(self.files.enter(kibibytes(MEMORY_OF_FILE)).await?.into_parts())
     }
 }
 

@@ -136,19 +136,18 @@ pub(crate) async fn show(
     let Ok(ranges) = ranges.map(|ranges| ranges.validate(length)).transpose() else {
         return Ok(not_satisfiable(length));
     };
-    let place = app.file().await?;
     match ranges.as_deref() {
         Some([range]) => {
             let wanted = *range.start()..range.end() + 1;
             let bytes = [(header::CONTENT_LENGTH, HeaderValue::from(wanted.end - wanted.start))];
             let part = format!("bytes {}-{}/{length}", range.start(), range.end());
-            let body = stored.body(wanted, place).await?;
+            let body = stored.body(wanted, app.file()).await?;
             Ok((StatusCode::PARTIAL_CONTENT, usual, bytes, [(header::CONTENT_RANGE, part)], body)
                 .into_response())
         }
         _ => {
             let bytes = [(header::CONTENT_LENGTH, HeaderValue::from(length))];
-            Ok((usual, bytes, stored.body(0..length, place).await?).into_response())
+            Ok((usual, bytes, stored.body(0..length, app.file()).await?).into_response())
         }
     }
 }

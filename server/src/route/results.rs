@@ -220,10 +220,9 @@ pub(super) async fn whole_file(
     if let Some(unchanged) = tag.unchanged(headers) {
         return Ok(unchanged);
     }
-    let place = app.file().await?;
     let head = Head::new(Format::Parquet, file_name, tag);
     let length = stored.length();
-    let mut response = head.response(stored.body(0..length, place).await?);
+    let mut response = head.response(stored.body(0..length, app.file()).await?);
     response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
     Ok(response)
 }

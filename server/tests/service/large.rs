@@ -232,3 +232,88 @@ async fn download_by_the_dozen() {
     stop.send(()).unwrap();
     running.await.unwrap().unwrap();
 }
+
+/// Serves the bench's store, and gives the address and what stops the server when it is dropped.
+async fn served(bench: &Bench, config: Config) -> (SocketAddr, tokio::sync::oneshot::Sender<()>) {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap();
+    let (stop, stopped) = tokio::sync::oneshot::channel::<()>();
+    let store = bench.store.clone();
+    tokio::spawn(serve(Listeners { api: listener, metrics: None }, store, config, async {
+        let _ = stopped.await;
+    }));
+    (address, stop)
+}
+
+/// A client that asks for this and takes nothing but the head of the answer, whose first line is given.
+async fn asked(address: SocketAddr, path: &str) -> (TcpStream, String) {
+    let mut connection = TcpStream::connect(address).await.unwrap();
+    let request = format!("GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    connection.write_all(request.as_bytes()).await.unwrap();
+    let mut line = Vec::new();
+    while !line.ends_with(b"\r\n") {
+        line.push(connection.read_u8().await.unwrap());
+    }
+    (connection, String::from_utf8(line).unwrap().trim_end().to_owned())
+}
+
+const OK: &str = "HTTP/1.1 200 OK";
+const BUSY: &str = "HTTP/1.1 503 Service Unavailable";
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_takes_little_does_not_wait_for_slow_clients_of_what_takes_much() {
+    let bench = Bench::new().await;
+    let nodes = 40;
+    let point = finished(&bench, &noise(10_000, nodes), nodes).await;
+    // Whoever would have to wait is told to come back at once, and nobody gives way.
+    let config = Config {
+        large_answer_bytes: 30 << 20,
+        large_answers_waiting: 0,
+        large_answer_grace: std::time::Duration::MAX,
+        ..Config::default()
+    };
+    let (address, _stop) = served(&bench, config).await;
+    for (large, small) in
+        [("history?format=csv", "statics?format=csv"), ("artifacts/history", "artifacts/statics")]
+    {
+        let mut slow = Vec::new();
+        loop {
+            let (connection, status) = asked(address, &format!("{point}/{large}")).await;
+            slow.push(connection);
+            if status == BUSY {
+                break;
+            }
+            assert_eq!(status, OK);
+        }
+        assert!(slow.len() > 1, "{large}: somebody is served");
+        for _ in 0..100 {
+            assert_eq!(asked(address, &format!("{point}/{small}")).await.1, OK, "{small} beside {large}");
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn clients_that_take_much_slowly_give_way_to_those_who_wait() {
+    let bench = Bench::new().await;
+    let nodes = 40;
+    let history = noise(10_000, nodes);
+    let point = finished(&bench, &history, nodes).await;
+    let stored = parquet::write(&history).unwrap().len();
+    // Memory for one.
+    let config = Config {
+        large_answer_bytes: 1 << 20,
+        large_answer_grace: std::time::Duration::from_millis(100),
+        ..Config::default()
+    };
+    let (address, _stop) = served(&bench, config).await;
+    for (path, least) in [("history?format=csv", stored * 2), ("artifacts/history", stored)] {
+        let path = format!("{point}/{path}");
+        let (mut slow, status) = asked(address, &path).await;
+        assert_eq!(status, OK);
+        assert!(download(address, &path).await > least, "{path}: who comes later has all of it");
+        let mut taken = Vec::new();
+        // A broken connection may end in an error as well.
+        let _ = slow.read_to_end(&mut taken).await;
+        assert!(taken.len() < least, "{path}: {} bytes of an answer that was broken off", taken.len());
+    }
+}

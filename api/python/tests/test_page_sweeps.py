@@ -927,3 +927,47 @@ def test_a_finer_grid_is_dragged_over_points_that_were_drawn(idle: str, opened: 
         kept = f"finer=flow_rate:0.02:0.03:3,mud_density:1300:1500:2&at.{speed}=95"
         other = opened(f"#/sweeps/{sweep.id}?view=map&colour=state&{kept}", address=idle)
         expect(other.get_by_role("region", name="Finer grid").get_by_label("rotation speed [rpm]")).to_have_value("95")
+
+
+def test_known_points_are_told_at_each_accuracy(opened: Opens, client: Client) -> None:
+    changes = {**SHORT, "operation.rotation_speed_rpm": 117}
+    axes = {"flow_rate": [0.011, 0.021, 0.031]}
+    client.submit("paper-200m", set=changes, axes=axes, outputs="summary").wait(timeout=120.0)
+    standard = {**changes, "accuracy": "standard"}
+    few = {"flow_rate": [0.011]}
+    client.submit("paper-200m", set=standard, axes=few, outputs="summary").wait(timeout=120.0)
+    body = {"preset": "paper-200m", "set": changes, "axes": {"flow_rate": {"values": axes["flow_rate"]}}}
+    page = opened(f"#/new?request={quote(json.dumps({**body, 'outputs': 'summary'}))}")
+    rows = page.get_by_role("region", name="Plan").locator("tbody tr")
+    expect(rows).to_have_count(3)
+    for row, (accuracy, known) in zip(rows.all(), [("draft", 3), ("standard", 1), ("reference", 0)], strict=True):
+        expect(row.get_by_role("cell").nth(0)).to_contain_text(accuracy)
+        expect(row.get_by_role("cell").nth(3)).to_have_text(str(known))
+    expect(rows.nth(0).get_by_role("cell").nth(4)).to_have_text("none")
+    # A worker has measured its machine.
+    expect(rows.nth(1).get_by_role("cell").nth(4)).to_have_text(re.compile(r"^[1-9].* m?s$"))
+
+
+def test_many_points_are_not_looked_up_at_other_accuracies(opened: Opens) -> None:
+    axes = {"flow_rate": {"from": 0.01, "to": 0.06, "count": 5001}}
+    body = {"preset": "paper-200m", "set": SHORT, "axes": axes, "outputs": "summary"}
+    page = opened(f"#/new?request={quote(json.dumps(body))}")
+    rows = page.get_by_role("region", name="Plan").locator("tbody tr")
+    expect(rows).to_have_count(3)
+    expect(rows.nth(0).get_by_role("cell").nth(3)).to_have_text("0")
+    expect(rows.nth(1).get_by_role("cell").nth(3)).to_have_text("not looked up")
+
+
+def test_points_are_not_shown_beside_a_request_that_cannot_be_read(opened: Opens) -> None:
+    page = opened(f"#/new?request={quote(json.dumps({'preset': 'paper-200m', 'axes': AXES}))}")
+    drawn(page, "Preview")
+    values = page.get_by_role("textbox", name="Values").first
+    values.fill("0.01, 0.0x")
+    expect(page.get_by_text("The plan appears here once the request can be read.")).to_be_visible()
+    expect(page.get_by_role("region", name="Preview")).to_be_hidden()
+    values.fill("0.01, 0.02")
+    expect(page.get_by_role("region", name="Preview")).to_be_visible()
+    drawn(page, "Preview")
+
+
+AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}

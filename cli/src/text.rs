@@ -60,9 +60,15 @@ pub(crate) fn count(number: impl Display, of: &str) -> String {
 }
 
 /// A text with its control characters but line ends and tabs as `\u001b`, which a terminal shows and JSON reads as the same
-/// character: names and messages of others are printed, and must not move the cursor or rename the window.
+/// character: names and messages of others are printed, and must not move the cursor, rename the window, break lines or turn around
+/// what stands beside them.
 pub(crate) fn visible(text: &str) -> Cow<'_, str> {
-    let is_obeyed = |character: char| character.is_control() && !matches!(character, '\n' | '\t');
+    let is_obeyed = |character: char| match character {
+        '\n' | '\t' => false,
+        // Separators of lines and paragraphs, and what changes the direction of writing (Unicode Standard Annex 9, section 2).
+        '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => true,
+        _ => character.is_control(),
+    };
     if !text.contains(is_obeyed) {
         return Cow::Borrowed(text);
     }
@@ -98,6 +104,7 @@ mod tests {
         assert_eq!(visible("a\tb\né"), "a\tb\né");
         let hostile = "\u{1b}]0;owned\u{7}\u{9b}2J";
         assert_eq!(visible(hostile), "\\u001b]0;owned\\u0007\\u009b2J");
+        assert_eq!(visible("a\u{202e}b\u{2028}c"), "a\\u202eb\\u2028c");
         let json = serde_json::to_string(hostile).unwrap();
         assert_eq!(serde_json::from_str::<String>(&visible(&json)).unwrap(), hostile);
     }

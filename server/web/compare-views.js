@@ -225,7 +225,8 @@ async function drawSpectra(place, comparison) {
     return spectrum;
   });
   const least = found.reduce((/** @type {[Compared, any] | null} */ best, one) => (one[1].attributes.resolved_hz < (best?.[1].attributes.resolved_hz ?? range) ? one : best), null);
-  if (least) comparison.says.push(`Shaded: beyond what the time steps of point ${least[0].number} resolve${found.length > 1 ? ", the lowest of all" : ""}, ${say("frequency", least[1].attributes.resolved_hz)}.`);
+  const isAlike = found.every(([, table]) => table.attributes.resolved_hz === least?.[1].attributes.resolved_hz);
+  if (least) comparison.says.push(`Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`);
   const traces = found.map(([point, spectrum]) => spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name));
   const layout = spectrumLayout(found.map(([point, table]) => ({ table, colour: point.colour })), comparison.query.get("amplitude") === "log");
   return draw(place, traces, { ...layout, shows: range }, comparison.signal);

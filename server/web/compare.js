@@ -11,7 +11,7 @@ import { attend } from "./notices.js";
 import { rangesOf } from "./orbit.js";
 import { canvas, DASHES, LINES } from "./plots.js";
 import { ACCOUNTS } from "./point-energy.js";
-import { profileTables, QUANTITIES, quantityTicks, tableOf } from "./point-profiles.js";
+import { profileTables, QUANTITIES, quantityTicks, scrolled, tableOf } from "./point-profiles.js";
 import { exaggerationChoice } from "./point-well.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
@@ -245,7 +245,7 @@ export async function show(main, route, signal) {
       unknown.map(({ key, text }) => h("p", { class: "wrong" }, `${text} `, takeOut(key, "it"))),
       adding,
     ),
-    points.length > 0 && [h("div", { style: "height:1rem" }), tabs, h("section", { class: "panel", "aria-label": "Picture" }, controls, lacking, h("figure", {}, place, caption)), taken],
+    points.length > 0 && [h("div", { style: "height:1rem" }), tabs, h("section", { class: "panel", "aria-label": "Picture" }, controls, lacking, h("figure", {}, view === "profiles" ? scrolled(place) : place, caption)), taken],
   );
   if (points.length) {
     drawControls();

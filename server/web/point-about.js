@@ -27,7 +27,7 @@ export function about(context) {
   async function drawFiles() {
     const { artifacts } = await get(`${path}/artifacts`, {}, signal);
     const rows = artifacts.map((/** @type {any} */ file) => {
-      const hasView = ["profile", "statics", "history", "contacts", "energy"].includes(file.name);
+      const hasView = ["profile", "statics", "history", "contacts", "energy", "snapshots"].includes(file.name);
       return h("tr", {}, h("td", {}, file.expired ? `${file.name} (expired)` : h("a", { href: file.link, download: "" }, `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`)), h("td", { class: "number" }, file.rows), h("td", { class: "number" }, bytes(file.bytes)), h("td", {}, hasView && !file.expired && h("a", { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` }, "CSV")));
     });
     fill(files, h("h2", {}, "Downloads"), rows.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "File"), h("th", { class: "number" }, "Rows"), h("th", { class: "number" }, "Size"), h("th", {}, "As"))), h("tbody", {}, rows)) : h("p", { class: "soft" }, "Of this point only its row of the table is stored."));

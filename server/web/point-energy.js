@@ -8,6 +8,10 @@ const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
 const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
 const HELD = ["kinetic", "stored"];
 
+/** Widths of a number beside a bar and of the accounts' names, about [pixels]; of a place that has no size yet, the usual one. */
+const [BESIDE, NAMES, USUAL] = [64, 190, 1000];
+/** Part of the bars' width that is given to numbers at an end, at most. */
+const MOST_BESIDE = 0.3;
 /** All accounts, and what the ledger misses. */
 export const ACCOUNTS = [...SUPPLIED, ...DISSIPATED, ...HELD, "residual"];
 
@@ -45,7 +49,12 @@ export function energy(context) {
       const names = backwards.filter((account) => kind(account) === group);
       return { type: "bar", orientation: "h", name, y: names.map(label), x: names.map((account) => shown(account, [change(account)])[0]), marker: { color: LINES[group] }, showlegend: true, text: names.map((account) => say(account, change(account), 3)), textposition: "outside", cliponaxis: false, hovertemplate: `%{y}: %{x:.4~g} ${power}<extra></extra>` };
     });
-    await draw(bars, traces, { xaxis: { title: `energy [${power}]`, quantity: backwards[0] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal);
+    const values = accounts.map((account) => Number(shown(account, [change(account)])[0]));
+    const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
+    // Numbers stand beyond the ends of bars.
+    const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (bars.clientWidth || USUAL) - NAMES));
+    const room = (part / (1 - 2 * part)) * (largest - least || 1);
+    await draw(bars, traces, { xaxis: { title: `energy [${power}]`, quantity: backwards[0], range: [least < 0 ? least - room : 0, largest + room] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal);
     await draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${power}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${power}]`, quantity: backwards[0] }, hovermode: "x" }, context.signal);
   }
 

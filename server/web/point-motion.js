@@ -32,6 +32,7 @@ export function motion(context) {
   const rotation = canvas("Rotation speed and torque of the node", "rotation", "low");
   const orbit = canvas("Orbit of the node", "orbit");
   const spectrum = canvas("Full spectrum of the node", "spectrum");
+  const rotationName = h("h2", {}, "Rotation speed and torque");
   const statistics = h("div", {});
   const listed = h("div", {});
   const controls = h("div", { class: "controls" });
@@ -171,6 +172,8 @@ export function motion(context) {
     // Where torsion is not solved for there is none.
     if (!table) return;
     const { columns } = table;
+    rotationName.textContent = `Rotation speed and torque of node ${node} at ${say("measured_depth", place().depth)}`;
+    rotation.setAttribute("aria-label", rotationName.textContent);
     const [speed, torque] = [`rotation_speed_${node}`, `torque_${node}`];
     await draw(
       rotation,
@@ -178,7 +181,7 @@ export function motion(context) {
         { type: "scatter", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
         { type: "scatter", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
       ],
-      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false } },
+      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false, tickmode: "auto" } },
       signal,
     );
   }
@@ -369,7 +372,7 @@ export function motion(context) {
     h("div", { style: "height:1rem" }),
     h("div", { class: "half" }, h("div", { class: "panel" }, h("h2", {}, "Orbit, looking downhole"), h("figure", {}, orbit, h("figcaption", {}, "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall."))), h("div", { class: "panel" }, h("h2", {}, "Full spectrum"), h("figure", {}, spectrum, h("figcaption", {}, "Shaded: beyond what the time steps resolve."))), h("div", { class: "panel" }, statistics), h("div", { class: "panel" }, listed)),
     h("div", { style: "height:1rem" }),
-    h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque"), h("figure", {}, rotation)),
+    h("div", { class: "panel" }, rotationName, h("figure", {}, rotation)),
   );
   return {
     element: nodes.length ? h("div", {}, controls, wrong, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),

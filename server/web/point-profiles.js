@@ -42,6 +42,17 @@ export function overDepth(name, table) {
   return { value: value.flatMap((entry) => [entry, entry]), depth: top.flatMap((entry, index) => [entry, bottom[index]]) };
 }
 
+/** Width that a profile needs for its name and its ticks [pixels]. */
+const LEAST_WIDTH = 150;
+
+/**
+ * A place of profiles that is as wide as they need: where a screen is narrower, it is scrolled sideways.
+ * @param {HTMLElement} place
+ */
+export function scrolled(place) {
+  return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Profiles, scrollable" }, place);
+}
+
 /**
  * Several quantities side by side over one depth axis that grows downwards.
  * @param {HTMLElement} place
@@ -51,12 +62,13 @@ export function overDepth(name, table) {
  */
 export async function drawProfiles(place, names, points, signal) {
   const { soft } = inks();
+  place.style.minWidth = `${names.length * LEAST_WIDTH}px`;
   const traces = names.flatMap((name, column) =>
     points.flatMap((point, order) => {
       const table = point.table(name);
       if (!table?.columns[name]) return [];
       const { value, depth } = overDepth(name, table);
-      return [{ type: "scatter", mode: "lines", x: value, y: depth, xaxis: `x${column ? column + 1 : ""}`, yaxis: "y", name: point.name, legendgroup: String(order), showlegend: column === 0 && points.length > 1, line: { color: point.colour, dash: point.dash, width: 1.4 }, hovertemplate: "%{x:.4~g}<extra></extra>" }];
+      return [{ type: "scatter", mode: "lines", x: value, y: depth, xaxis: `x${column ? column + 1 : ""}`, yaxis: "y", name: point.name, meta: name, legendgroup: String(order), showlegend: column === 0 && points.length > 1, line: { color: point.colour, dash: point.dash, width: 1.4 }, hovertemplate: "%{x:.4~g}<extra></extra>" }];
     }),
   );
   const width = 1 / names.length;
@@ -75,8 +87,9 @@ export async function drawProfiles(place, names, points, signal) {
 function wrapped(text) {
   const middle = text.indexOf(" [");
   if (text.length < 18) return text;
-  if (middle > 0) return `${text.slice(0, middle)}<br>${text.slice(middle + 1)}`;
-  return text;
+  // Before the unit, or else before the symbol.
+  const at = middle > 0 ? middle : text.lastIndexOf(" ");
+  return at > 0 ? `${text.slice(0, at)}<br>${text.slice(at + 1)}` : text;
 }
 
 /**
@@ -118,26 +131,29 @@ export function profiles(context) {
     await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
     const shape = await drawProfiles(place, names, [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }], context.signal);
     shape.removeAllListeners?.("plotly_hover");
-    shape.on?.("plotly_hover", (/** @type {any} */ event) => read(event.points[0].y, names));
+    shape.on?.("plotly_hover", (/** @type {any} */ event) => read(event.points, names));
   }
 
-  /** @param {number} depth as shown @param {string[]} names */
-  function read(depth, names) {
+  /** Says in a line what the picture says at its curves; at the end of an element that is the same of both. @param {any[]} points of the picture @param {string[]} names */
+  function read(points, names) {
+    const depth = points[0].y;
     const words = names.map((name) => {
       const { value, depth: depths } = overDepth(name, tables[tableOf(name)]);
+      const told = points.find((point) => point.data.meta === name);
       let nearest = 0;
       depths.forEach((entry, index) => {
         if (Math.abs(Number(entry) - depth) < Math.abs(Number(depths[nearest]) - depth)) nearest = index;
       });
+      const seen = told ? told.x : value[nearest];
       const size = shown(name, [1])[0] ?? 1;
-      return `${label(name)} ${say(name, value[nearest] === null ? null : Number(value[nearest]) / size)}`;
+      return `${label(name)} ${say(name, seen === null ? null : Number(seen) / size)}`;
     });
     const size = shown("measured_depth", [1])[0] ?? 1;
     fill(reading, `At ${say("measured_depth", depth / size)}: ${words.join(" · ")}`);
   }
 
   return {
-    element: h("div", {}, ticks.element, h("figure", {}, place), reading),
+    element: h("div", {}, ticks.element, h("figure", {}, scrolled(place)), reading),
     draw: redraw,
     request: () => {
       const asked = profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));

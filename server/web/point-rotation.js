@@ -96,7 +96,7 @@ export const TORQUE = "The torque is what the string carries in its last element
  * @param {any} point
  */
 function sayTorqueOnBit({ scenario }) {
-  return `At the bit it moves about the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by the friction of the wall on the bit and the inertia of what is below the middle of that element.`;
+  return `At the bit it differs from the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by what the friction of the wall and the inertia below the middle of that element take.`;
 }
 
 /** @param {import("./point.js").PointContext} context */

@@ -215,7 +215,7 @@ export function stringPlayer(strings, onLoad) {
       const all = motion.interval > 1.5 * there.interval ? `, every ${Math.round(motion.interval / there.interval)}th of them` : "";
       return `${heading && `${heading}: `}${motion.count} snapshots, ${say("time", motion.interval)} apart${all}`;
     });
-    fill(caption, `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, rings are where it touches the wall; distances from the axis are drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}.${colour()[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to come nearer.`);
+    fill(caption, `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole with marks of measured depth beside it, rings are where the string touches the wall; distances from the axis are drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}.${colour()[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to come nearer.`);
   }
 
   /** A value of a node at the present time, between two snapshots. @param {Frames} motion @param {Float32Array} column @param {number} node */
@@ -242,6 +242,7 @@ export function stringPlayer(strings, onLoad) {
       scene.show({
         frames: geometry,
         clearance: statics.clearance,
+        depth: { values: shown("measured_depth", depth).map(Number), symbol: unit("measured_depth").symbol },
         stretch: [Math.min(upper, depth.length - 2), lower < 0 ? depth.length - 1 : Math.max(lower, upper + 1)],
         factor: factor(),
         place: (node) => placeOf(motion, node),

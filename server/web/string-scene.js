@@ -10,6 +10,8 @@ import { inks } from "./plots.js";
 const [CORNERS, RINGS] = [28, 36];
 /** How far a key or a turn of the wheel moves the view. */
 const [TURN, NEARER] = [0.08, 1.15];
+/** Marks of depth along the stretch that is shown, about, and pixels between two at least. */
+const [MARKS, BETWEEN] = [6, 16];
 /** Radius of a dot. */
 const DOT = 4.5;
 
@@ -18,6 +20,7 @@ const DOT = 4.5;
  * @typedef {object} Scene
  * @property {{axis: Vector[], u: Vector[], v: Vector[]}} frames
  * @property {number[]} clearance of each node [m]
+ * @property {{values: number[], symbol: string}} depth measured depth of each node, as it is shown
  * @property {[number, number]} stretch first and last node that are shown
  * @property {number} factor by which the distance from the axis is multiplied
  * @property {(node: number) => [number, number]} place u and v of a node [m]
@@ -151,6 +154,7 @@ export function stringScene(name, view, onView, signal) {
   function drawAll(scene, width, height) {
     const project = projection(scene, width, height);
     drawHole(scene, project);
+    drawDepths(scene, project);
     if (scene.rest) drawLine(scene, scene.rest, project);
     drawString(scene, project);
     drawCompass(height);
@@ -205,6 +209,46 @@ export function stringScene(name, view, onView, signal) {
     pen.setLineDash([6, 5]);
     path(first, last, (node) => project(frames.axis[node]));
     pen.setLineDash([]);
+  }
+
+  /** Marks of depth beside the hole. @param {Scene} shown @param {(place: Vector) => number[]} project */
+  function drawDepths({ frames, stretch: [first, last], clearance, factor, depth }, project) {
+    const { soft, text } = inks();
+    const step = niceStep((depth.values[last] - depth.values[first]) / MARKS);
+    pen.lineWidth = 1.2;
+    pen.font = "12px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    /** @type {number[] | undefined} */
+    let before;
+    let node = first;
+    for (let mark = Math.ceil(depth.values[first] / step - 1e-9); mark * step <= depth.values[last] * (1 + 1e-9); mark += 1) {
+      while (node < last - 1 && depth.values[node + 1] < mark * step) node += 1;
+      const part = (mark * step - depth.values[node]) / (depth.values[node + 1] - depth.values[node] || 1);
+      const [from, to] = [project(frames.axis[node]), project(frames.axis[node + 1])];
+      const along = [to[0] - from[0], to[1] - from[1]];
+      const length = Math.hypot(along[0], along[1]);
+      // To the right of the hole; of one that is seen from its end, level.
+      const side = length > 0.5 ? Math.sign(-along[1] || 1) : 1;
+      const [x, y] = length > 0.5 ? [(-side * along[1]) / length, (side * along[0]) / length] : [1, 0];
+      const radius = factor * clearance[node];
+      const room = Math.max(...Array.from({ length: CORNERS }, (_, corner) => {
+        const angle = (2 * Math.PI * corner) / CORNERS;
+        const [right, down] = project(offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle)));
+        return (right - from[0]) * x + (down - from[1]) * y;
+      }));
+      const at = (/** @type {number} */ beyond) => [from[0] + part * along[0] + x * (room + beyond), from[1] + part * along[1] + y * (room + beyond)];
+      const [start, end, words] = [at(1), at(8), at(12)];
+      if (before && Math.hypot(words[0] - before[0], words[1] - before[1]) < BETWEEN) continue;
+      before = words;
+      pen.strokeStyle = soft;
+      pen.beginPath();
+      pen.moveTo(start[0], start[1]);
+      pen.lineTo(end[0], end[1]);
+      pen.stroke();
+      pen.fillStyle = text;
+      pen.textAlign = x > 0.4 ? "left" : "center";
+      pen.fillText(`${Number((mark * step).toPrecision(6))} ${depth.symbol}`, words[0], words[1] + (x > 0.4 ? 0 : 6 * Math.sign(y)));
+    }
   }
 
   /** @param {Scene} shown @param {(node: number) => [number, number]} place @param {(place: Vector) => number[]} project */
@@ -312,6 +356,15 @@ export function stringScene(name, view, onView, signal) {
       pen = screen;
     },
   };
+}
+
+/**
+ * The step of 1, 2 or 5 times a power of ten that is nearest above another.
+ * @param {number} least
+ */
+function niceStep(least) {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return power * (/** @type {number} */ ([1, 2, 5, 10].find((digit) => digit * power >= least * (1 - 1e-9))));
 }
 
 /**

@@ -9,6 +9,7 @@ import os
 import re
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import parse_qs
 
@@ -226,6 +227,83 @@ def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Ope
     expect(size).not_to_contain_text("bias")
 
 
+def test_profiles_do_not_lie_over_each_other_on_a_phone(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles", viewport={"width": 390, "height": 844})
+    picture = drawn(page, "Profiles over measured depth")
+    read = "place => [...place.querySelectorAll('.xtitle, .x2title, .x3title, .x4title, .x5title, .x6title')]"
+    read += ".map((title) => { const { left, right } = title.getBoundingClientRect(); return [left, right]; })"
+    ends = sorted(picture.evaluate(read))
+    assert len(ends) == 6
+    for (_, right), (left, _) in pairwise(ends):
+        assert right < left
+    # Their place is scrolled, not the page.
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles&profiles=effective_tension,normal_force")
+    picture = drawn(page, "Profiles over measured depth")
+    box = picture.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    labels = picture.locator(".hoverlayer .hovertext")
+    reading = page.get_by_role("status").filter(has_text=re.compile("^(At|Point at) "))
+    for part in (0.31, 0.485, 0.62):
+        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + part * box["height"], steps=3)
+        page.wait_for_timeout(300)
+        seen = {
+            float(text.replace(MINUS, "-"))
+            for text in labels.all_text_contents()
+            if re.fullmatch(rf"[-{MINUS}\d.]+", text)
+        }
+        said = re.search(r"effective tension (\S+) kN", str(reading.text_content()))
+        assert said is not None
+        assert any(float(said.group(1)) == pytest.approx(value, rel=2e-4) for value in seen), (said.group(), seen)
+
+
+def test_numbers_beside_bars_of_energy_leave_the_names_free(opened: Opens, sweep: Sweep) -> None:
+    page = opened("#/nowhere", viewport={"width": 600, "height": 800})
+
+    def lost(route: Route) -> None:
+        """A ledger in which what is stored falls by a little of what the rotation supplies."""
+        answer = route.fetch()
+        ledger = answer.json()
+        ledger["columns"]["stored"] = [-0.01 * value for value in ledger["columns"]["work_rotation"]]
+        route.fulfill(response=answer, json=ledger)
+
+    page.route("**/energy?**", lost)
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=energy"))
+    picture = drawn(page, "Energy by account")
+    read = """place => {
+        const boxes = (name) => [...place.querySelectorAll(name)].map((element) => element.getBoundingClientRect());
+        const [names, numbers] = [boxes('.ytick text'), boxes('.bartext')];
+        return [numbers.length, names.some((name) => numbers.some((one) =>
+            one.left < name.right && name.left < one.right && one.top < name.bottom && name.top < one.bottom))];
+    }"""
+    count, is_covered = picture.evaluate(read)
+    assert count > 5
+    assert not is_covered
+
+
+def test_snapshots_are_downloaded_as_csv(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=about")
+    row = page.get_by_role("region", name="Downloads").get_by_role("row").filter(has_text="snapshots").first
+    with page.expect_download() as download:
+        row.get_by_role("link", name="CSV").click()
+    assert download.value.suggested_filename.endswith("snapshots.csv")
+    assert "normal_force" in download.value.path().read_text()
+
+
+def test_rotation_of_a_node_says_of_which(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=1")
+    picture = drawn(page, "Rotation speed and torque of node 49 at 57.73 m")
+    expect(page.get_by_role("heading", name="Rotation speed and torque of node 49 at 57.73 m")).to_be_visible()
+    ticks = picture.locator(".y2tick text").all_text_contents()
+    values = [float(text.replace(MINUS, "-")) for text in ticks]
+    steps = {round(after - before, 9) for before, after in pairwise(values)}
+    assert len(steps) == 1
+    assert all(value / step == pytest.approx(round(value / step), abs=1e-6) for value in values for step in steps)
+
+
 @pytest.mark.parametrize("view", ["point", "compare"])
 def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) -> None:
     shown = f"#/sweeps/{sweep.id}/points/1?view=well"
@@ -372,6 +450,8 @@ def test_the_string_is_saved_as_it_is_shown(opened: Opens, recorded: Sweep) -> N
     drawing = saved["SVG"].decode()
     assert drawing.startswith("<svg")
     assert "torque [kN·m]" in drawing
+    # Marks of measured depth.
+    assert set(re.findall(r">([\d.]+ m)</text>", drawing)) >= {"50 m", "100 m", "150 m", "200 m"}
     assert "0.20 s" in drawing
     # A stroke for each element of the string, whose colours differ.
     assert len(set(re.findall(r'stroke="(rgb[^"]+)"', drawing))) > 10

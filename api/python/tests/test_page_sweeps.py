@@ -787,8 +787,8 @@ def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Cli
     failed = sweep.refresh().counts.failed
     tabs = page.get_by_role("navigation", name="Views of the sweep")
     expect(tabs.get_by_role("link", name=f"Failures ({failed})" if failed else "Failures", exact=True)).to_be_visible()
-    sweep.resume()
-    expect(tabs.get_by_role("link", name="Failures (3)")).to_be_visible(timeout=60_000)
+    sweep.resume().wait(timeout=120.0)
+    expect(tabs.get_by_role("link", name="Failures (3)")).to_be_visible()
 
 
 @pytest.mark.parametrize(

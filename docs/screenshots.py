@@ -20,7 +20,7 @@ TALLER = {"sweep-map": 1400, "sweep-effects": 1300, "point-motion": 1500, "point
 """Pictures whose lower part is what they are taken for."""
 COMPARED = [
     *("profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string", "contacts"),
-    *("well", "energy", "modes", "effects", "cost"),
+    *("well", "energy", "modes", "effects", "accuracy", "cost"),
 ]
 """Views of a comparison."""
 QUALITY = 40
@@ -42,6 +42,7 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
         links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
     links["compare-well"] += "&colour=friction_coefficient"
     links["compare-string"] += "&colour=whirl_amplitude"
+    links["compare-bit"] += "&end=top"
     return links
 
 

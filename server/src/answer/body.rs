@@ -2,16 +2,15 @@
 
 use std::io::{self, Write};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use axum::body::{Body, Bytes};
+use axum::body::Body;
 use axum::response::Response;
-use futures::StreamExt;
 use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
-use tokio::time::timeout;
 
 use crate::answer::blocking::beside;
+use crate::answer::chunk::{self, Chunk, room};
 use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
@@ -24,12 +23,6 @@ pub(crate) const WAITING_CHUNKS: usize = 2;
 
 /// Bytes of memory that a body takes on its way.
 pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
-
-/// How long a client may take to make room for a chunk: whoever takes less does not read, but hold what others wait for.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// How often an answer that waits for its client looks whether it is to give way.
-const LOOK: Duration = Duration::from_millis(250);
 
 /// Writes an answer in a thread of its own, which computes when it is its turn and has `held` until it ends. What fails before the
 /// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
@@ -64,58 +57,8 @@ pub(crate) async fn send(
     let head = heading.await.map_err(|_| ended())?;
     Ok(head.response(match first {
         Chunk::Last(bytes) => Body::from(bytes),
-        first @ Chunk::One(_) => body(Some(first), receiver),
+        first @ Chunk::One(_) => chunk::body(Some(first), receiver),
     }))
-}
-
-/// A part of a body.
-pub(crate) enum Chunk {
-    One(Bytes),
-    Last(Bytes),
-}
-
-/// A body of chunks: `first`, and those that come. One that ends without its last breaks off.
-pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>) -> Body {
-    let chunks = futures::stream::unfold(Some((first, receiver)), async |state| {
-        let (first, mut receiver) = state?;
-        let chunk = match first {
-            Some(first) => Some(Ok(first)),
-            None => receiver.recv().await,
-        };
-        Some(match chunk {
-            Some(Ok(Chunk::One(bytes))) => (Ok(bytes), Some((None, receiver))),
-            Some(Ok(Chunk::Last(bytes))) => (Ok(bytes), None),
-            Some(Err(error)) => (Err(broken_off(error)), None),
-            None => (Err(io::ErrorKind::UnexpectedEof.into()), None),
-        })
-    });
-    // Compression polls a stream beyond its end.
-    Body::from_stream(chunks.fuse())
-}
-
-/// What breaks off a body.
-fn broken_off(error: Error) -> io::Error {
-    let detail = error.into_problem().detail;
-    tracing::error!(detail, "an answer was broken off");
-    io::Error::other(detail)
-}
-
-/// Room for a chunk, as soon as the client makes some; none if it has gone away, takes nothing, or is so slow that others are given way to.
-pub(crate) async fn room<'s, T>(
-    sender: &'s mpsc::Sender<T>,
-    courtesy: &mut Courtesy,
-) -> Option<mpsc::Permit<'s, T>> {
-    let began = Instant::now();
-    loop {
-        match timeout(LOOK, sender.reserve()).await {
-            Ok(room) => {
-                courtesy.note(began.elapsed());
-                return room.ok();
-            }
-            Err(_) if began.elapsed() >= PATIENCE || courtesy.gives_way(began.elapsed()) => return None,
-            Err(_) => {}
-        }
-    }
 }
 
 /// Chunks on their way to the client.

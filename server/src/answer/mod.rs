@@ -3,6 +3,7 @@
 pub(crate) mod artifact;
 pub(crate) mod blocking;
 pub(crate) mod body;
+pub(crate) mod chunk;
 pub(crate) mod courtesy;
 pub(crate) mod error;
 pub(crate) mod extract;

@@ -13,7 +13,7 @@ use drillsweep_table::{Table, TableError};
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
-use crate::answer::body::{self, Chunk};
+use crate::answer::chunk::{self, Chunk};
 use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
 use crate::answer::records;
@@ -148,20 +148,20 @@ impl Stored {
         tokio::spawn(async move {
             let _held = held;
             while let Some(stretch) = stretches.next() {
-                let Some(room) = body::room(&sender, &mut courtesy).await else { return };
-                let chunk = match self.range(stretch).await {
+                let Some(room) = chunk::room(&sender, &mut courtesy).await else { return };
+                let next = match self.range(stretch).await {
                     Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
                     Ok(bytes) => Ok(Chunk::One(bytes)),
                     Err(error) => Err(error),
                 };
-                let is_broken = chunk.is_err();
-                room.send(chunk);
+                let is_broken = next.is_err();
+                room.send(next);
                 if is_broken || stretches.peek().is_some() && courtesy.gives_way(Duration::ZERO) {
                     return;
                 }
             }
         });
-        Ok(body::body(Some(first), receiver))
+        Ok(chunk::body(Some(first), receiver))
     }
 
     /// The table, to be read in parts by a thread that may wait.

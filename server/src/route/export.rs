@@ -16,7 +16,8 @@ use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
 
 use crate::answer::blocking::beside;
-use crate::answer::body::{self, Sink, WAITING_CHUNKS};
+use crate::answer::body::{Sink, WAITING_CHUNKS};
+use crate::answer::chunk;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::stored::Stored;
@@ -80,7 +81,7 @@ pub(crate) async fn export(
             Err(error) => sink.fail(Error::internal(&error)),
         }
     })?;
-    let body = body::body(None, receiver);
+    let body = chunk::body(None, receiver);
     let name = format!("attachment; filename=\"sweep-{id}.zip\"");
     let headers = [(header::CONTENT_TYPE, "application/zip".to_owned()), (header::CONTENT_DISPOSITION, name)];
     Ok((headers, body).into_response())

@@ -137,7 +137,7 @@ impl SpectrumSource {
         const OF_LINE: u64 = 64;
         Ok(match self {
             SpectrumSource::Recording(Recording { history, .. }) => {
-                history.memory().await? + history.rows() * OF_SAMPLE
+                history.memory_of(OF_MOTION).await? + history.rows() * OF_SAMPLE
             }
             SpectrumSource::Kept(KeptSpectra { spectra, .. }) => {
                 spectra.memory().await? + spectra.rows() * OF_LINE
@@ -204,6 +204,9 @@ impl NodeSpectrum {
     }
 }
 
+/// Columns that are read of a node's motion: time, u and v.
+const OF_MOTION: u64 = 3;
+
 impl Recording {
     /// The recording of a point that has a result.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
@@ -225,7 +228,7 @@ impl Recording {
     pub(crate) async fn memory_of_orbit(&self) -> Result<u64> {
         /// Of a sample: its time, u and v as they are read, and again with the radius as they are served.
         const OF_SAMPLE: u64 = 64;
-        Ok(self.history.memory().await? + self.history.rows() * OF_SAMPLE)
+        Ok(self.history.memory_of(OF_MOTION).await? + self.history.rows() * OF_SAMPLE)
     }
 
     /// The columns of one node, out of the `layout` of the history, with the node that they are of.

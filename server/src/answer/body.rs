@@ -11,8 +11,8 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 
 use crate::answer::blocking::beside;
 use crate::answer::chunk::{self, Chunk, room};
-use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
+use crate::answer::eviction::Eviction;
 use crate::answer::format::Answer;
 
 /// Bytes that are sent at once.
@@ -28,7 +28,7 @@ pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
 /// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
 pub(crate) async fn send(
     turns: Arc<Semaphore>,
-    courtesy: Courtesy,
+    eviction: Eviction,
     held: impl Send + 'static,
     prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
 ) -> Result<Response> {
@@ -38,7 +38,7 @@ pub(crate) async fn send(
     beside(move || {
         let _entered = span.enter();
         let _held = held;
-        let mut sink = Sink::new(sender, handle, Some(turns), courtesy);
+        let mut sink = Sink::new(sender, handle, Some(turns), eviction);
         let answer = match prepare() {
             Ok(answer) => answer,
             Err(error) => return sink.fail(error),
@@ -69,7 +69,7 @@ pub(crate) struct Sink {
     /// Where turns to compute are had, and the one at hand.
     turns: Option<Arc<Semaphore>>,
     turn: Option<OwnedSemaphorePermit>,
-    courtesy: Courtesy,
+    eviction: Eviction,
     is_abandoned: bool,
 }
 
@@ -79,10 +79,10 @@ impl Sink {
         sender: mpsc::Sender<Result<Chunk>>,
         handle: Handle,
         turns: Option<Arc<Semaphore>>,
-        courtesy: Courtesy,
+        eviction: Eviction,
     ) -> Self {
         let mut sink =
-            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, courtesy, is_abandoned: false };
+            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, eviction, is_abandoned: false };
         sink.take_turn();
         sink
     }
@@ -113,7 +113,7 @@ impl Sink {
     /// Others compute while this one waits for its client.
     fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
         self.turn = None;
-        let Some(room) = self.handle.block_on(room(&self.sender, &mut self.courtesy)) else {
+        let Some(room) = self.handle.block_on(room(&self.sender, &mut self.eviction)) else {
             return Err(self.abandon());
         };
         room.send(chunk);
@@ -140,7 +140,7 @@ impl Write for Sink {
             let chunk = std::mem::take(&mut self.buffer);
             self.send(Ok(Chunk::One(chunk.into())))?;
             // A client that takes each chunk within a moment may take all of them slowly.
-            if self.courtesy.gives_way(Duration::ZERO) {
+            if self.eviction.is_due(Duration::ZERO) {
                 return Err(self.abandon());
             }
             self.take_turn();

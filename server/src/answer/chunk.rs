@@ -8,13 +8,13 @@ use futures::StreamExt;
 use tokio::sync::mpsc;
 use tokio::time::timeout;
 
-use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
+use crate::answer::eviction::Eviction;
 
 /// How long a client may take to make room for a chunk: whoever takes less does not read, but hold what others wait for.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// How often an answer that waits for its client looks whether it is to give way.
+/// How often an answer that waits for its client looks whether it is to be evicted.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// A part of a body.
@@ -49,19 +49,19 @@ fn broken_off(error: Error) -> io::Error {
     io::Error::other(detail)
 }
 
-/// Room for a chunk, as soon as the client makes some; none if it has gone away, takes nothing, or is so slow that others are given way to.
+/// Room for a chunk, as soon as the client makes some; none if it has gone away, takes nothing, or is so slow that the answer is evicted for others.
 pub(crate) async fn room<'s, T>(
     sender: &'s mpsc::Sender<T>,
-    courtesy: &mut Courtesy,
+    eviction: &mut Eviction,
 ) -> Option<mpsc::Permit<'s, T>> {
     let began = Instant::now();
     loop {
         match timeout(LOOK, sender.reserve()).await {
             Ok(room) => {
-                courtesy.note(began.elapsed());
+                eviction.note(began.elapsed());
                 return room.ok();
             }
-            Err(_) if began.elapsed() >= PATIENCE || courtesy.gives_way(began.elapsed()) => return None,
+            Err(_) if began.elapsed() >= PATIENCE || eviction.is_due(began.elapsed()) => return None,
             Err(_) => {}
         }
     }

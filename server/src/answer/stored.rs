@@ -14,8 +14,8 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 use crate::answer::chunk::{self, Chunk};
-use crate::answer::courtesy::Courtesy;
 use crate::answer::error::{Error, Result};
+use crate::answer::eviction::Eviction;
 use crate::answer::records;
 
 /// Bytes of a file that are read, verified and sent at once: what storage verifies as one.
@@ -91,8 +91,13 @@ impl Stored {
 
     /// Bytes of memory that it takes to read it a piece at a time.
     pub(crate) async fn memory(&self) -> Result<u64> {
+        self.memory_of(u64::MAX).await
+    }
+
+    /// Bytes of memory that it takes to read so many of its columns a piece at a time.
+    pub(crate) async fn memory_of(&self, columns: u64) -> Result<u64> {
         let end = self.range(self.length().saturating_sub(parquet::FOOTER_END)..self.length()).await?;
-        Ok(parquet::memory(self.length(), &end, self.rows))
+        Ok(parquet::memory(self.length(), &end, self.rows, columns))
     }
 
     /// All bytes of a file that is known to be small.
@@ -135,20 +140,20 @@ impl Stored {
     pub(crate) async fn body<H: Send + 'static>(
         self,
         range: Range<u64>,
-        place: impl Future<Output = Result<(H, Courtesy)>>,
+        place: impl Future<Output = Result<(H, Eviction)>>,
     ) -> Result<Body> {
         let mut stretches = Self::stretches(range).peekable();
         let Some(first) = stretches.next() else { return Ok(Body::empty()) };
         if stretches.peek().is_none() {
             return Ok(self.range(first).await?.into());
         }
-        let (held, mut courtesy) = place.await?;
+        let (held, mut eviction) = place.await?;
         let first = Chunk::One(self.range(first).await?);
         let (sender, receiver) = mpsc::channel(1);
         tokio::spawn(async move {
             let _held = held;
             while let Some(stretch) = stretches.next() {
-                let Some(room) = chunk::room(&sender, &mut courtesy).await else { return };
+                let Some(room) = chunk::room(&sender, &mut eviction).await else { return };
                 let next = match self.range(stretch).await {
                     Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
                     Ok(bytes) => Ok(Chunk::One(bytes)),
@@ -156,7 +161,7 @@ impl Stored {
                 };
                 let is_broken = next.is_err();
                 room.send(next);
-                if is_broken || stretches.peek().is_some() && courtesy.gives_way(Duration::ZERO) {
+                if is_broken || stretches.peek().is_some() && eviction.is_due(Duration::ZERO) {
                     return;
                 }
             }

@@ -10,8 +10,8 @@ use tokio::time::timeout;
 
 use crate::answer::blocking::blocking;
 use crate::answer::body;
-use crate::answer::courtesy::{Courtesy, Queue};
 use crate::answer::error::{Error, Result};
+use crate::answer::eviction::{Eviction, Queue};
 use crate::answer::format::Answer;
 
 /// How long a request waits for its turn.
@@ -34,7 +34,7 @@ pub(crate) struct Lane {
 pub(crate) struct Place {
     held: Held,
     turns: Arc<Semaphore>,
-    courtesy: Courtesy,
+    eviction: Eviction,
 }
 
 struct Held {
@@ -71,7 +71,7 @@ impl Pace {
 
 impl Lane {
     /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; after
-    /// `grace` answers whose clients are slow give way to them.
+    /// `grace` answers whose clients are slow are evicted for them.
     pub(crate) fn new(units: usize, at_once: usize, waiting: usize, grace: Duration) -> Self {
         Self {
             units: Arc::new(Semaphore::new(units)),
@@ -115,7 +115,7 @@ impl Lane {
         Place {
             held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
             turns: self.turns.clone(),
-            courtesy: Courtesy::to(&self.queue),
+            eviction: Eviction::of(&self.queue),
         }
     }
 }
@@ -139,12 +139,12 @@ impl Place {
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
-        body::send(self.turns, self.courtesy, self.held, prepare).await
+        body::send(self.turns, self.eviction, self.held, prepare).await
     }
 
-    /// What holds the place, and when it is given up, for a body that is written otherwise.
-    pub(crate) fn into_parts(self) -> (impl Send + 'static, Courtesy) {
-        (self.held, self.courtesy)
+    /// What holds the place, and when it is evicted, for a body that is written otherwise.
+    pub(crate) fn into_parts(self) -> (impl Send + 'static, Eviction) {
+        (self.held, self.eviction)
     }
 }
 

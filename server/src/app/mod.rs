@@ -16,8 +16,8 @@ use drillsweep_store::Store;
 use tokio::sync::{Semaphore, watch};
 
 use crate::answer::body::MEMORY_OF_BODY;
-use crate::answer::courtesy::Courtesy;
 use crate::answer::error::Result;
+use crate::answer::eviction::Eviction;
 use crate::answer::extract::BodyPatience;
 use crate::answer::stored::MEMORY_OF_FILE;
 use crate::app::columns::KnownColumns;
@@ -49,8 +49,8 @@ pub struct Config {
     pub connections: ConnectionLimits,
     /// Large answers (tables, pictures, views of histories) that are computed at once, and as many plans and expansions of sweeps.
     pub large_answers: usize,
-    /// Bytes of memory that large answers take together. Those that take a fifth of it at most have two fifths of it besides, for
-    /// themselves, and files that are sent as they are stored have half of it besides.
+    /// Bytes of memory that large answers take together. Those that take a quarter of it at most have half of it besides, for
+    /// themselves, and so have files that are sent as they are stored.
     pub large_answer_bytes: usize,
     /// Requests for them that may wait; those beyond are told to come back.
     pub large_answers_waiting: usize,
@@ -116,7 +116,7 @@ impl App {
             feed: Arc::default(),
             columns: Arc::default(),
             views: lane(config.large_answer_bytes / KIB),
-            small_views: lane(config.large_answer_bytes / KIB * 2 / 5),
+            small_views: lane(config.large_answer_bytes / 2 / KIB),
             files: lane(config.large_answer_bytes / 2 / KIB),
             plans: lane(config.large_answers),
             config: Arc::new(config),
@@ -126,7 +126,7 @@ impl App {
     /// Takes so much memory \[bytes\] for a view of a result, and what its body takes on its way.
     pub(crate) async fn view(&self, bytes: u64) -> Result<Place> {
         let memory = kibibytes(bytes.saturating_add(MEMORY_OF_BODY));
-        if memory > self.config.large_answer_bytes / KIB / 5 {
+        if memory > self.config.large_answer_bytes / 4 / KIB {
             return self.views.enter(memory).await;
         }
         let free = self.small_views.try_enter(memory).or_else(|| self.views.try_enter(memory));
@@ -136,8 +136,8 @@ impl App {
         }
     }
 
-    /// Takes the memory for a file that is sent as it is stored, with when it is given up.
-    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Courtesy)> {
+    /// Takes the memory for a file that is sent as it is stored, with when it is evicted.
+    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Eviction)> {
         Ok(self.files.enter(kibibytes(MEMORY_OF_FILE)).await?.into_parts())
     }
 }

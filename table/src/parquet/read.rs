@@ -380,9 +380,9 @@ impl<R: ReadAt> io::Read for BlockReader<R> {
 /// Bytes at the end of a file that say how long its footer is.
 pub const FOOTER_END: u64 = 8;
 
-/// Bytes of memory that it takes to read a stored table and write it in another format, a piece at a time, at most: by the length of
-/// its file, the file's last [`FOOTER_END`] bytes, and its rows. To Parquet it takes [`MEMORY_OF_WRITER`](crate::parquet::MEMORY_OF_WRITER) besides.
-pub fn memory(length: u64, end: &[u8], rows: u64) -> u64 {
+/// Bytes of memory that it takes to read so many columns of a stored table and write them in another format, a piece at a time, at most: by
+/// the length of its file, the file's last [`FOOTER_END`] bytes, and its rows; for all columns `u64::MAX`. To Parquet it takes [`MEMORY_OF_WRITER`](crate::parquet::MEMORY_OF_WRITER) besides.
+pub fn memory(length: u64, end: &[u8], rows: u64, columns: u64) -> u64 {
     /// Of the footer as it is read and decoded, by its length; writing Parquet makes another one.
     const OF_FOOTER: u64 = 8;
     /// Bytes in the footer for a column of a row group, at least.
@@ -395,7 +395,7 @@ pub fn memory(length: u64, end: &[u8], rows: u64) -> u64 {
     };
     let row_groups = rows.div_ceil(ROW_GROUP as u64).max(1);
     let column = rows.saturating_mul(OF_VALUE);
-    let all = column.saturating_mul(footer / OF_CHUNK / row_groups);
+    let all = column.saturating_mul((footer / OF_CHUNK / row_groups).min(columns));
     // A piece may have a column alone, and each column of it may become an array.
     footer.saturating_mul(OF_FOOTER) + all.min(PIECE_BYTES as u64).max(column) + column + BLOCK
 }

@@ -70,9 +70,7 @@ const PRESETS: &str = "presets";
 
 /// The series that a line of the study belongs to.
 fn series_name(row: &CostRow) -> String {
-    let is_preset = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference]
-        .iter()
-        .any(|preset| preset.name() == row.name);
+    let is_preset = AccuracyPreset::named(&row.name).is_some();
     let method = printed_name(row.integrator);
     match (row.tolerance, row.integrator) {
         _ if is_preset => PRESETS.to_owned(),

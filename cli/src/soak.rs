@@ -52,8 +52,7 @@ pub(crate) struct SoakArguments {
 impl SoakArguments {
     fn scene(&self, index: u64) -> Scenario {
         let scene = scene(self.seed, index);
-        let presets = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
-        match presets.into_iter().find(|preset| self.accuracy.as_deref() == Some(preset.name())) {
+        match self.accuracy.as_deref().and_then(AccuracyPreset::named) {
             Some(preset) => at_accuracy(scene, preset),
             None => scene,
         }

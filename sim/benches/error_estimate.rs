@@ -32,7 +32,7 @@ fn main() {
         let reference = WholeRun::by_rk4(&scenario);
         let agreement = apart(&WholeRun::by_esdirk4(&scenario, 2.5e-4), &reference);
         println!("{name:30} {:10} {:>8.1e} {:>9.1e}", "(two methods)", agreement[0], agreement[1]);
-        for preset in [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference] {
+        for preset in AccuracyPreset::ALL {
             compare(&scenario, preset, &reference, agreement, [&mut alone, &mut in_ensemble]);
         }
     }

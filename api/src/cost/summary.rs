@@ -12,10 +12,6 @@ use serde::Serialize;
 use super::text::{Cells, aligned, four_digits, percent, signed_percent};
 use super::{step_text, three_digits};
 
-/// Named accuracies.
-const PRESETS: [AccuracyPreset; 3] =
-    [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
-
 /// One line of one scenario's study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SummaryRow {
@@ -102,7 +98,7 @@ impl Verdict {
 impl PromiseCheck {
     /// The promise of a named accuracy's line; nothing for other lines.
     fn of(report: &CostReport, row: &CostRow) -> Option<Self> {
-        let preset = PRESETS.into_iter().find(|preset| preset.name() == row.name)?;
+        let preset = AccuracyPreset::named(&row.name)?;
         let promise = Accuracy::Preset(preset).promise()?;
         let allowed = [
             (Quantity::OrbitSize, promise.orbit_size),
@@ -253,7 +249,7 @@ pub fn summary_text(rows: &[SummaryRow]) -> String {
         "all scenarios: the reference's largest orbit, and how far each run is off at its worst node (in %)\n"
             .to_owned();
     text.push_str(&aligned(&columns, &failures));
-    let promises = PRESETS.into_iter().filter_map(|preset| {
+    let promises = AccuracyPreset::ALL.into_iter().filter_map(|preset| {
         let Promise { orbit_size, radius_deviation } = Accuracy::Preset(preset).promise()?;
         Some(format!("{} {} and {} %", preset.name(), percent(orbit_size), percent(radius_deviation)))
     });

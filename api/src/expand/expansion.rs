@@ -55,8 +55,7 @@ impl Expansion {
             };
             (accuracy.name(), self.points.iter().map(keys).collect())
         };
-        let named = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
-        Some(named.into_iter().map(keys_at).collect())
+        Some(AccuracyPreset::ALL.into_iter().map(keys_at).collect())
     }
 
     /// What a point changes in the base, by path: with [`compose`] the point's scenario again.

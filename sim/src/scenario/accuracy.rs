@@ -173,6 +173,15 @@ pub enum AccuracyPreset {
 }
 
 impl AccuracyPreset {
+    /// All of them, from the loosest.
+    pub const ALL: [AccuracyPreset; 3] =
+        [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference];
+
+    /// The one of a name on the wire.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|preset| preset.name() == name)
+    }
+
     /// The relative error of the size of an orbit that it allows.
     pub fn tolerance(self) -> f64 {
         match self {

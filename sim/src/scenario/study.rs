@@ -174,5 +174,5 @@ fn three_percent() -> f64 {
 }
 
 fn all_presets() -> Vec<AccuracyPreset> {
-    vec![AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Reference]
+    AccuracyPreset::ALL.to_vec()
 }

@@ -104,6 +104,16 @@ def until(page: Page, holds: Callable[[], bool]) -> None:
         page.wait_for_timeout(50)
 
 
+def drag(page: Page, over: Locator, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """Drags the mouse over a part of the page, between two places given as parts of its width and height."""
+    box = over.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + start[0] * box["width"], box["y"] + start[1] * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + end[0] * box["width"], box["y"] + end[1] * box["height"], steps=8)
+    page.mouse.up()
+
+
 def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:
     page = opened()
     link = page.get_by_role("link", name=NASTY).first
@@ -333,12 +343,7 @@ def test_the_link_holds_how_a_picture_is_zoomed(opened: Opens, named: Sweep) -> 
     spectrum = drawn(page, "Full spectrum of node")
     whole = ranges(spectrum)
     spectrum.scroll_into_view_if_needed()
-    box = spectrum.locator(".nsewdrag").first.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.2 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.9 * box["height"], steps=5)
-    page.mouse.up()
+    drag(page, spectrum.locator(".nsewdrag").first, (0.4, 0.2), (0.7, 0.9))
     until(page, lambda: "zoom.spectrum=" in page.url)
     width = whole[1] - whole[0]
     chosen = ranges(spectrum)
@@ -350,7 +355,7 @@ def test_the_link_holds_how_a_picture_is_zoomed(opened: Opens, named: Sweep) -> 
     in_inches = [*chosen[:2], *(end / 25.4 for end in chosen[2:])]
     until(other, lambda: ranges(drawn(other, "Full spectrum of node")) == pytest.approx(in_inches, rel=1e-6))
     # Shown as a whole again, it is no part of the link any more.
-    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    spectrum.locator(".nsewdrag").first.dblclick()
     until(page, lambda: "zoom" not in page.url)
     assert ranges(spectrum) == pytest.approx(whole)
 
@@ -492,12 +497,7 @@ def test_a_finer_grid_is_dragged_over_a_region(opened: Opens, client: Client) ->
     # Without a region, that of all points.
     expect(panel.get_by_label("From [m³/s]")).to_have_value("0.01")
     expect(panel.get_by_text("25 points; 4 are known")).to_be_visible()
-    box = picture.locator(".nsewdrag").first.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.05 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.45 * box["height"], steps=8)
-    page.mouse.up()
+    drag(page, picture.locator(".nsewdrag").first, (0.3, 0.05), (0.5, 0.45))
     until(page, lambda: float(panel.get_by_label("From [m³/s]").input_value()) > 0.01)
     start, end = (float(panel.get_by_label(f"{name} [m³/s]").input_value()) for name in ("From", "To"))
     assert start < 0.025 < end + 0.002 < 0.035

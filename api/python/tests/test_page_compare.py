@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
-from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drawn, named, opened, troubles, until
+from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drag, drawn, named, opened, troubles, until
 from test_page_points import run_curl, run_python, said, shown_lines
 from test_tokens import make_token
 
@@ -329,12 +329,7 @@ def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Op
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=history&from=0&to=0.5")
     picture = drawn(page, "Histories").locator(".nsewdrag").first
     picture.scroll_into_view_if_needed()
-    box = picture.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"], steps=5)
-    page.mouse.up()
+    drag(page, picture, (0.4, 0.5), (0.8, 0.5))
     start, end = page.get_by_label("From [s]"), page.get_by_label("To [s]")
     until(page, lambda: float(start.input_value()) > 0.1 and float(end.input_value()) < 0.45)
     chosen = start.input_value(), end.input_value()

@@ -18,7 +18,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
-from test_page import MINUS, Opens, browser, drawn, opened, troubles, until
+from test_page import MINUS, Opens, browser, drag, drawn, opened, troubles, until
 from test_page_motion import clock, pixels, recorded, scene, trace
 from test_tokens import make_token
 
@@ -312,12 +312,7 @@ def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) 
     picture.scroll_into_view_if_needed()
     camera = "place => place._fullLayout.scene._scene.getCamera().eye"
     before = picture.evaluate(camera)
-    box = picture.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.6 * box["height"], steps=5)
-    page.mouse.up()
+    drag(page, picture, (0.5, 0.5), (0.6, 0.6))
     until(page, lambda: "zoom.well=camera" in page.url)
     kept = dict(
         zip("xyz", map(float, page.url.split("zoom.well=camera")[1].replace("%3A", ":").split(":")[1:4]), strict=True)

@@ -23,7 +23,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
-from test_page import GONE, Opens, browser, drawn, named, opened, requested, troubles, until
+from test_page import GONE, Opens, browser, drag, drawn, named, opened, requested, troubles, until
 
 __all__ = ["browser", "named", "opened", "troubles"]
 
@@ -443,13 +443,7 @@ def test_the_link_holds_what_is_brushed_on_parallel_coordinates(opened: Opens, n
     ranges = picture.evaluate(script)
     assert (ranges["mud_density"], ranges["flow_rate"]) == ([[1100, 1500]], [[0.005, 0.02]])
     axis = picture.locator(".axis-brush").nth(1)
-    box = axis.bounding_box()
-    assert box is not None
-    middle = box["x"] + box["width"] / 2
-    page.mouse.move(middle, box["y"] + 0.05 * box["height"])
-    page.mouse.down()
-    page.mouse.move(middle, box["y"] + 0.3 * box["height"], steps=6)
-    page.mouse.up()
+    drag(page, axis, (0.5, 0.05), (0.5, 0.3))
     until(page, lambda: page.url.count("mud_density") == 2)
     other = opened(f"#{page.url.partition('#')[2]}")
     copy = drawn(other, "Parallel coordinates")
@@ -907,12 +901,7 @@ def test_a_finer_grid_is_dragged_over_points_that_were_drawn(idle: str, opened: 
         # Across and up a grid; what is not shown is held, at first in the middle of what was drawn from.
         expect(panel.get_by_label("rotation speed [rpm]")).to_have_value("100")
         until(page, lambda: picture.evaluate("place => place.layout.dragmode") == "select")
-        box = picture.locator(".nsewdrag").bounding_box()
-        assert box is not None
-        page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 0.25 * box["height"])
-        page.mouse.down()
-        page.mouse.move(box["x"] + 0.75 * box["width"], box["y"] + 0.75 * box["height"], steps=8)
-        page.mouse.up()
+        drag(page, picture.locator(".nsewdrag"), (0.25, 0.25), (0.75, 0.75))
         dragged = panel.get_by_label("From [m³/s]")
         until(page, lambda: 0.015 < float(dragged.input_value()) < 0.025)
         panel.get_by_label("rotation speed [rpm]").fill("90")

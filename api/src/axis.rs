@@ -134,7 +134,7 @@ impl Scale {
 /// The members of an axis as they may come in. An untagged enum would only say that nothing matched; this
 /// says which member is missing or too many.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object with `values`, or with `from` and `to`")]
 struct AxisFields {
     #[serde(default, deserialize_with = "present")]
     values: Option<Vec<f64>>,

@@ -47,4 +47,4 @@ pub use sweep::{
 pub use verify::{promise_of_scenario, sample};
 
 pub use drillsweep_sim::PHYSICS_VERSION;
-pub use drillsweep_sim::scenario::ScenarioRequest;
+pub use drillsweep_sim::scenario::{ScenarioRequest, read_strictly};

@@ -9,7 +9,7 @@ use axum::extract::{FromRef, FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode, header};
 use drillsweep_api::problem::pointer_token;
-use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind};
+use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind, read_strictly};
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 use tokio::time::timeout;
@@ -69,23 +69,22 @@ where
 }
 
 fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
-    // Serde would take an array for the fields of a struct in their order.
-    if bytes.trim_ascii_start().starts_with(b"[") {
-        return Err(malformed(String::new(), &serde_json::Error::custom("must be an object, not an array")));
-    }
     let mut text = serde_json::Deserializer::from_slice(bytes);
     if let Err(error) = serde_path_to_error::deserialize::<_, Unrepeated>(&mut text) {
         let is_repeated = error.inner().is_data();
         let pointer = if is_repeated { pointer(error.path()) } else { String::new() };
         return Err(malformed(pointer, error.inner()));
     }
-    if let Ok(value) = serde_json::from_slice(bytes) {
+    let mut text = serde_json::Deserializer::from_slice(bytes);
+    if let (Ok(value), Ok(())) = (read_strictly(&mut text), text.end()) {
         return Ok(value);
     }
     // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
     let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
     write_whole(&mut body);
-    serde_path_to_error::deserialize(body).map_err(|error| malformed(pointer(error.path()), error.inner()))
+    let mut track = serde_path_to_error::Track::new();
+    read_strictly(serde_path_to_error::Deserializer::new(body, &mut track))
+        .map_err(|error| malformed(pointer(&track.path()), &error))
 }
 
 /// JSON in which no object has a member twice: maps would take the last, and the client could have meant the other.

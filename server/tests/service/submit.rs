@@ -196,7 +196,18 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "must be a number"),
         (r#"{"preset": "#, "", "EOF"),
         (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
-        (r#" [null, "anne"]"#, "", "object, not an array"),
+        (r#" [null, "anne"]"#, "", "must be an object"),
+        // Serde would take lists for structs and objects for names.
+        (r#"{"axes": {"flow_rate": [0.01, 0.02]}}"#, "/axes/flow_rate", "must be an object with `values`"),
+        (r#"{"axes": {"flow_rate": [[0.01, 0.02]]}}"#, "/axes/flow_rate", "must be an object with `values`"),
+        (r#"{"design": {"grid": null}}"#, "/design", "must be the name alone"),
+        (r#"{"outputs": {"full": null}}"#, "/outputs", "must be the name alone"),
+        (
+            r#"{"axes": {"flow_rate": {"from": 1, "to": 2, "scale": {"log": null}}}}"#,
+            "/axes/flow_rate/scale",
+            "must be the name alone",
+        ),
+        (r#"{"scenario": {"damping": [0.03, 0.00003]}}"#, "/scenario/damping", "must be an object"),
         (
             r#"{"axes": {"mud_density": {"from": 1, "to": 2, "count": 3, "scale": null}}}"#,
             "/axes/mud_density/scale",

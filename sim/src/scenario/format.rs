@@ -6,6 +6,7 @@
 use serde::de::{DeserializeOwned, Deserializer, Error as _, IgnoredAny};
 use serde::{Deserialize, Serialize, Serializer};
 
+use super::strict::Strict;
 use super::{Problem, Scenario};
 
 impl Scenario {
@@ -102,7 +103,7 @@ pub(super) fn not_json(error: &serde_json::Error) -> Problem {
 fn read<'de, T: DeserializeOwned>(format: impl Deserializer<'de>) -> Result<T, Problem> {
     let mut track = serde_path_to_error::Track::new();
     let tracked = serde_path_to_error::Deserializer::new(format, &mut track);
-    let read = erased_serde::deserialize(&mut <dyn erased_serde::Deserializer<'_>>::erase(tracked));
+    let read = erased_serde::deserialize(&mut <dyn erased_serde::Deserializer<'_>>::erase(Strict(tracked)));
     read.map_err(|error| {
         let message = error.to_string();
         Problem::from_serde(track.path().to_string(), without_place(&message))

@@ -14,6 +14,7 @@ mod problem;
 mod request;
 mod set;
 mod snapshots;
+mod strict;
 mod study;
 
 pub(crate) use accuracy::TOLERANCES;
@@ -25,6 +26,7 @@ pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
 pub use snapshots::Snapshots;
+pub use strict::read_strictly;
 pub(crate) use study::USUAL_STEPS;
 pub use study::{CostStudy, MethodSteps, StudyReference};
 

@@ -235,6 +235,14 @@ mod tests {
         let problem = paper().with("mud.regime", json!("turbulent")).unwrap_err();
         assert_eq!(problem.path, "mud.regime");
         assert!(problem.message.contains("`auto` or `laminar`"), "{problem}");
+        for (path, value, place, message) in [
+            ("damping", json!([0.03, 3e-5]), "damping", "must be an object"),
+            ("string.gauges", json!([[123.5, 0.001]]), "string.gauges[0]", "must be an object"),
+            ("contact.law", json!({"per_node": null}), "contact.law", "must be the name alone"),
+        ] {
+            let problem = paper().with(path, value).unwrap_err();
+            assert_eq!((problem.path.as_str(), problem.message.as_str()), (place, message));
+        }
         assert_eq!(paper().with("well", Value::Null).unwrap_err().path, "well");
     }
 }

@@ -1,0 +1,324 @@
+//! Reading objects as objects and names as names.
+//!
+//! Serde also takes a list for a struct (its entries for the fields, in their order) and `{"grid": null}` for the name `"grid"`. No schema
+//! describes either, and a list comes to mean other fields as soon as one is added.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::value::StrDeserializer;
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, Error, IgnoredAny, MapAccess, SeqAccess, Unexpected,
+    VariantAccess, Visitor,
+};
+use serde::forward_to_deserialize_any;
+
+/// Reads a type out of a format that describes itself, such as JSON or TOML: its structs out of objects only, its names out of text
+/// only.
+///
+/// # Errors
+/// As the type's own, and a list where a struct is wanted or an object where a name is.
+pub fn read_strictly<'de, T: Deserialize<'de>, D: Deserializer<'de>>(format: D) -> Result<T, D::Error> {
+    T::deserialize(Strict(format))
+}
+
+/// A format, or a part of serde's conversation with it, whose structs and names are read strictly.
+pub(super) struct Strict<T>(pub(super) T);
+
+impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
+    type Error = D::Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
+        self.0.deserialize_any(Strict(visitor))
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
+        self.0.deserialize_option(Strict(visitor))
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, D::Error> {
+        self.0.deserialize_newtype_struct(name, Strict(visitor))
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, D::Error> {
+        self.0.deserialize_any(Struct(visitor))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, D::Error> {
+        self.0.deserialize_any(Enum(visitor))
+    }
+
+    fn is_human_readable(&self) -> bool {
+        self.0.is_human_readable()
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
+        identifier ignored_any
+    }
+}
+
+/// Declares methods of a visitor that hand on a value without parts.
+macro_rules! hand_on {
+    ($($method:ident($type:ty))*) => {$(
+        fn $method<E: Error>(self, value: $type) -> Result<V::Value, E> {
+            self.0.$method(value)
+        }
+    )*};
+}
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    hand_on! {
+        visit_bool(bool) visit_i64(i64) visit_i128(i128) visit_u64(u64) visit_u128(u128) visit_f64(f64) visit_char(char) visit_str(&str)
+        visit_borrowed_str(&'de str) visit_string(String) visit_bytes(&[u8]) visit_borrowed_bytes(&'de [u8]) visit_byte_buf(Vec<u8>)
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<V::Value, E> {
+        self.0.visit_unit()
+    }
+
+    fn visit_none<E: Error>(self) -> Result<V::Value, E> {
+        self.0.visit_none()
+    }
+
+    fn visit_some<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
+        self.0.visit_some(Strict(format))
+    }
+
+    fn visit_newtype_struct<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
+        self.0.visit_newtype_struct(Strict(format))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<V::Value, A::Error> {
+        self.0.visit_seq(Strict(entries))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
+        self.0.visit_map(Strict(members))
+    }
+}
+
+/// The visitor of a struct, which takes objects. What it is not given reaches the visitor's own message of a wrong type.
+struct Struct<V>(V);
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for Struct<V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
+        self.0.visit_map(Strict(members))
+    }
+}
+
+/// The visitor of an enum, which takes the name of a variant, or an object whose one member is named so and holds the variant's content.
+struct Enum<V>(V);
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for Enum<V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<V::Value, E> {
+        self.0.visit_enum(StrDeserializer::new(name))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
+        self.0.visit_enum(Variants(members))
+    }
+}
+
+impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Strict<S> {
+    type Value = S::Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<S::Value, D::Error> {
+        self.0.deserialize(Strict(format))
+    }
+}
+
+impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Strict<A> {
+    type Error = A::Error;
+
+    fn next_element_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, A::Error> {
+        self.0.next_element_seed(Strict(seed))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        self.0.size_hint()
+    }
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for Strict<A> {
+    type Error = A::Error;
+
+    fn next_key_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, A::Error> {
+        self.0.next_key_seed(seed)
+    }
+
+    fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, A::Error> {
+        self.0.next_value_seed(Strict(seed))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        self.0.size_hint()
+    }
+}
+
+/// An object that stands for a variant with content.
+struct Variants<A>(A);
+
+impl<'de, A: MapAccess<'de>> EnumAccess<'de> for Variants<A> {
+    type Error = A::Error;
+    type Variant = Self;
+
+    fn variant_seed<S: DeserializeSeed<'de>>(mut self, seed: S) -> Result<(S::Value, Self), A::Error> {
+        match self.0.next_key_seed(seed)? {
+            Some(variant) => Ok((variant, self)),
+            None => Err(A::Error::invalid_value(Unexpected::Map, &"an object with one member")),
+        }
+    }
+}
+
+impl<'de, A: MapAccess<'de>> Variants<A> {
+    /// The content, which nothing stands beside.
+    fn content<S: DeserializeSeed<'de>>(mut self, seed: S) -> Result<S::Value, A::Error> {
+        let content = self.0.next_value_seed(seed)?;
+        match self.0.next_key::<IgnoredAny>()? {
+            None => Ok(content),
+            Some(_) => Err(A::Error::invalid_value(Unexpected::Map, &"an object with one member")),
+        }
+    }
+}
+
+impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Variants<A> {
+    type Error = A::Error;
+
+    fn unit_variant(self) -> Result<(), A::Error> {
+        Err(A::Error::invalid_type(Unexpected::Map, &"the name alone"))
+    }
+
+    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, A::Error> {
+        self.content(Strict(seed))
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, A::Error> {
+        self.content(Any(Strict(visitor)))
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, A::Error> {
+        self.content(Any(Struct(visitor)))
+    }
+}
+
+/// Lets a visitor see what there is.
+struct Any<V>(V);
+
+impl<'de, V: Visitor<'de>> DeserializeSeed<'de> for Any<V> {
+    type Value = V::Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
+        format.deserialize_any(self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use serde::Serialize;
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    enum Form {
+        Plain,
+        Sized(f64),
+        Pair(u32, Inner),
+        Cut { from: f64, parts: Vec<Inner> },
+    }
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Inner {
+        depth: f64,
+        form: Option<Box<Form>>,
+    }
+
+    fn read(value: Value) -> Result<Form, String> {
+        read_strictly(value).map_err(|error: serde_json::Error| error.to_string())
+    }
+
+    #[test]
+    fn what_serde_writes_is_read() {
+        let inner = |form: Option<Form>| Inner { depth: 0.1, form: form.map(Box::new) };
+        for form in [
+            Form::Plain,
+            Form::Sized(2.5),
+            Form::Pair(3, inner(Some(Form::Plain))),
+            Form::Cut { from: 1.0, parts: vec![inner(None), inner(Some(Form::Sized(0.3)))] },
+        ] {
+            let text = serde_json::to_string(&form).unwrap();
+            let mut format = serde_json::Deserializer::from_str(&text);
+            assert_eq!(read_strictly::<Form, _>(&mut format).unwrap(), form, "{text}");
+            assert_eq!(read(serde_json::to_value(&form).unwrap()).unwrap(), form, "{text}");
+            let named = BTreeMap::from([("form", form)]);
+            let table = toml::Value::try_from(&named).unwrap();
+            let again: BTreeMap<String, Form> = read_strictly(table).unwrap();
+            assert_eq!(again["form"], named["form"], "{text}");
+        }
+    }
+
+    #[test]
+    fn lists_are_no_structs_and_objects_no_names_at_any_depth() {
+        for (lax, wanted) in [
+            (json!({"plain": null}), "the name alone"),
+            (json!({"pair": [3, [0.1, null]]}), "struct Inner"),
+            (json!({"pair": [3, {"depth": 0.1, "form": {"plain": null}}]}), "the name alone"),
+            (json!({"cut": [1.0, []]}), "struct variant"),
+            (json!({"cut": {"from": 1.0, "parts": [[0.1, null]]}}), "struct Inner"),
+        ] {
+            let _: Form = serde_json::from_str(&lax.to_string()).expect("serde takes it");
+            let refused = read(lax.clone()).expect_err("another form");
+            assert!(refused.contains(wanted), "{lax}: {refused}");
+        }
+    }
+
+    #[test]
+    fn an_object_for_a_variant_has_one_member() {
+        for several in [json!({}), json!({"sized": 1, "plain": null})] {
+            let refused = read(several).unwrap_err();
+            assert!(refused.contains("one member"), "{refused}");
+        }
+        assert!(read(json!({"size": 1})).unwrap_err().contains("unknown variant `size`"));
+        assert!(read(json!("sized")).is_err());
+    }
+}

@@ -68,14 +68,24 @@ fn sweep_is_submitted_watched_listed_shown_and_fetched() {
     let files = json(&server, &fetch);
     let listed = files.as_array().unwrap();
     assert!(listed.iter().all(|file| std::path::Path::new(file.as_str().unwrap()).exists()));
-    assert_eq!(listed.len(), 1 + 3 * 6, "a table, and a folder a point: {files}");
-    // What was fetched stays as it is, and what is not there comes.
+    assert_eq!(listed.len(), 2 + 3 * 6, "the sweep, its table, and a folder a point: {files}");
+    // What was fetched stays as it is, and what is not there, or empty, comes.
     let (kept, lost) = (output.join("point-0001/profile.parquet"), output.join("point-0001/statics.parquet"));
     let whole = std::fs::read(&lost).unwrap();
     std::fs::write(&kept, "kept").unwrap();
     std::fs::remove_file(&lost).unwrap();
     assert_eq!(json(&server, &fetch), files);
-    assert_eq!((std::fs::read(&kept).unwrap(), std::fs::read(&lost).unwrap()), (b"kept".to_vec(), whole));
+    assert_eq!(std::fs::read(&kept).unwrap(), b"kept");
+    assert_eq!(std::fs::read(&lost).unwrap(), whole);
+    std::fs::write(&lost, "").unwrap();
+    assert_eq!(json(&server, &fetch), files);
+    assert_eq!(std::fs::read(&lost).unwrap(), whole);
+    // Another sweep's points are not mixed with them.
+    let other = [&["submit", "paper-200m", "--flow-rate", "0.01", "--name", "other", "--detach"][..], &SHORT]
+        .concat();
+    let mixed = run(&server, &["fetch", text(&server, &other).trim(), "--output", output.to_str().unwrap()]);
+    assert!(!mixed.status.success());
+    assert!(String::from_utf8_lossy(&mixed.stderr).contains(id), "it says whose results are there");
 
     // The same key is the same sweep; no such sweep is an error.
     let keyed = [&submit[..], &["--idempotency-key", "k", "--detach"]].concat();
@@ -350,7 +360,7 @@ fn output_ends_quietly_where_nobody_reads_and_errors_are_messages() {
 }
 
 #[test]
-fn checking_a_store_leaves_no_trace_in_it() {
+fn looking_at_a_store_leaves_no_trace_in_it() {
     let data = tempfile::tempdir().unwrap();
     let (mut serve, server) = listen(data.path(), &["serve"]);
     let submit = [&["submit", "paper-200m", "--detach"][..], &SHORT].concat();
@@ -369,6 +379,8 @@ fn checking_a_store_leaves_no_trace_in_it() {
     serve.signal(Signal::TERM);
     assert!(serve.0.wait().unwrap().success());
     let before = files();
-    assert!(run(&server, &["check", "--data", directory]).status.success());
-    assert_eq!(files(), before);
+    for look in [&["check"][..], &["token", "list"]] {
+        assert!(run(&server, &[look, &["--data", directory]].concat()).status.success());
+        assert_eq!(files(), before, "{look:?}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, bail, ensure};
 use clap::{Args, ValueEnum};
 use drillsweep_api::{PointDetail, Sweep};
 use drillsweep_table::quantity::columns::ORBIT_MEAN_RADIUS;
@@ -65,7 +65,8 @@ impl Format {
     }
 }
 
-/// Writes `table` with a row a point, and a folder a point with its tables and full spectra. A file that the server cannot give
+/// Writes `sweep.json` as the server describes the sweep, `table` with a row a point, and a folder a point with its tables and full
+/// spectra. A file that the server cannot give
 /// does not keep the others back: `missing.json` tells what is not there and why, and the command fails. Files of points that have
 /// not changed since they were fetched are left as they are, so that a fetch that was interrupted goes on.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
@@ -75,8 +76,11 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let format = arguments.format.name();
     std::fs::create_dir_all(&arguments.output)
         .with_context(|| format!("cannot make {}", arguments.output.display()))?;
-    let table = client.bytes(&format!("/v1/sweeps/{id}/table?format={format}"))?;
     let mut files = Files::default();
+    let own = arguments.output.join(SWEEP_FILE);
+    refuse_another_sweeps(&own, &sweep)?;
+    files.write(own, serde_json::to_string_pretty(&sweep)?.as_bytes())?;
+    let table = client.bytes(&format!("/v1/sweeps/{id}/table?format={format}"))?;
     files.write(arguments.output.join(format!("table.{format}")), &table)?;
     if !arguments.table_only {
         points(&client, &sweep, &arguments.output, format, &mut files)?;
@@ -109,6 +113,24 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
         tracing::warn!("{text}");
     }
     Ok(())
+}
+
+/// The sweep that a directory's files are of.
+const SWEEP_FILE: &str = "sweep.json";
+
+/// Keeps the points of two sweeps, whose folders have the same names, from being mixed.
+fn refuse_another_sweeps(file: &Path, sweep: &Sweep) -> anyhow::Result<()> {
+    let Ok(known) = std::fs::read(file) else { return Ok(()) };
+    let known: Value = serde_json::from_slice(&known).unwrap_or_default();
+    let directory = file.parent().unwrap_or(file).display();
+    match known["id"].as_str() {
+        Some(id) if id == sweep.id => Ok(()),
+        Some(id) => bail!("{directory} has the results of sweep {id}; give another directory by --output"),
+        None => bail!(
+            "{} does not say which sweep the files beside it are of; give another directory by --output",
+            file.display()
+        ),
+    }
 }
 
 fn points(
@@ -182,7 +204,8 @@ struct Missing {
 impl Files {
     /// Writes what the server answers; a problem that it answers with is noted.
     fn download(&mut self, client: &Client, path: &str, file: PathBuf) -> anyhow::Result<()> {
-        if self.is_unchanged && file.exists() {
+        // A file is empty where the machine lost power before its bytes were on the disk.
+        if self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() > 0) {
             self.written.push(file);
             return Ok(());
         }

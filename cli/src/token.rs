@@ -121,7 +121,7 @@ async fn create(arguments: &CreateArguments) -> anyhow::Result<()> {
 }
 
 async fn list(data: &DataArguments, json: bool) -> anyhow::Result<()> {
-    let store = Store::open(&data.existing_store(Role::Server)?).await?;
+    let store = Store::open_read_only(&data.existing_store(Role::Server)?).await?;
     let (tokens, now) = (store.tokens().await?, store.now_ms().await?);
     store.close().await;
     if json {

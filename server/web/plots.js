@@ -6,7 +6,7 @@ import { h } from "./dom.js";
 import { fetchAhead, library, libraryAtHand } from "./drawing.js";
 import { settings, theme } from "./settings.js";
 import { sketch } from "./sketch.js";
-import { forgetZoom, keepZoom, wholeOf, zoomed } from "./zoom.js";
+import { forgetZoom, keepZoom, rested, wholeOf, zoomed } from "./zoom.js";
 
 /** Lines that differ, for colour-blind readers too (after Okabe and Ito); lighter on the dark theme. */
 const PALETTES = {
@@ -130,10 +130,11 @@ function painted() {
 
 /** Keeps in the link how the reader zooms a picture. @param {HTMLElement} place */
 function followZoom(place) {
-  /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
+  /** @type {any} */ (place).on("plotly_relayout", async (/** @type {any} */ event) => {
+    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
+    await rested(place);
     const known = drawn.get(place);
-    if (!known || adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
-    keepZoom(keyOf(place), place, known.layout, known.whole);
+    if (known && place.isConnected) keepZoom(keyOf(place), place, known.layout, known.whole);
   });
 }
 

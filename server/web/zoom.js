@@ -45,7 +45,7 @@ export function zoomed(key, layout) {
 export function wholeOf(place, layout) {
   const full = place._fullLayout;
   const axes = Object.keys(layout).filter((name) => /^[xy]axis\d*$/.test(name) && full[name]?.range);
-  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene ? { camera: cameraOf(place) } : {}) };
+  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene?._scene ? { camera: cameraOf(place) } : {}) };
 }
 
 /**
@@ -71,10 +71,27 @@ export function forgetZoom(key) {
   keep({ [`zoom.${key}`]: null });
 }
 
+/**
+ * Waits until a picture in space has come to rest: after the mouse has let go it turns on for a moment, of whose end plotly does not tell.
+ * @param {any} place that plotly draws in
+ * @returns {Promise<void>}
+ */
+export async function rested(place) {
+  const view = viewOf(place);
+  const released = view?.lastT();
+  // The next state of the view, which has no speed any more, is the last.
+  while (view && place.isConnected && viewOf(place) === view && view.lastT() <= released) await new Promise(requestAnimationFrame);
+}
+
+/** How a picture in space is seen, as plotly moves it; nothing of a flat one. @param {any} place that plotly draws in */
+function viewOf(place) {
+  return place._fullLayout.scene?._scene?.camera?.view;
+}
+
 /** @param {any} place that plotly draws in */
 function cameraOf(place) {
-  // Of a picture that was turned by the mouse plotly's complete layout keeps the camera of before.
-  const { eye, center } = { ...place._fullLayout.scene.camera, ...place.layout.scene?.camera };
+  // The layouts have the camera as it was when the mouse let go, or before that.
+  const { eye, center } = place._fullLayout.scene._scene.getCamera();
   return [eye.x, eye.y, eye.z, center.x, center.y, center.z];
 }
 

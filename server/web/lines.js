@@ -85,20 +85,43 @@ export function tableLines(path, query, pythonLines) {
  * @returns {Lines}
  */
 export function requestLines(asked, pythonLines) {
-  const hasToken = session().tokens_required;
   const curl = asked.map((one) => {
     const text = new URLSearchParams(pairsOf(one).map(([name, value]) => [name, String(value)])).toString();
-    const header = hasToken ? '-H "Authorization: Bearer $DRILLSWEEP_TOKEN" ' : "";
     const file = asked.length > 1 ? ` -o ${one.name}.${one.isDocument ? "json" : "csv"}` : "";
-    return `curl -fsS ${header}${shell(`${location.origin}${one.path}${text && `?${text.replaceAll("%2C", ",")}`}`)}${file}`;
+    return `curl -fsS ${curlToken()}${shell(`${location.origin}${one.path}${text && `?${text.replaceAll("%2C", ",")}`}`)}${file}`;
   });
   const kinds = [...new Set(asked.map(optionsOf))];
-  const options = kinds.map((kind) => `${kind} = weboptions(ContentType="${kind === "csv" ? "table" : "json"}", Timeout=90${hasToken ? ', HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]' : ""});`);
+  const options = kinds.map((kind) => `${kind} = weboptions(ContentType="${kind === "csv" ? "table" : "json"}", Timeout=90${matlabToken()});`);
   const reads = asked.map((one) => {
     const arguments_ = pairsOf(one).map(([name, value]) => `, "${name}", ${typeof value === "number" ? value : `"${String(value).replaceAll('"', '""')}"`}`).join("");
     return `${one.name ?? "table"} = webread("${location.origin}${one.path}"${arguments_}, ${optionsOf(one)});`;
   });
   return { curl: curl.join("\n"), python: pythonLines, matlab: [...options, ...reads].join("\n") };
+}
+
+/**
+ * Lines that send a request with a body, whose answer is a sweep.
+ * @param {string} path from `/v1`
+ * @param {any} body
+ * @returns {{curl: string, matlab: string}}
+ */
+export function bodyLines(path, body) {
+  const text = JSON.stringify(body);
+  return {
+    // What a refusal says of the body is written out, too.
+    curl: `curl -s ${curlToken()}${location.origin}${path} -H 'Content-Type: application/json' -d ${shell(text)}`,
+    matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90${matlabToken()});\nsweep = webwrite("${location.origin}${path}", '${text.replaceAll("'", "''")}', json);`,
+  };
+}
+
+/** What curl shows a server that needs a token. */
+function curlToken() {
+  return session().tokens_required ? '-H "Authorization: Bearer $DRILLSWEEP_TOKEN" ' : "";
+}
+
+/** The same among MATLAB's options. */
+function matlabToken() {
+  return session().tokens_required ? ', HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]' : "";
 }
 
 /** @param {Asked} one @returns {[string, any][]} */

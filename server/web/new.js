@@ -2,7 +2,7 @@
 
 import { connection, get, Problem, send } from "./api.js";
 import { choice, debounced, fill, h } from "./dom.js";
-import { lines, python, shell } from "./lines.js";
+import { bodyLines, lines, python, shell } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { go, keep, link } from "./router.js";
@@ -257,7 +257,8 @@ export async function show(main, route, signal) {
       if (error instanceof Problem) mark(error.errors.length ? error.errors : [{ detail: error.message }]);
       else if (error instanceof Unreadable) mark([{ pointer: error.pointer, detail: error.message }]);
       else general.textContent = error instanceof Error ? error.message : String(error);
-      fill(planned, h("p", { class: "soft" }, "The plan appears here once the request can be read."));
+      const isRefused = error instanceof Unreadable || (error instanceof Problem && error.status < 500);
+      fill(planned, h("p", { class: "soft" }, isRefused ? "The plan appears here once the request can be read." : "The plan appears here once the server answers."));
       pointsPart.hidden = true;
     }
   }
@@ -452,7 +453,7 @@ function plannedPart(answer) {
   const growing = plan?.undamped_torsion?.growing_modes;
   return [
     h("dl", { class: "facts" }, row("Points", String(answer.total)), row("Known already", `${answer.known}, not computed again`), answer.verification && row("Verified", `${answer.verification.total}, ${answer.verification.known} of the reference runs known already`), row("Time", answer.known === answer.total ? "none: all results are there" : answer.wall_time !== undefined && answer.wall_time !== null ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time; no worker is there now` : "not known"), row("Storage", answer.table_bytes ? `about ${bytes(answer.table_bytes)} before compression` : "nothing further"), plan && row("Tables of a point", `about ${bytes(footprint.table_bytes)} before compression at each accuracy${footprint.snapshot_bytes ? `, of that ${bytes(footprint.snapshot_bytes)} of snapshots` : ""}`), plan && row("String", `${plan.elements} elements, ${number(plan.simulated_time)} s simulated`)),
-    accuracies.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Times at each accuracy" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "Known points"), h("th", { class: "number" }, "Others on one core"))), h("tbody", {}, accuracies))) : null,
+    accuracies.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Times at each accuracy" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Accuracy"), h("th", { class: "number" }, "Longest step"), h("th", { class: "number" }, "A point"), h("th", { class: "number" }, "Known points"), h("th", { class: "number" }, "To compute, on one core"))), h("tbody", {}, accuracies))) : null,
     (plan?.warnings ?? []).map((/** @type {string} */ warning) => h("p", { class: "wrong" }, warning)),
     growing ? h("p", { class: "small soft" }, `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz.`) : null,
   ];
@@ -467,9 +468,8 @@ function requestLines(body) {
   if (design) arguments_.push(`design="${design}"`, ...(samples ? [`samples=${samples}`, `seed=${seed}`] : []));
   const options = [...Object.entries(set ?? {}).map(([name, value]) => `--set ${shell(`${name}=${typeof value === "string" ? value : JSON.stringify(value)}`)}`), ...Object.entries(axes).map(([name, axis]) => `--axis ${shell(`${name}=${written(axis).replaceAll(" ", "")}`)}`), ...(design ? [`--design ${design}`] : []), ...(samples ? [`--samples ${samples} --seed ${seed}`] : []), ...(typeof rest.outputs === "string" ? [`--outputs ${rest.outputs}`] : []), ...["verify", "skip", "priority", "cache"].flatMap((name) => (rest[name] ? [`--${name} ${rest[name]}`] : [])), ...(rest.name ? [`--name ${shell(rest.name)}`] : []), ...(rest.tags ?? []).map((/** @type {string} */ tag) => `--tag ${shell(tag)}`)];
   return {
-    curl: `curl -s ${server}/v1/sweeps -H 'Content-Type: application/json' -d ${shell(JSON.stringify(body))}`,
+    ...bodyLines("/v1/sweeps", body),
     python: `${scenario ? "import json\n\n" : ""}from drillsweep import Client, Range\n\nsweep = Client("${server}").submit(\n    ${arguments_.join(",\n    ")},\n)\nsweep.wait()`,
-    matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90);\nsweep = webwrite("${server}/v1/sweeps", '${JSON.stringify(body).replaceAll("'", "''")}', json);`,
     cli: `drillsweep submit ${preset ?? "scenario.json"} ${options.join(" \\\n    ")} --server ${server}`,
   };
 }

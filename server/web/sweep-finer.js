@@ -2,7 +2,7 @@
 
 import { Problem, send } from "./api.js";
 import { debounced, fill, h } from "./dom.js";
-import { lines, python, shell } from "./lines.js";
+import { bodyLines, lines, python } from "./lines.js";
 import { notice } from "./notices.js";
 import { MAY_NOT, maySubmit } from "./session.js";
 import { duration, label, say, title, unit } from "./units.js";
@@ -69,9 +69,9 @@ export function finer(context) {
       add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
     } catch (error) {
       if (context.signal.aborted || mine !== generation) return;
-      if (!(error instanceof Problem)) throw error;
       fill(planned);
-      wrong.textContent = error.errors.map((problem) => problem.detail).join(" ") || error.message;
+      const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
+      wrong.textContent = details || (error instanceof Error ? error.message : String(error));
     }
   }, 300);
 
@@ -79,9 +79,8 @@ export function finer(context) {
     const body = request();
     const axis = (/** @type {any} */ span) => (span.values ? python(span.values) : `Range(${span.from}, ${span.to}, ${span.count}${span.scale ? ', scale="log"' : ""})`);
     return {
-      curl: `curl -s ${location.origin}${path()} -H 'Content-Type: application/json' -d ${shell(JSON.stringify(body))}`,
+      ...bodyLines(path(), body),
       python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${context.sweep.id}")\nsweep.append({${Object.entries(body.axes).map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`).join(", ")}})`,
-      matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90);\nsweep = webwrite("${location.origin}${path()}", '${JSON.stringify(body)}', json);`,
     };
   }, "The same request");
 

@@ -1,8 +1,8 @@
 // The list of sweeps, with the queue, the workers and what failed lately.
 
-import { address, followAll, get, isFinal } from "./api.js";
+import { followAll, get, isFinal } from "./api.js";
 import { debounced, choice, fill, h } from "./dom.js";
-import { lines, shell } from "./lines.js";
+import { lines, requestLines, shell } from "./lines.js";
 import { attend } from "./notices.js";
 import { Pace } from "./pace.js";
 import { go, keep, link } from "./router.js";
@@ -91,15 +91,24 @@ export async function show(main, route, signal) {
   /** @param {any[]} sweeps */
   function add(sweeps) {
     for (const sweep of sweeps) {
-      if (known.has(sweep.id)) continue;
-      const entry = { sweep, row: h("tr", { "data-sweep": sweep.id }), pace: new Pace() };
-      entry.pace.note(sweep);
-      known.set(sweep.id, entry);
-      drawRow(entry.row, sweep, entry.pace);
-      body.append(entry.row);
+      if (!known.has(sweep.id)) enter(sweep, null);
     }
+    sayEnd();
+  }
+
+  /** Gives a sweep a row. @param {any} sweep @param {HTMLTableRowElement | null} below the row below it; none where it is the last */
+  function enter(sweep, below) {
+    const entry = { sweep, row: h("tr", { "data-sweep": sweep.id }), pace: new Pace() };
+    entry.pace.note(sweep);
+    known.set(sweep.id, entry);
+    drawRow(entry.row, sweep, entry.pace);
+    body.insertBefore(entry.row, below);
+  }
+
+  /** Says below the list how far it goes. */
+  function sayEnd() {
     const hasFilter = Object.values(filters()).some(Boolean);
-    if (known.size === 0) {
+    if (known.size === 0 && !next) {
       fill(end, hasFilter ? "No sweep matches these filters." : h("span", {}, "There are no sweeps yet. ", h("a", { href: "#/new" }, "Submit the first one"), "."));
     } else {
       fill(end, next ? "Further sweeps follow as you scroll." : `${known.size} ${known.size === 1 ? "sweep" : "sweeps"}.`);
@@ -110,6 +119,17 @@ export async function show(main, route, signal) {
   function passes(sweep) {
     const { state, name, owner, tag } = filters();
     return (!state || sweep.state === state) && (!owner || sweep.owner === owner) && (!tag || (sweep.tags ?? []).includes(tag)) && (sweep.name ?? "").toLowerCase().includes(name.toLowerCase());
+  }
+
+  /** What the stream told last of each sweep: an answer may be older than that. @type {Map<string, any>} */
+  const told = new Map();
+  /** Sweeps that were deleted, which an older answer may still have. @type {Set<string>} */
+  const deleted = new Set();
+
+  /** A sweep as it is known last. @param {any} sweep of an answer */
+  function latest(sweep) {
+    const other = told.get(sweep.id);
+    return other && isBefore(sweep, other) ? other : sweep;
   }
 
   /** @param {any} sweep */
@@ -123,9 +143,7 @@ export async function show(main, route, signal) {
   }
 
   let isStreaming = false;
-  /** Of sweeps that the list does not show: what was told of each when the list was asked for last. @type {Map<string, string>} */
-  const elsewhere = new Map();
-  /** @type {Set<string>} */
+  /** Sweeps that the list does not show, and of which something was told. @type {Set<string>} */
   const unknown = new Set();
   const askForNew = debounced(() => {
     const isAsked = [...unknown].some((id) => !known.has(id));
@@ -136,22 +154,23 @@ export async function show(main, route, signal) {
   /** Takes what the stream tells of a sweep. @param {any} sweep */
   function hear(sweep) {
     serviceChanged();
+    const before = told.get(sweep.id);
+    told.set(sweep.id, sweep);
     if (known.has(sweep.id)) return update(sweep);
-    const told = `${sweep.revision} ${sweep.state}`;
-    if (elsewhere.get(sweep.id) === told) return;
-    elsewhere.set(sweep.id, told);
+    if (before?.revision === sweep.revision && before.state === sweep.state) return;
     unknown.add(sweep.id);
     askForNew();
   }
 
   /** @param {string} id */
   function forget(id) {
-    if (!known.has(id)) return;
-    // Where the selected sweep was, its neighbour is.
-    if (id === selected && body.rows.length > 1) move(known.get(id)?.row === body.rows[body.rows.length - 1] ? -1 : 1);
-    known.get(id)?.row.remove();
+    const row = known.get(id)?.row;
+    if (!row) return;
+    // Where the selected sweep was, its neighbour is; who types in a field goes on there.
+    if (id === selected && body.rows.length > 1) move(row === body.rows[body.rows.length - 1] ? -1 : 1, row.contains(document.activeElement));
+    row.remove();
     known.delete(id);
-    add([]);
+    sayEnd();
   }
 
   /** Numbers the looks at the first page, so that an older one is dropped. */
@@ -165,17 +184,11 @@ export async function show(main, route, signal) {
     // Identifiers grow with time: what that page would have and has not does not pass the filters any more.
     const [listed, last] = [new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)), page.next ? page.sweeps.at(-1).id : ""];
     for (const id of [...known.keys()]) if (id > last && !listed.has(id)) forget(id);
-    const fresh = page.sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id));
-    for (const sweep of page.sweeps) update(sweep);
-    for (const sweep of fresh) {
-      const entry = { sweep, row: h("tr", { "data-sweep": sweep.id }), pace: new Pace() };
-      entry.pace.note(sweep);
-      known.set(sweep.id, entry);
-      drawRow(entry.row, sweep, entry.pace);
-      const below = [...body.rows].find((row) => (row.dataset.sweep ?? "") < sweep.id);
-      body.insertBefore(entry.row, below ?? null);
-    }
-    if (fresh.length) add([]);
+    const sweeps = page.sweeps.map(latest).filter((/** @type {any} */ sweep) => !deleted.has(sweep.id));
+    const fresh = sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id) && passes(sweep));
+    sweeps.forEach(update);
+    for (const sweep of fresh) enter(sweep, [...body.rows].find((row) => (row.dataset.sweep ?? "") < sweep.id) ?? null);
+    sayEnd();
   }
 
   let serviceAt = 0;
@@ -197,8 +210,8 @@ export async function show(main, route, signal) {
     fill(failures, ...failuresPart(failed.failures));
   }
 
-  /** Selects the sweep so many rows below the one that is selected. @param {number} by */
-  function move(by) {
+  /** Selects the sweep so many rows below the one that is selected. @param {number} by @param {boolean} [isFocused] whether it gets the keyboard */
+  function move(by, isFocused = true) {
     const rows = [...body.rows];
     if (!rows.length) return;
     const row = known.get(selected ?? "")?.row;
@@ -206,6 +219,7 @@ export async function show(main, route, signal) {
     row?.removeAttribute("aria-selected");
     selected = [...known].find(([, entry]) => entry.row === next)?.[0] ?? null;
     next.setAttribute("aria-selected", "true");
+    if (!isFocused) return;
     next.querySelector("a")?.focus({ preventScroll: true });
     next.scrollIntoView({ block: "nearest" });
   }
@@ -238,12 +252,9 @@ export async function show(main, route, signal) {
   });
 
   const taken = lines(() => {
-    const list = address("/v1/sweeps", filters());
     const chosen = Object.entries(filters()).filter(([, value]) => value);
     return {
-      curl: `curl -s ${shell(location.origin + list)}`,
-      python: `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`,
-      matlab: `list = webread("${location.origin}/v1/sweeps"${chosen.map(([name, value]) => `, "${name}", "${value.replaceAll('"', '""')}"`).join("")});`,
+      ...requestLines([{ path: "/v1/sweeps", query: filters(), name: "list", isDocument: true }], `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`),
       cli: `drillsweep list --server ${location.origin}${chosen.map(([name, value]) => ` --${name} ${shell(value)}`).join("")}`,
     };
   });
@@ -262,7 +273,10 @@ export async function show(main, route, signal) {
   await Promise.all([load(), drawService()]);
   followAll({
     sweep: hear,
-    deleted: forget,
+    deleted: (id) => {
+      deleted.add(id);
+      forget(id);
+    },
     opened: () => {
       isStreaming = true;
       // What has changed between the list and the stream, or while there was none, it may not tell.
@@ -271,6 +285,16 @@ export async function show(main, route, signal) {
     broken: () => (isStreaming = false),
   }, signal);
   return "Sweeps";
+}
+
+/**
+ * Whether one account of a sweep is older than another: what somebody asks for raises its revision, and between that points become final.
+ * @param {any} sweep
+ * @param {any} other the same sweep
+ */
+function isBefore(sweep, other) {
+  const final = (/** @type {any} */ { counts }) => counts.succeeded + counts.failed + counts.cancelled;
+  return sweep.revision < other.revision || (sweep.revision === other.revision && final(sweep) < final(other));
 }
 
 /**

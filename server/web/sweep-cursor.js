@@ -54,7 +54,7 @@ export function keyboard(picture, open) {
     if (!now) return;
     element.textContent = now.text.replaceAll("<br>", ", ");
     const { text, soft, panel } = inks();
-    const on = (/** @type {string} */ axis, /** @type {number} */ value) => (/** @type {any} */ (picture)._fullLayout[axis].type === "log" ? Math.log10(value) : value);
+    const on = (/** @type {string} */ axis, /** @type {number} */ value) => (/** @type {any} */ (picture)._fullLayout?.[axis].type === "log" ? Math.log10(value) : value);
     void adjust(picture, { annotations: [{ x: on("xaxis", now.x), y: on("yaxis", now.y), text: now.text, align: "left", showarrow: true, arrowhead: 6, arrowcolor: text, bgcolor: panel, bordercolor: soft, font: { color: text } }] });
   });
 

@@ -1,8 +1,9 @@
 // Two sweeps compared: the difference of a result on the parameters that both have.
 
-import { get } from "./api.js";
+import { get, Problem } from "./api.js";
 import { Biases } from "./bias.js";
 import { choice, debounced, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, DASHES, draw, LINES } from "./plots.js";
 import { go, link } from "./router.js";
@@ -32,6 +33,7 @@ export function difference(context) {
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
   const figure = h("figure", {}, place, caption);
+  const begin = works();
   const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
   const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250) });
   const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);
@@ -80,14 +82,23 @@ export function difference(context) {
 
   async function redraw() {
     if (!sweeps) return find();
+    const isNewest = begin();
     const id = query.get("with") ?? "";
-    if (other?.sweep.id !== id) other = id ? await load(id) : undefined;
-    const known = sweeps?.some((sweep) => sweep.id === id);
-    const chooser = choice("Compared with", [["", "— choose a sweep"], ...(sweeps ?? []).map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])), ...(id && !known ? [/** @type {[string, string]} */ ([id, nameOf(other?.sweep)])] : [])], id, set("with"));
+    let lost = "";
+    if (other?.sweep.id !== id) {
+      const loaded = id ? await load(id).catch((error) => {
+        if (!(error instanceof Problem) || error.status !== 404) throw error;
+        lost = `The sweep of the link was not found: ${error.message}. `;
+      }) : undefined;
+      if (!isNewest()) return;
+      other = loaded ?? undefined;
+    }
+    const offered = other && !sweeps.some((sweep) => sweep.id === id) ? [...sweeps, other.sweep] : sweeps;
+    const chooser = choice("Compared with", [["", "— choose a sweep"], ...offered.map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)]))], other ? id : "", set("with"));
     const whom = [searched, chooser];
     if (!other) {
       choices(whom);
-      say_("Choose the sweep whose results are compared with those of this one, at the points that both have.");
+      say_(`${lost}Choose the sweep whose results are compared with those of this one, at the points that both have.`);
       return;
     }
     const axes = context.axes.filter((axis) => other?.axes.includes(axis));
@@ -105,7 +116,9 @@ export function difference(context) {
     const options = (/** @type {string[]} */ names) => names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
 
     const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
+    if (!isNewest()) return;
     const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
+    if (!isNewest()) return;
     choices(whom, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
     fields = { mine: columnsOf(context.axes, colour), theirs: columnsOf(other.axes, colour) };
     context.drawn();
@@ -158,7 +171,7 @@ export function difference(context) {
       const line = (/** @type {string} */ called, /** @type {(index: number) => number} */ value, /** @type {number} */ number, /** @type {any} */ more = {}) => ({ type: "scatter", mode: "lines+markers", name: called, showlegend: true, x: order.map((index) => at(x, pairs[index].x)), y: order.map(value), text: order.map((index) => text[index]), customdata: order.map((index) => keys[index]), hoverinfo: "text", line: { color: LINES[number], dash: DASHES[number] }, ...more });
       const { size } = unit(colour);
       traces = [line(first, (index) => pairs[index].value / size, 0), line(second, (index) => pairs[index].partner.value / size, 1), line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" })];
-      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] }, yaxis2: { title: name, domain: [0, 0.36] } };
+      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] }, yaxis2: { title: name, ...(isRelative ? {} : { quantity: colour }), domain: [0, 0.36] } };
     }
     const shape = await draw(place, traces, layout, signal);
     shape.removeAllListeners?.("plotly_click");

@@ -1,6 +1,7 @@
 // Which of the swept parameters matters to a result.
 
 import { choice, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { LEAST_POINTS, shares } from "./sensitivity.js";
@@ -18,6 +19,7 @@ export function effects(context) {
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
+  const begin = works();
   const pictures = h("div", {}, h("h2", {}, "How much of the variation each parameter explains"), h("figure", {}, bars, caption), h("h2", {}, "Mean over all other parameters"), h("figure", {}, curves, h("figcaption", {}, "Bars are standard errors of the means.")));
 
   function chosen() {
@@ -26,12 +28,14 @@ export function effects(context) {
   }
 
   async function redraw() {
+    const isNewest = begin();
     const { results, result } = chosen();
     fill(controls, choice("Result", results.map((name) => [name, label(name)]), result, (value) => {
       context.keep({ result: value });
       attend(redraw(), context.signal);
     }));
     const [values, ...columns] = await table.columns(result, ...axes);
+    if (!isNewest()) return;
     const rows = values.map((_, index) => index).filter((index) => typeof values[index] === "number" && columns.every((column) => typeof column[index] === "number"));
     empty.hidden = rows.length >= LEAST_POINTS;
     pictures.hidden = rows.length < LEAST_POINTS;
@@ -54,7 +58,7 @@ export function effects(context) {
     fill(caption, `Of the variance of ${label(result)} over ${rows.length} points. `, hasTotals ? "The points are a full grid: the shares are its exact decomposition, over the values that it has." : "The points are no full grid: first-order indices are estimated from the points as they are, by ratios of correlation within groups along each parameter, less what groups of unrelated points would show. Lines are 95 % intervals (jackknife).", ` ${context.biases.say(result)}`);
     bars.setAttribute("aria-label", `Shares of the variance of ${label(result)}: ${order.toReversed().map((index) => `${label(axes[index])} ${Math.round(100 * found[index].first)} %`).join(", ")}`);
     await draw(bars, traces, { xaxis: { title: "share of the variance (Sobol index)", range: [Math.min(0, ...firsts, ...shownEnds) - 0.01, Math.max(1, ...shownEnds) + 0.02] }, yaxis: { title: "", gridcolor: "rgba(0,0,0,0)", automargin: true }, barmode: "group", margin: { l: 20, r: 16, t: 30, b: 50 } }, context.signal);
-    const layout = { grid: { rows: 1, columns: axes.length, pattern: "independent" }, showlegend: false, ...Object.fromEntries(axes.flatMap((axis, index) => [[`xaxis${index || ""}`.replace(/^xaxis(\d+)$/, (_, at) => `xaxis${Number(at) + 1}`), { title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" }], [`yaxis${index ? index + 1 : ""}`, { title: index ? "" : title(result), matches: index ? "y" : undefined }]])) };
+    const layout = { grid: { rows: 1, columns: axes.length, pattern: "independent" }, showlegend: false, ...Object.fromEntries(axes.flatMap((axis, index) => [[`xaxis${index || ""}`.replace(/^xaxis(\d+)$/, (_, at) => `xaxis${Number(at) + 1}`), { title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" }], [`yaxis${index ? index + 1 : ""}`, { title: index ? "" : title(result), quantity: result, matches: index ? "y" : undefined }]])) };
     await draw(curves, axes.map((axis, index) => ({ type: "scatter", mode: "lines+markers", x: found[index].levels.map((level) => level.value / unit(axis).size), y: found[index].levels.map((level) => level.mean), error_y: { type: "data", array: found[index].levels.map((level) => level.error), thickness: 1.2 }, line: { color: LINES[index % LINES.length] }, xaxis: `x${index ? index + 1 : ""}`, yaxis: `y${index ? index + 1 : ""}`, name: label(axis), hoverinfo: "x+y" })), layout, context.signal);
   }
 

@@ -1,6 +1,7 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { choice, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "./plots.js";
 import { link } from "./router.js";
@@ -29,9 +30,20 @@ export function map(context) {
   const empty = h("p", { class: "empty", hidden: true });
   const figure = h("figure", {}, place, caption, cursor.element);
   const element = h("div", {}, controls, empty, figure, region.element);
+  /** What the button opens is chosen by what is drawn last. @type {(range?: any) => void} */
+  let chooseRegion = () => {};
+  const finerButton = h("button", { onclick: () => {
+    chooseRegion();
+    void adjust(place, { dragmode: "select" });
+  } }, "Finer grid");
+  const sayRegion = () => finerButton.setAttribute("aria-expanded", String(!region.element.hidden));
   region.element.addEventListener("closed", () => {
+    sayRegion();
     void adjust(place, { dragmode: "zoom", selections: [] });
   });
+  const begin = works();
+  /** What the slice that was drawn last holds: a finer grid is of the slice that is shown. */
+  let sliceBefore = "";
   const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
 
   function chosen() {
@@ -44,12 +56,14 @@ export function map(context) {
   }
 
   async function redraw() {
+    const isNewest = begin();
     const { x, y, colour, results, held, isLog, style } = chosen();
     if (!x) {
       fill(element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
       return;
     }
     const [ordinals, states, xs, ys, values, ...others] = await table.columns("ordinal", "state", x, y ?? x, colour, ...held);
+    if (!isNewest()) return;
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
       context.keep({ [name]: value });
       attend(redraw(), context.signal);
@@ -73,9 +87,33 @@ export function map(context) {
       choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
       !words && choice("Scale", [["linear", "linear"], ["log", "logarithmic"]], isLog ? "log" : "linear", set("scale")),
       y && isGrid && !words && choice("Drawn as", [["cells", "cells"], ["contour", "contours"]], style, set("style")),
-      axes.length > 0 && h("button", { "aria-expanded": String(!region.element.hidden), onclick: () => begin() }, "Finer grid"),
+      finerButton,
       slices.map(({ axis, all, value }) => choice(label(axis), all.map((entry) => [String(entry), say(axis, entry)]), String(value), set(`at.${axis}`))),
     );
+    const sides = y ? [x, y] : [x];
+    /** What a finer grid holds: the slice that is shown, or values to be chosen where all points are. */
+    const further = () => heldValues.map(({ axis, all, value }) => ({ name: axis, value: isGrid ? Number(value) : chosenOr(axis, middle(all.map(Number), context.spans[axis])), isFree: !isGrid }));
+    const chosenOr = (/** @type {string} */ axis, /** @type {number} */ other) => {
+      const asked = Number(query.get(`at.${axis}`) || NaN);
+      return Number.isFinite(asked) ? asked : other;
+    };
+    // Of a region, as shown; without one of the whole map.
+    chooseRegion = (range) => {
+      const chosenSides = sides.map((name, order) => {
+        const values = distinct(order ? ys : xs).map(Number);
+        const shownRange = range?.[order ? "y" : "x"]?.map((/** @type {number} */ end) => end * unit(name).size).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+        // Cells reach beyond the values that they stand for.
+        const [from, to] = shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
+        return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
+      });
+      region.choose(chosenSides, further());
+      sayRegion();
+    };
+    const kept = region.kept(sides);
+    const slice = slices.map(({ value }) => value).join(",");
+    if (kept && (region.element.hidden || slice !== sliceBefore)) region.choose(kept, further());
+    sliceBefore = slice;
+    sayRegion();
     const isAllFailed = !query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
     empty.hidden = !isAllFailed;
     figure.hidden = isAllFailed;
@@ -83,24 +121,6 @@ export function map(context) {
       fill(empty, "All points of this sweep failed: why is told under ", h("a", { href: link(["sweeps", context.sweep.id], { view: "failures" }) }, "Failures"), ".");
       return;
     }
-    const sides = y ? [x, y] : [x];
-    /** What a finer grid holds: the slice that is shown, or values to be chosen where all points are. */
-    const further = () => heldValues.map(({ axis, all, value }) => ({ name: axis, value: isGrid ? Number(value) : chosenOr(axis, middle(all.map(Number), context.spans[axis])), isFree: !isGrid }));
-    const chosenOr = (/** @type {string} */ axis, /** @type {number} */ other) => (query.has(`at.${axis}`) ? Number(get(`at.${axis}`, "")) : other);
-    /** @param {any} [range] of a region, as shown; without one the whole map */
-    const chooseRegion = (range) => region.choose(sides.map((name, order) => {
-      const values = distinct(order ? ys : xs).map(Number);
-      const shownRange = range?.[order ? "y" : "x"]?.map((/** @type {number} */ end) => end * unit(name).size).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
-      // Cells reach beyond the values that they stand for.
-      const [from, to] = shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
-      return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
-    }), further());
-    const kept = region.kept(sides);
-    if (kept && region.element.hidden) region.choose(kept, further());
-    const begin = () => {
-      chooseRegion();
-      void adjust(place, { dragmode: "select" });
-    };
     const rows = ordinals.map((_, index) => index).filter((index) => slices.every(({ column, value }) => column[index] === value));
     const done = rows.filter((index) => values[index] !== null).length;
     const logged = (/** @type {any} */ value) => (typeof value === "number" && value > 0 ? Math.log10(value) : null);

@@ -1,6 +1,7 @@
 // All swept parameters and a few results side by side, a line a point.
 
 import { choice, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { followLines } from "./parallel-lines.js";
 import { canvas, colourBar, draw, lineScale } from "./plots.js";
@@ -21,6 +22,7 @@ export function parallel(context) {
   const caption = h("figcaption", {});
   const reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
   const controls = h("div", { class: "controls" });
+  const begin = works();
 
   function chosen() {
     const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
@@ -35,6 +37,7 @@ export function parallel(context) {
   followLines(place, (line) => toldOf(line), context.signal);
 
   async function redraw() {
+    const isNewest = begin();
     const { results, colour, beside } = chosen();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
@@ -46,6 +49,7 @@ export function parallel(context) {
     const moved = (query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
     const names = [...new Set([...moved, ...usual])];
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
+    if (!isNewest()) return;
     const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
     if (!rows.length) {
       fill(caption, "No point has all of these values yet.");

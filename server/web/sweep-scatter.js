@@ -1,6 +1,7 @@
 // Clouds of points: any two columns against each other.
 
 import { choice, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "./plots.js";
 import { preferred, undelayed } from "./sweep-map.js";
@@ -19,6 +20,7 @@ export function scatter(context) {
   const place = canvas("Scatter of the points", "scatter", "tall", context.sweep.counts.total > MANY ? "whole" : "flat");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
+  const begin = works();
 
   function chosen() {
     const names = table.results();
@@ -27,6 +29,7 @@ export function scatter(context) {
   }
 
   async function redraw() {
+    const isNewest = begin();
     const { names, x, y, colour, isLogX, isLogY } = chosen();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
@@ -37,6 +40,7 @@ export function scatter(context) {
     const scales = [["linear", "linear"], ["log", "logarithmic"]];
     fill(controls, choice("Across", options, x, set("x")), choice("Scale across", scales, isLogX ? "log" : "linear", set("xscale")), choice("Up", options, y, set("y")), choice("Scale up", scales, isLogY ? "log" : "linear", set("yscale")), choice("Colour", options, colour, set("colour")));
     const [ordinals, xs, ys, colours] = await table.columns("ordinal", x, y, colour);
+    if (!isNewest()) return;
     const words = isText(colours) ? [...new Set(colours)].filter((word) => word !== null) : null;
     const at = (/** @type {string} */ name, /** @type {any[]} */ values) => (isText(values) ? values : shown(name, values));
     const [atX, atY] = [at(x, xs), at(y, ys)];

@@ -1,6 +1,7 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
 import { choice, debounced, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { link } from "./router.js";
 import { preferred } from "./sweep-map.js";
@@ -44,14 +45,18 @@ export function table(context) {
   let columns = [];
   /** @type {string[]} */
   let names = [];
+  const begin = works();
 
   async function redraw() {
-    names = shownNames();
+    const isNewest = begin();
+    const asked = shownNames();
     const { by, isDown } = sorting();
     const { tests, problem } = conditions(filter.value, data.names);
     wrong.textContent = problem;
-    const needed = [...names, by, ...tests.map((test) => test.name)];
+    const needed = [...asked, by, ...tests.map((test) => test.name)];
     const found = await data.columns(...needed);
+    if (!isNewest()) return;
+    names = asked;
     columns = found.slice(0, names.length);
     const key = found[names.length];
     rows = Array.from({ length: data.rows }, (_, index) => index).filter((index) => tests.every((test, order) => test.holds(found[names.length + 1 + order][index])));

@@ -104,6 +104,11 @@ def until(page: Page, holds: Callable[[], bool]) -> None:
         page.wait_for_timeout(50)
 
 
+def taken(page: Page) -> None:
+    """Waits until the page has taken the answers that have come: those of the server come in order."""
+    page.evaluate("async () => { await (await fetch('/livez')).text(); await new Promise(requestAnimationFrame); }")
+
+
 def drag(page: Page, over: Locator, start: tuple[float, float], end: tuple[float, float]) -> None:
     """Drags the mouse over a part of the page, between two places given as parts of its width and height."""
     box = over.bounding_box()

@@ -23,11 +23,12 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
-from test_page import GONE, Opens, browser, drag, drawn, named, opened, requested, troubles, until
+from test_page import GONE, Opens, browser, drag, drawn, named, opened, requested, taken, troubles, until
 
 __all__ = ["browser", "named", "opened", "troubles"]
 
 PRESETS = REPOSITORY / "sim" / "presets"
+AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}
 
 
 def module(page: Page, name: str, expression: str, argument: Any = None) -> Any:
@@ -965,4 +966,106 @@ def test_points_are_not_shown_beside_a_request_that_cannot_be_read(opened: Opens
     drawn(page, "Preview")
 
 
-AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}
+def test_a_finer_grid_is_planned_where_all_points_failed(opened: Opens, failing: Sweep) -> None:
+    page = opened(f"#/sweeps/{failing.id}")
+    expect(page.get_by_text("All points of this sweep failed")).to_be_visible()
+    button = page.get_by_role("button", name="Finer grid")
+    expect(button).to_have_attribute("aria-expanded", "false")
+    button.click()
+    panel = page.get_by_role("region", name="Finer grid")
+    expect(panel.get_by_label("From [m³/s]")).to_have_value("0.013")
+    expect(button).to_have_attribute("aria-expanded", "true")
+    panel.get_by_role("button", name="Close").click()
+    expect(button).to_have_attribute("aria-expanded", "false")
+
+
+def test_a_difference_to_a_sweep_that_comes_late_is_not_shown(
+    opened: Opens, named: Sweep, other: Sweep, client: Client
+) -> None:
+    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+    third = client.submit("paper-200m", set=SHORT, axes=axes, name="the third").wait(timeout=120.0)
+    page = opened("#/nowhere")
+    held: list[Route] = []
+    page.route(f"**/v1/sweeps/{other.id}/table?**", lambda route: held.append(route))
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=difference&colour=contact_count"))
+    chooser = page.get_by_role("combobox", name="Compared with")
+    expect(chooser).to_be_visible()
+    chooser.select_option(other.id)
+    until(page, lambda: len(held) == 1)
+    chooser.select_option(third.id)
+    expect(page.locator("figcaption")).to_contain_text("the third less")
+    with page.expect_response(f"**/v1/sweeps/{other.id}/table?**"):
+        held[0].continue_()
+    taken(page)
+    expect(page.locator("figcaption")).to_contain_text("the third less")
+    expect(chooser).to_have_value(third.id)
+
+
+def test_a_difference_to_a_sweep_that_is_gone_offers_others(
+    opened: Opens, named: Sweep, other: Sweep, troubles: list[str]
+) -> None:
+    unknown = "01a00000-0000-7000-8000-000000000000"
+    page = opened(f"#/sweeps/{named.id}?view=difference&colour=contact_count&with={unknown}")
+    expect(page.get_by_text("The sweep of the link was not found")).to_be_visible()
+    page.get_by_role("combobox", name="Compared with").select_option(other.id)
+    drawn(page, "difference of")
+    # The browser writes of every answer that refuses.
+    troubles[:] = [text for text in troubles if "status of 404" not in text]
+
+
+def test_a_list_that_is_older_than_what_the_stream_tells_is_not_shown(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        ended = client.submit("paper-200m", set=SHORT, name="ended")
+        page = opened("#/nowhere", address=idle)
+        asked: list[Route] = []
+        older: list[Any] = []
+
+        def hold(route: Route) -> None:
+            """Keeps back the second list, which follows the beginning of the stream."""
+            answer = route.fetch()
+            asked.append(route)
+            if len(asked) == 2:
+                older.extend(answer.json()["sweeps"])
+            else:
+                route.fulfill(response=answer)
+
+        page.route("**/v1/sweeps?*limit=100*", hold)
+        page.goto(page.url.replace("#/nowhere", "#/sweeps"))
+        rows = page.get_by_role("table", name="Sweeps").get_by_role("row")
+        until(page, lambda: len(older) == 1)
+        ended.cancel()
+        state = rows.filter(has_text="ended").locator(".state")
+        expect(state).to_have_text("cancelled")
+        another = {**older[0], "id": f"{older[0]['id'][:-12]}ffffffffffff", "name": "another one"}
+        asked[1].fulfill(json={"sweeps": [another, *older], "next": None})
+        expect(rows.filter(has_text="another one")).to_be_visible()
+        assert older[0]["state"] == "running"
+        expect(state).to_have_text("cancelled")
+
+
+def test_who_searches_goes_on_typing_where_the_selected_sweep_leaves_the_list(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        sweeps = [client.submit("paper-200m", set=SHORT, name=name) for name in ("first", "second")]
+        page = opened("#/sweeps?state=running", address=idle)
+        rows = page.get_by_role("table", name="Sweeps").locator("tbody tr")
+        expect(rows).to_have_count(2)
+        page.keyboard.press("j")
+        expect(rows.first).to_have_attribute("aria-selected", "true")
+        search = page.get_by_role("searchbox", name="Search names")
+        search.focus()
+        sweeps[1].cancel()
+        expect(rows).to_have_count(1)
+        expect(rows.first).to_have_attribute("aria-selected", "true")
+        expect(search).to_be_focused()
+
+
+def test_a_finer_grid_is_of_the_slice_that_is_shown(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map")
+    drawn(page, "over flow rate")
+    page.get_by_role("button", name="Finer grid").click()
+    panel = page.get_by_role("region", name="Finer grid")
+    expect(panel.get_by_text("Held: rotation speed 90 rpm.")).to_be_visible()
+    panel.get_by_label("To [m³/s]").fill("0.03")
+    page.get_by_role("combobox", name="rotation speed").select_option("120")
+    expect(panel.get_by_text("Held: rotation speed 120 rpm.")).to_be_visible()
+    expect(panel.get_by_label("To [m³/s]")).to_have_value("0.03")

@@ -1,8 +1,9 @@
-// Rotation speed and torque over time at both ends of the string: from the snapshots, or else from the history.
+// Rotation speed and torque over time at both ends of the string: from the history, or else from the snapshots.
 
 import { Problem } from "./api.js";
 import { h } from "./dom.js";
-import { python } from "./lines.js";
+import { python, pythonNode } from "./lines.js";
+import { works } from "./newest.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { frames, snapshotsOf } from "./snapshots.js";
 import { say, shown, title } from "./units.js";
@@ -18,20 +19,21 @@ export const RECORD_ENDS = "Rotation speed and torque at the bit are not in this
 
 /**
  * One quantity at one end, in served units.
- * @typedef {{end: "bit" | "top", node: number, quantity: string, time: number[], values: (number | null)[]}} EndLine
+ * @typedef {{end: "bit" | "top", node: number, quantity: string, source: "history" | "snapshots", time: number[], values: (number | null)[]}} EndLine
  */
 
 /**
- * Rotation speed and torque at bit and top, as far as they were recorded; where the bit is not, none.
+ * Rotation speed and torque at bit and top, as far as they were recorded: of each end from the history where it is there, which has more
+ * samples a second than the snapshots.
  * @param {import("./point.js").PointContext} context
  * @param {{from: number, to: number}} window [s]
- * @returns {Promise<{lines: EndLine[], source: "snapshots" | "history" | ""}>}
+ * @returns {Promise<EndLine[]>}
  */
-export async function endsOf(context, window) {
-  const snapshots = await endsOfSnapshots(context, window);
-  if (snapshots.length) return { lines: snapshots, source: "snapshots" };
-  const lines = await endsOfHistory(context, window);
-  return { lines, source: lines.length ? "history" : "" };
+async function endsOf(context, window) {
+  const history = await endsOfHistory(context, window);
+  const isMissing = (/** @type {string} */ end) => !history.some((line) => line.end === end);
+  if (!isMissing("bit") && !isMissing("top")) return history;
+  return [...history, ...(await endsOfSnapshots(context, window)).filter(({ end }) => isMissing(end))];
 }
 
 /**
@@ -44,8 +46,9 @@ export async function endsOfSnapshots(context, window) {
   if (!there?.names.includes("torque")) return [];
   const { nodes } = there;
   const { count, first, interval, columns } = await frames(context, QUANTITIES, window, nodes, TAKEN);
+  if (!count) return [];
   const time = Array.from({ length: count }, (_, frame) => first + frame * interval);
-  return QUANTITIES.flatMap((quantity) => /** @type {["bit" | "top", number][]} */ ([["bit", nodes], ["top", 1]]).map(([end, node]) => ({ end, node, quantity, time, values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]) })));
+  return QUANTITIES.flatMap((quantity) => /** @type {["bit" | "top", number][]} */ ([["bit", nodes], ["top", 1]]).map(([end, node]) => ({ end, node, quantity, source: "snapshots", time, values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]) })));
 }
 
 /**
@@ -54,6 +57,8 @@ export async function endsOfSnapshots(context, window) {
  * @returns {Promise<EndLine[]>}
  */
 export async function endsOfHistory(context, window) {
+  // The service would refuse, which the browser writes of.
+  if (!context.point.tables.includes("history")) return [];
   try {
     // One sample tells the columns.
     const [statics, sample] = await Promise.all([context.table("statics", { fields: "node" }), context.table("history", { max_points: 1 })]);
@@ -64,28 +69,39 @@ export async function endsOfHistory(context, window) {
     const found = await Promise.all(ends.map(async ([end, node]) => {
       const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
       const { columns } = await context.table("history", { node, ...window, fields: ["time", ...names].join(","), max_points: SHOWN, decimation: "minmax" });
-      return QUANTITIES.map((quantity, index) => ({ end, node, quantity, time: columns.time, values: columns[names[index]] }));
+      return QUANTITIES.map((quantity, index) => /** @type {EndLine} */ ({ end, node, quantity, source: "history", time: columns.time, values: columns[names[index]] }));
     }));
     return found.flat();
   } catch (error) {
-    // Without histories, or without torsion, there are none.
-    if (error instanceof Problem && error.status !== 401) return [];
+    // Files expire.
+    if (error instanceof Problem && error.status === 404) return [];
     throw error;
   }
 }
 
 /**
- * The requests behind lines from histories.
+ * The requests behind those lines that are of the history.
  * @param {EndLine[]} lines
+ * @param {{from: number, to: number} | null} [window] [s]
  * @returns {import("./point.js").PartRequest}
  */
-export function endsRequest(lines) {
-  const nodes = [...new Set(lines.map(({ node }) => node))];
+export function endsRequest(lines, window = null) {
+  const nodes = [...new Set(lines.filter(({ source }) => source === "history").map(({ node }) => node))];
   const columns = (/** @type {number} */ node) => ["time", ...QUANTITIES.map((quantity) => `${quantity}_${node}`)];
   return {
-    asked: nodes.map((node) => ({ table: "history", name: `history_${node}`, query: { node, fields: columns(node).join(",") } })),
-    python: nodes.map((node) => `history_${node} = point.history(node=${node}).to_pandas()[${python(columns(node))}]`).join("\n"),
+    asked: nodes.map((node) => ({ table: "history", name: `history_${node}`, query: { node, ...window, fields: columns(node).join(",") } })),
+    python: nodes.map((node) => `history_${node} = point.history(${pythonNode({ node }, window)}).to_pandas()[${python(columns(node))}]`).join("\n"),
   };
+}
+
+/** Where the lines are from, in words. @param {EndLine[]} lines */
+function saySources(lines) {
+  const of = (/** @type {string} */ end) => lines.find((line) => line.end === end)?.source;
+  const words = { history: "the recorded history", snapshots: "the snapshots" };
+  const [bit, top] = [of("bit"), of("top")];
+  if (bit && top && bit !== top) return `The bit is from ${words[bit]}, the top from ${words[top]}.`;
+  const source = bit ?? top;
+  return source ? `From ${words[source]}.` : "";
 }
 
 /** What the torque at an end is. */
@@ -103,19 +119,24 @@ function sayTorqueOnBit({ scenario }) {
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
   const caption = h("figcaption", {});
+  const begin = works();
+  const element = h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption));
   return {
-    element: h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption)),
+    element,
     /**
      * Draws what there is.
      * @param {{from: number, to: number}} window [s]
-     * @returns {Promise<EndLine[]>}
+     * @returns {Promise<EndLine[] | null>} null where another window has been asked for since
      */
     async draw(window) {
-      const { lines, source } = await endsOf(context, window);
+      const isNewest = begin();
+      const lines = await endsOf(context, window);
+      if (!isNewest()) return null;
+      element.hidden = !lines.length;
       if (!lines.length) return lines;
       const has = (/** @type {string} */ end) => lines.some((line) => line.end === end);
       const colours = { bit: { rotation_speed: LINES[0], torque: LINES[1] }, top: { rotation_speed: LINES[5], torque: LINES[3] } };
-      caption.textContent = `From the ${source === "snapshots" ? "snapshots" : "recorded history"}. ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
+      caption.textContent = `${saySources(lines)} ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
       await draw(
         place,
         lines.map(({ end, quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`, line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 }, hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>" })),

@@ -17,7 +17,7 @@ export function string(context) {
   const turning = rotation(context);
   /** @type {ReturnType<typeof stringPlayer> | null} */
   let player = null;
-  /** Rotation and torque without snapshots. @type {import("./point-rotation.js").EndLine[]} */
+  /** Rotation and torque at bit and top. @type {import("./point-rotation.js").EndLine[]} */
   let ends = [];
   /** @type {string[]} */
   let names = [];
@@ -28,11 +28,11 @@ export function string(context) {
     const statics = (await context.table("statics")).columns;
     const map = contactMap(context, (time) => player?.stopAt(time));
     names = ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"].filter((name) => there.names.includes(name));
-    const [hasForce, hasTorque] = ["normal_force", "torque"].map((name) => there.names.includes(name));
+    const hasForce = there.names.includes("normal_force");
     player = stringPlayer([{ context, heading: "", there, statics }], async ([{ motion }], span) => {
-      await Promise.all([hasForce && motion && map.draw(motion, statics), hasTorque && turning.draw(span)]);
+      await Promise.all([hasForce && motion && map.draw(motion, statics), turn(span)]);
     });
-    fill(element, player.element, h("div", { style: "height:1rem" }), h("div", { class: "half" }, hasForce && map.element, hasTorque && turning.element));
+    fill(element, player.element, h("div", { style: "height:1rem" }), h("div", { class: "half" }, hasForce && map.element, turning.element));
     await player.load();
   }
 
@@ -41,8 +41,16 @@ export function string(context) {
     const place = h("div", {});
     fill(element, withoutSnapshots(context), h("div", { style: "height:1rem" }), place);
     fill(place, turning.element);
-    ends = await turning.draw({ from: 0, to: duration });
+    await turn({ from: 0, to: duration });
     if (!ends.length) fill(place, h("p", { class: "panel soft" }, RECORD_ENDS));
+  }
+
+  /** Draws rotation and torque at the ends. @param {{from: number, to: number}} span [s] */
+  async function turn(span) {
+    const drawn = await turning.draw(span);
+    if (!drawn) return;
+    ends = drawn;
+    context.drawn();
   }
 
   return {
@@ -51,7 +59,12 @@ export function string(context) {
     request: () => {
       if (!player) return ends.length ? endsRequest(ends) : null;
       const { from, to } = player.span();
-      return { asked: [{ table: "snapshots", query: { from, to, fields: names.join(",") } }], python: `snapshots = point.snapshots(time=(${from}, ${to}), fields=${python(names)}).to_pandas()\nforces = snapshots.pivot(index="node", columns="time", values="normal_force")` };
+      const turned = endsRequest(ends, { from, to });
+      const forces = names.includes("normal_force") ? ['forces = snapshots.pivot(index="node", columns="time", values="normal_force")'] : [];
+      return {
+        asked: [{ table: "snapshots", query: { from, to, fields: names.join(",") } }, ...turned.asked],
+        python: [`snapshots = point.snapshots(time=(${from}, ${to}), fields=${python(names)}).to_pandas()`, ...forces, turned.python].filter(Boolean).join("\n"),
+      };
     },
   };
 }

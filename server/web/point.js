@@ -18,6 +18,7 @@ import { say } from "./units.js";
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(name: string) => string} bias what stands beside a number of the summary that verifying the sweep has touched
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {() => void} drawn says that what is shown is of other requests than before
  * @property {AbortSignal} signal
  */
 
@@ -123,6 +124,7 @@ export async function show(main, route, signal) {
     },
     bias: (name) => biases.beside(name, Number(ordinal)),
     table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
+    drawn: () => taken.dispatchEvent(new Event("redraw")),
     signal,
   };
   const part = make(context);

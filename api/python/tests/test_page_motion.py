@@ -121,11 +121,21 @@ def test_contacts_rotation_and_torque_are_those_of_the_service(opened: Opens, re
     np.testing.assert_allclose(shown["x"], snapshots["time"][::nodes], atol=1e-9)
     np.testing.assert_allclose(shown["y"], recorded.point(1).statics()["measured_depth"])
     turning = drawn(page, "Rotation speed and torque at bit and top")
-    speed, torque = (snapshots[name].reshape(-1, nodes) for name in ("rotation_speed", "torque"))
-    for number, expected in enumerate([speed[:, -1], speed[:, 0], torque[:, -1] / 1e3, torque[:, 0] / 1e3]):
-        np.testing.assert_allclose(trace(turning, number)["y"], expected, rtol=1e-6)
+    shown = {name: trace(turning, number)["y"] for number, name in enumerate(turning.evaluate(NAMES))}
+    # The history has the bit, with more samples than the snapshots, which have the top.
+    expect(page.get_by_text("The bit is from the recorded history, the top from the snapshots.")).to_be_visible()
+    history = recorded.point(1).history(node=297, time=(0.01, 0.5))
+    assert len(history["time"]) > 5 * snapshots.attributes["snapshots"]
+    np.testing.assert_allclose(shown["speed, bit"], history["rotation_speed_297"], rtol=1e-6)
+    np.testing.assert_allclose(shown["torque, bit"], history["torque_297"] / 1e3, rtol=1e-6)
+    speed, torque = (snapshots[name].reshape(-1, nodes)[:, 0] for name in ("rotation_speed", "torque"))
+    np.testing.assert_allclose(shown["speed, top"], speed, rtol=1e-6)
+    np.testing.assert_allclose(shown["torque, top"], torque / 1e3, rtol=1e-6)
     # The top turns as it is told to.
-    np.testing.assert_allclose(speed[:, 0], 120.0 * np.pi / 30, rtol=1e-6)
+    np.testing.assert_allclose(speed, 120.0 * np.pi / 30, rtol=1e-6)
+
+
+NAMES = "place => place.data.map(({ name }) => name)"
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

@@ -41,7 +41,7 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     for view in COMPARED:
         links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
     links["compare-well"] += "&colour=friction_coefficient"
-    links["compare-string"] += "&colour=whirl_amplitude"
+    links["compare-string"] += "&colour=orbit_radius_rms"
     links["compare-bit"] += "&end=top"
     return links
 

@@ -5,7 +5,7 @@ import { fill, h } from "./dom.js";
 import { canvas, draw } from "./plots.js";
 import { contactMap, largestShown } from "./point-contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE, twoPanels } from "./point-rotation.js";
-import { describe, drawSpectrogram, largestOf } from "./point-spectrogram.js";
+import { describe, drawSpectrogram, largestOf, RANGES } from "./point-spectrogram.js";
 import { frames } from "./snapshots.js";
 import { stringPlayer } from "./string-player.js";
 import { shown } from "./units.js";
@@ -13,17 +13,14 @@ import { shown } from "./units.js";
 /** @typedef {import("./compare-views.js").Comparison} Comparison */
 /** @typedef {import("./compare-views.js").Compared} Compared */
 
-/** Frequencies of spectrograms [Hz]. */
-export const RANGES = ["5", "10", "20", "50", "100"];
-
 /**
  * What the views of a point are made with, of one that is compared.
  * @param {Comparison} comparison
  * @param {Compared} point
  * @returns {import("./point.js").PointContext}
  */
-function contextOf({ query, keep, table, signal }, point) {
-  return { point: point.detail, path: point.path, query, keep, bias: () => "", table: (name, asks) => table(point, name, asks), signal };
+function contextOf({ query, keep, table, drawing }, point) {
+  return { point: point.detail, path: point.path, query, keep, bias: () => "", table: (name, asks) => table(point, name, asks), drawn: () => {}, signal: drawing };
 }
 
 /** @param {{query: URLSearchParams}} comparison @returns {number} highest frequency of spectrograms [Hz] */
@@ -33,7 +30,7 @@ export function rangeOf({ query }) {
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawSpectrograms(place, comparison) {
-  const { node, window, signal } = comparison;
+  const { node, window, drawing } = comparison;
   const range = rangeOf(comparison);
   const found = await each(comparison, async (point) => {
     const table = await comparison.table(point, "spectrogram", { ...node, ...window, range_hz: range });
@@ -43,7 +40,7 @@ export async function drawSpectrograms(place, comparison) {
   const most = Math.max(...found.map(([, table]) => largestOf(table)));
   const pictures = found.map(([point, table]) => ({ table, heading: point.name, picture: canvas(`Spectrogram, point ${point.name}`, `spectrogram${point.number}`) }));
   fill(place, pictures.map(({ table, heading, picture }) => h("div", { class: "panel" }, h("h2", {}, heading), h("figure", {}, picture, h("figcaption", {}, describe(table, range))))));
-  await Promise.all(pictures.map(({ table, picture }) => drawSpectrogram(picture, table, { isLog: comparison.query.get("amplitude") !== "linear", range, most }, signal)));
+  await Promise.all(pictures.map(({ table, picture }) => drawSpectrogram(picture, table, { isLog: comparison.query.get("amplitude") !== "linear", range, most }, drawing)));
 }
 
 /**
@@ -109,7 +106,7 @@ export async function drawEnds(place, comparison) {
   });
   const names = [...new Set(sources.values())];
   if (names.length === 1) comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
-  if (names.length > 1) comparison.says.push(`${[...sources].map(([number, source]) => `Point ${number} is from its ${source}`).join(", ")}: sampled differently.`);
+  if (names.length > 1) comparison.says.push(`${[...sources].map(([number, source], order) => `${order ? "point" : "Point"} ${number} is from its ${source}`).join(", ")}: sampled differently.`);
   if (names.length) comparison.says.push(TORQUE);
   return draw(place, traces, { shows: [window, end], dragmode: "select", selectdirection: "h", ...twoPanels() }, comparison.signal);
 }

@@ -40,11 +40,11 @@ function rowsOf(found) {
 
 /** Statistics of the orbit over the window, with the bias of those that verifying looks at. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawStatistics(place, comparison) {
-  const { signal, window } = comparison;
+  const { drawing, window } = comparison;
   /** @type {Map<string, Promise<Biases>>} */
   const biases = new Map();
   const biasesOf = (/** @type {string} */ id) => {
-    const known = biases.get(id) ?? loadBiases(id, signal);
+    const known = biases.get(id) ?? loadBiases(id, drawing);
     biases.set(id, known);
     return known;
   };
@@ -73,7 +73,7 @@ async function loadBiases(id, signal) {
 /** Which effects take part, and why. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawEffects(place, comparison) {
   const found = await each(comparison, async (point) => {
-    const plan = await get(`${point.path}/plan`, {}, comparison.signal);
+    const plan = await get(`${point.path}/plan`, {}, comparison.drawing);
     return plan.effects.map((/** @type {any} */ effect) => [effect.effect.replaceAll("_", " "), h("span", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off"), h("span", { class: "small soft" }, ` ${effect.reason}`))]);
   });
   drawTable(place, "Effects", found.map(([point]) => point), rowsOf(found));
@@ -82,7 +82,7 @@ export async function drawEffects(place, comparison) {
 /** Modes about the equilibrium, from the lowest. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawModes(place, comparison) {
   const found = await each(comparison, async (point) => {
-    const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.signal);
+    const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.drawing);
     return modes
       .toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.frequency_hz - b.frequency_hz)
       .map((/** @type {any} */ mode, /** @type {number} */ index) => [String(index + 1), `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`]);

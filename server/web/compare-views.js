@@ -35,7 +35,8 @@ const APART = 0.12;
  * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
- * @property {AbortSignal} signal
+ * @property {AbortSignal} signal of the view, whose one picture stays while it is drawn anew
+ * @property {AbortSignal} drawing the same, which ends as well when what is shown is asked for anew: of requests, and of what is made anew
  */
 
 /**
@@ -92,7 +93,7 @@ export class Lacking extends Error {}
  * @param {string} [part] of the view that is drawn without them, where that is not all
  * @returns {Promise<[Compared, T][]>}
  */
-export async function each({ points, lacking, signal }, read, part = "") {
+export async function each({ points, lacking, drawing }, read, part = "") {
   const found = await Promise.all(
     points.map(async (point) => {
       const nothing = withoutResult(point.detail);
@@ -101,7 +102,7 @@ export async function each({ points, lacking, signal }, read, part = "") {
         return { point, value: await read(point) };
       } catch (error) {
         if (error instanceof Lacking) return { point, lacks: `Point ${point.number} is missing: ${error.message}.` };
-        if (signal.aborted || !(error instanceof Problem) || error.status === 401) throw error;
+        if (drawing.aborted || !(error instanceof Problem) || error.status === 401) throw error;
         return { point, lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.` };
       }
     }),
@@ -163,8 +164,8 @@ async function drawOrbits(place, comparison) {
   const which = (/** @type {Compared[]} */ points) => `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
   const colourOf = (/** @type {Compared[]} */ points) => (isOne || points.length > 1 ? inks().soft : points[0].colour);
   comparison.says.push(isOne ? "On the grey circle the node touches the wall." : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`);
-  const annotations = isOne ? [] : holes.map((hole) => ({ x: 0, y: shown("radius", [hole.clearance])[0], text: `wall of ${which(hole.points)}`, showarrow: false, yanchor: "bottom", font: { size: 11, color: colourOf(hole.points) } }));
-  return draw(place, [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces], { ...orbitLayout(isZoomed, traces, clearance), annotations, legend: { orientation: "v" } }, comparison.signal);
+  const annotations = isOne ? [] : holes.map((hole) => ({ x: 0, y: shown("radius", [hole.clearance])[0], text: `wall of ${which(hole.points)}`, showarrow: false, yanchor: "bottom", font: { size: 11 } }));
+  return draw(place, [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces], { ...orbitLayout(isZoomed, traces, clearance), shows: [comparison.node, isZoomed], annotations, legend: { orientation: "v" } }, comparison.signal);
 }
 
 /**
@@ -191,7 +192,7 @@ async function drawHistories(place, comparison) {
     const seen = seenDownhole(u, v, lowSide);
     return overTime(point, time, shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up));
   });
-  return draw(place, traces, { ...timeLayout(comparison), yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, comparison.signal);
+  return draw(place, traces, { ...timeLayout(comparison), shows: [comparison.window, direction], yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, comparison.signal);
 }
 
 /**
@@ -228,7 +229,7 @@ async function drawSpectra(place, comparison) {
   const isAlike = found.every(([, table]) => table.attributes.resolved_hz === least?.[1].attributes.resolved_hz);
   if (least) comparison.says.push(`Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`);
   const traces = found.map(([point, spectrum]) => spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name));
-  const layout = spectrumLayout(found.map(([point, table]) => ({ table, colour: point.colour })), comparison.query.get("amplitude") === "log");
+  const layout = spectrumLayout(found.map(([point, table]) => ({ table, name: String(point.number) })), comparison.query.get("amplitude") === "log");
   return draw(place, traces, { ...layout, shows: range }, comparison.signal);
 }
 

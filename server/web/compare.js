@@ -2,7 +2,7 @@
 
 import { get, Problem } from "./api.js";
 import { dragWindow } from "./brush.js";
-import { endOf, RANGES, rangeOf } from "./compare-many.js";
+import { endOf, rangeOf } from "./compare-many.js";
 import { comparedRange, comparedRate, energyAccount, VIEWS, wellColour, wellFactor } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
 import { choice, debounced, fill, h } from "./dom.js";
@@ -12,6 +12,7 @@ import { rangesOf } from "./orbit.js";
 import { canvas, DASHES, LINES } from "./plots.js";
 import { ACCOUNTS } from "./point-energy.js";
 import { profileTables, QUANTITIES, quantityTicks, scrolled, tableOf } from "./point-profiles.js";
+import { RANGES } from "./point-spectrogram.js";
 import { exaggerationChoice } from "./point-well.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
 import { parameters } from "./sweep-failures.js";
@@ -106,12 +107,21 @@ export async function show(main, route, signal) {
     return from >= 0 && to > from ? { from, to } : { from: last / 3, to: last };
   };
 
-  /** Keeps choices in the link and shows what they ask for. @param {Record<string, string>} choices */
-  function change(choices) {
-    for (const [name, value] of Object.entries(choices)) query.set(name, value);
+  /** Keeps choices in the link; an empty one is none. @param {Record<string, string | null>} choices */
+  function remember(choices) {
+    for (const [name, value] of Object.entries(choices)) {
+      if (value) query.set(name, value);
+      else query.delete(name);
+    }
     keep(choices);
     rememberComparison(currentRoute().query);
     drawTabs();
+    taken.dispatchEvent(new Event("redraw"));
+  }
+
+  /** Keeps choices in the link and shows what they ask for. @param {Record<string, string>} choices */
+  function change(choices) {
+    remember(choices);
     drawControls();
     attend(redraw(), signal);
   }
@@ -149,13 +159,17 @@ export async function show(main, route, signal) {
     );
   }
 
-  let generation = 0;
+  /** Ends when what is shown is asked for anew. */
+  let latest = new AbortController();
+  const loading = h("p", { class: "soft", role: "status" }, "Loading…");
   let isDraggable = false;
   /** Tables that points are drawn from, by their numbers, where the view has a choice. @type {Map<number, string>} */
   let sources = new Map();
 
   async function redraw() {
-    const mine = ++generation;
+    latest.abort();
+    latest = new AbortController();
+    const drawing = AbortSignal.any([signal, latest.signal]);
     /** @type {import("./compare-views.js").Comparison} */
     const comparison = {
       points,
@@ -163,35 +177,30 @@ export async function show(main, route, signal) {
       profiles: ticks.names(),
       node: node(),
       window: window_(),
-      keep: (choices) => {
-        for (const [name, value] of Object.entries(choices)) {
-          if (value === null) query.delete(name);
-          else query.set(name, value);
-        }
-        keep(choices);
-        rememberComparison(currentRoute().query);
-        drawTabs();
-      },
-      table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, signal),
+      keep: remember,
+      table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, drawing),
       lacking: [],
       sources: new Map(),
       says: [],
       nodes: new Map(),
       signal,
+      drawing,
     };
     const isRecorded = !isOfNode || depths.length > 0;
     if (!isRecorded) comparison.lacking.push("No point here has a recorded node.");
     place.hidden = !isRecorded;
     // Of modes and effects the service computes for seconds.
-    const waiting = kind && isRecorded && !place.hasChildNodes() ? h("p", { class: "soft", role: "status" }, "Loading…") : null;
-    if (waiting) fill(place, waiting);
+    if (kind && isRecorded && !place.hasChildNodes()) fill(place, loading);
     try {
       if (isRecorded) await VIEWS[view].draw(place, comparison);
+    } catch (error) {
+      if (!drawing.aborted) throw error;
     } finally {
-      waiting?.remove();
+      if (!drawing.aborted) loading.remove();
     }
-    if (mine !== generation || signal.aborted) return;
+    if (drawing.aborted) return;
     sources = comparison.sources;
+    taken.dispatchEvent(new Event("redraw"));
     if (hasTime && isRecorded && !isDraggable) {
       isDraggable = true;
       dragWindow(place, () => {}, (range) => range && range[1] - range[0] > LEAST * shortest() && change({ from: range[0].toFixed(4), to: range[1].toFixed(4) }), signal);
@@ -267,7 +276,7 @@ async function pointOf(key, order, signal) {
   try {
     const detail = await get(path, {}, signal);
     const number = order + 1;
-    return { point: { number, id, ordinal: Number(ordinal), path, detail, name: `${number}: ${parameters(detail.parameters) || `point ${ordinal}`}`, colour: LINES[order], dash: DASHES[order] } };
+    return { point: { number, id, ordinal: Number(ordinal), path, detail, name: String(number), colour: LINES[order], dash: DASHES[order] } };
   } catch (error) {
     if (!(error instanceof Problem) || error.status !== 404) throw error;
     return { problem: { key, text: `Point ${order + 1} of the link was not found: ${error.message}.` } };
@@ -275,25 +284,41 @@ async function pointOf(key, order, signal) {
 }
 
 /**
- * The points, those that have the same words told apart by what differs: a few numbers or choices of their scenarios, or else their sweeps.
+ * The points, each told from the others by as few words as do: its parameters, what differs in a few numbers or choices of their
+ * scenarios, its sweep, its ordinal.
  * @param {Compared[]} points
  * @param {(id: string) => string} nameOf a sweep
  * @returns {Compared[]}
  */
 function toldApart(points, nameOf) {
-  const wordsOf = (/** @type {Compared} */ point) => parameters(point.detail.parameters);
+  /** What tells a point from those that are alike so far. @type {((point: Compared, alike: Compared[]) => string)[]} */
+  const tells = [({ detail }) => parameters(detail.parameters), changesAmong, ({ id }) => nameOf(id), ({ ordinal }) => `point ${ordinal}`];
   return points.map((point) => {
-    const alike = points.filter((other) => wordsOf(other) === wordsOf(point));
-    if (alike.length === 1) return point;
-    const scenarios = alike.map((other) => leaves(other.detail.scenario));
-    const own = leaves(point.detail.scenario);
-    // What was recorded makes no other motion.
-    const paths = [...new Set(scenarios.flatMap((one) => [...one.keys()]))].filter((path) => !path.startsWith("recording.") && scenarios.some((one) => one.get(path) !== own.get(path)));
-    const isTold = paths.length > 0 && paths.length <= MOST_CHANGES;
-    const changes = isTold ? parameters(Object.fromEntries(paths.map((path) => [path, own.get(path)]))) : nameOf(point.id);
-    const isOnlyOrdinal = !isTold && alike.some((other) => other !== point && nameOf(other.id) === nameOf(point.id));
-    return { ...point, name: `${point.number}: ${[wordsOf(point), changes, isOnlyOrdinal && `point ${point.ordinal}`].filter(Boolean).join(", ")}` };
+    let alike = points;
+    /** @type {string[]} */
+    const words = [];
+    for (const tell of tells) {
+      const own = tell(point, alike);
+      const rest = alike.filter((other) => tell(other, alike) === own);
+      if (!words.length || rest.length < alike.length) words.push(own);
+      alike = rest;
+      if (alike.length === 1) break;
+    }
+    return { ...point, name: `${point.number}: ${words.filter(Boolean).join(", ") || `point ${point.ordinal}`}` };
   });
+}
+
+/**
+ * In what a point's scenario differs from those of others; empty where that is much.
+ * @param {Compared} point
+ * @param {Compared[]} alike it and the others
+ */
+function changesAmong(point, alike) {
+  const scenarios = alike.map(({ detail }) => leaves(detail.scenario));
+  const own = leaves(point.detail.scenario);
+  // A name and what was recorded make no other motion.
+  const paths = [...new Set(scenarios.flatMap((one) => [...one.keys()]))].filter((path) => path !== "name" && !path.startsWith("recording.") && scenarios.some((one) => one.get(path) !== own.get(path)));
+  return paths.length <= MOST_CHANGES ? parameters(Object.fromEntries(paths.map((path) => [path, own.get(path)]))) : "";
 }
 
 /**

@@ -116,8 +116,9 @@ export function namedLines(table) {
 }
 
 /**
- * Layout of full spectra: what the steps of one of them do not resolve is shaded, and the highest lines are named in their colours.
- * @param {{table: any, colour?: string}[]} spectra
+ * Layout of full spectra: what the steps of one of them do not resolve is shaded, and the highest lines are named, with that of their
+ * spectrum where it has one.
+ * @param {{table: any, name?: string}[]} spectra
  * @param {boolean} isLog
  */
 export function spectrumLayout(spectra, isLog) {
@@ -125,14 +126,14 @@ export function spectrumLayout(spectra, isLog) {
   const resolved = Math.min(...spectra.map(({ table }) => table.attributes.resolved_hz ?? Infinity));
   const last = spectra.reduce((most, { table }) => table.columns.frequency.reduce((/** @type {number} */ far, /** @type {number} */ value) => Math.max(far, Math.abs(value)), most), 0);
   const beyond = resolved < last ? [[resolved, last], [-last, -resolved]] : [];
-  const lines = spectra.flatMap(({ table, colour }) => namedLines(table).map((line) => ({ ...line, colour }))).sort((a, b) => b.amplitude - a.amplitude);
+  const lines = spectra.flatMap(({ table, name = "" }) => namedLines(table).map((line) => ({ ...line, of: name && `${name}: ` }))).sort((a, b) => b.amplitude - a.amplitude);
   return {
     xaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
     yaxis: { title: title("amplitude"), quantity: "amplitude", type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
     shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
     annotations: readable(lines, last).map((peak) => {
       const height = Number(shown("amplitude", [peak.amplitude])[0]);
-      return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11, color: peak.colour } };
+      return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.of}${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11 } };
     }),
   };
 }

@@ -104,7 +104,7 @@ export function costFacts(point) {
   add("Method", provenance.integrator);
   add("Steps", provenance.steps);
   add("Steps from", provenance.shortest_step, (value) => `${duration(value)} to ${duration(provenance.longest_step ?? value)}`);
-  add("Steps taken back", provenance.rejected_steps);
+  add("Rejected steps", provenance.rejected_steps);
   return facts;
 }
 

@@ -4,16 +4,15 @@ import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { pythonNode } from "./lines.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, rangesOf, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
-import { biasOver, spectrumWindow, STATISTICS, verifiedWindow } from "./statistics.js";
+import { biasOver, FEWEST, spectrumWindow, STATISTICS, verifiedWindow } from "./statistics.js";
 import { say, shown, unit } from "./units.js";
 
 /** Samples in a picture: two for each pixel of a wide screen. */
 const SHOWN = 4000;
-/** Samples that a spectrum needs. */
-const LEAST = 8;
 /** Modes are looked for up to this frequency at most [Hz]. */
 const HIGHEST_MODE_HZ = 50;
 /** How long a window that is dragged must rest before the service is asked for it. */
@@ -44,7 +43,8 @@ export function motion(context) {
   let whole;
   /** @type {any} */
   let windowed;
-  let generation = 0;
+  const beginNode = works();
+  const beginWindow = works();
 
   const selector = () => {
     const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
@@ -92,7 +92,7 @@ export function motion(context) {
       }),
       choice("Frequencies up to", rangesOf(recording.rate_hz).map((text) => [text, `${text} Hz`]), String(range()), (value) => {
         set("range", value);
-        void drawWindow();
+        attend(drawWindow(), signal);
       }),
       choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], isLog() ? "log" : "linear", (value) => {
         set("amplitude", value);
@@ -100,7 +100,7 @@ export function motion(context) {
       }),
       choice("Weighting", [["hann", "Hann"], ["rectangular", "rectangular"]], weighting(), (value) => {
         set("window", value);
-        void drawWindow();
+        attend(drawWindow(), signal);
       }),
       h("button", { onclick: () => choose(0, duration) }, "Whole run"),
     );
@@ -116,10 +116,10 @@ export function motion(context) {
   function choose(from, to) {
     const first = Math.max(0, Math.min(from, to));
     const last = Math.min(duration, Math.max(from, to));
-    if ((last - first) * recording.rate_hz < LEAST) return void drawOrbit();
+    if ((last - first) * recording.rate_hz < FEWEST) return void drawOrbit();
     context.keep({ from: String(Number(first.toFixed(4))), to: String(Number(last.toFixed(4))) });
     fillWindow();
-    void drawWindow();
+    attend(drawWindow(), signal);
   }
 
   /** What the statics say of the node that the answer is of. */
@@ -129,22 +129,35 @@ export function motion(context) {
   }
 
   async function redraw() {
-    const mine = ++generation;
+    const isNewest = beginNode();
+    // What the window shows of another node is not waited for any more.
+    const isWindow = beginWindow();
     const { from, to } = span();
     const asked = ofWindow(from, to);
     // Where it fails, the window says so once it is drawn.
     asked.catch(() => {});
+    let found;
     try {
-      [statics, whole] = await Promise.all([statics ?? context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }), context.table("orbit", { ...selector(), max_points: SHOWN })]);
+      found = await Promise.all([statics ?? context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }), context.table("orbit", { ...selector(), max_points: SHOWN })]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
-      fill(pictures, h("p", { class: "panel empty", role: "alert" }, error.message));
+      if (isNewest()) refuse(error.message);
       return;
     }
-    if (mine !== generation) return;
-    drawControls();
-    await Promise.all([drawHistory(), drawWindow(asked), drawRotation(place().node)]);
+    if (!isNewest()) return;
+    [statics, whole] = found;
+    refuse("");
+    await Promise.all([drawHistory(), drawWindow(isWindow() ? asked : undefined), drawRotation()]);
   }
+
+  /** Says why there is nothing to show of a node; an empty text where there is. @param {string} why */
+  function refuse(why) {
+    refused.textContent = why;
+    refused.hidden = why === "";
+    pictures.hidden = why !== "";
+    drawControls();
+  }
+  const refused = h("p", { class: "panel empty", role: "alert", hidden: true });
 
   async function drawHistory() {
     const { lowSide, node, depth } = place();
@@ -166,13 +179,15 @@ export function motion(context) {
     return { type: "rect", xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1, fillcolor: LINES[5], opacity: 0.18, line: { width: 0 }, layer: "below" };
   }
 
-  /** @param {number} node */
-  async function drawRotation(node) {
-    const table = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }).catch(() => null);
+  async function drawRotation() {
+    const { node, depth } = place();
+    const table = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }).catch((error) => {
+      if (!(error instanceof Problem)) throw error;
+    });
     // Where torsion is not solved for there is none.
-    if (!table) return;
+    if (!table || whole.attributes.node !== node) return;
     const { columns } = table;
-    rotationName.textContent = `Rotation speed and torque of node ${node} at ${say("measured_depth", place().depth)}`;
+    rotationName.textContent = `Rotation speed and torque of node ${node} at ${say("measured_depth", depth)}`;
     rotation.setAttribute("aria-label", rotationName.textContent);
     const [speed, torque] = [`rotation_speed_${node}`, `torque_${node}`];
     await draw(
@@ -188,13 +203,13 @@ export function motion(context) {
 
   /** @param {ReturnType<typeof ofWindow>} [asked] where the service has been asked for the window already */
   async function drawWindow(asked) {
-    const mine = ++generation;
+    const isNewest = beginWindow();
     const { from, to } = span();
     wrong.textContent = "";
     void adjust(history, { shapes: [shade()] });
     try {
       const [cut, lines, statistics] = await (asked ?? ofWindow(from, to));
-      if (mine !== generation) return;
+      if (!isNewest()) return;
       windowed = { cut, lines, statistics };
       // What follows the mouse is shown until it is let go.
       if (dragged) return;
@@ -202,10 +217,10 @@ export function motion(context) {
       drawLines();
       await Promise.all([drawOrbit(), drawSpectrum()]);
       // The service takes a second for what it has not been asked for before, in which the pictures need not wait.
-      if (mine === generation) drawModes().catch((error) => signal.aborted || console.error(error));
+      if (isNewest()) attend(drawModes(), signal);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
-      wrong.textContent = error.errors[0]?.detail ?? error.message;
+      if (isNewest()) wrong.textContent = error.errors[0]?.detail ?? error.message;
     }
   }
 
@@ -235,12 +250,12 @@ export function motion(context) {
   /** All samples of a window that rests while it is dragged. @param {[number, number]} range */
   async function lookAt(range) {
     const [from, to] = range;
-    if ((to - from) * recording.rate_hz < LEAST) return;
+    if ((to - from) * recording.rate_hz < FEWEST) return;
     const [cut, lines, statistics] = await ofWindow(from, to);
     if (dragged !== range) return;
     brush?.paintTrace(orbitTrace(cut, place().lowSide, { color: LINES[0] }));
     showStatistics(from, to, (name) => say(name, statistics.columns[name][0]), String(statistics.attributes.samples));
-    await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumLayout([{ table: lines }], isLog()), signal);
+    await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumOf(lines), signal);
   }
 
   /** @param {[number, number] | null} range */
@@ -248,7 +263,7 @@ export function motion(context) {
     dragged = null;
     brush?.end();
     brush = null;
-    if (range && (range[1] - range[0]) * recording.rate_hz >= LEAST) return choose(range[0], range[1]);
+    if (range && (range[1] - range[0]) * recording.rate_hz >= FEWEST) return choose(range[0], range[1]);
     if (!windowed) return;
     drawStatistics();
     void drawOrbit();
@@ -273,11 +288,16 @@ export function motion(context) {
     await draw(orbit, [holeTrace(clearance), trace], { ...orbitLayout(isZoomed(), [trace], clearance), shows: [node, isZoomed()] }, signal);
   }
 
+  /** A spectrum's layout: shown farther, it is shown as a whole. @param {any} table */
+  function spectrumOf(table) {
+    return { ...spectrumLayout([{ table }], isLog()), shows: range() };
+  }
+
   async function drawSpectrum() {
     if (!windowed) return;
     const { node, depth } = place();
     spectrum.setAttribute("aria-label", `Full spectrum of node ${node} at ${say("measured_depth", depth)}`);
-    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumLayout([{ table: windowed.lines }], isLog()), signal);
+    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumOf(windowed.lines), signal);
   }
 
   function drawStatistics() {
@@ -334,7 +354,10 @@ export function motion(context) {
   async function drawModes() {
     const { lines } = windowed;
     const highest = modesUpTo();
-    const asked = modes.get(highest) ?? get(`${context.path}/modes`, { to_hz: highest }, signal).catch((error) => ({ modes: [], problem: error.message }));
+    const asked = modes.get(highest) ?? get(`${context.path}/modes`, { to_hz: highest }, signal).catch((error) => {
+      modes.delete(highest);
+      return { modes: [], problem: error.message };
+    });
     modes.set(highest, asked);
     const found = await asked;
     if (windowed?.lines !== lines) return;
@@ -375,7 +398,7 @@ export function motion(context) {
     h("div", { class: "panel" }, rotationName, h("figure", {}, rotation)),
   );
   return {
-    element: nodes.length ? h("div", {}, controls, wrong, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),
+    element: nodes.length ? h("div", {}, controls, wrong, refused, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),
     draw: nodes.length ? redraw : async () => {},
     request: () => {
       if (!nodes.length) return null;

@@ -2,6 +2,7 @@
 
 import { fill, h } from "./dom.js";
 import { python } from "./lines.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, draw, inks, LINES } from "./plots.js";
 import { label, meaning, say, shown, title } from "./units.js";
@@ -124,11 +125,14 @@ export function profiles(context) {
   });
   /** @type {Record<string, any>} */
   const tables = {};
+  const begin = works();
 
   async function redraw() {
+    const isNewest = begin();
     const names = ticks.names();
     const needed = new Set(names.map(tableOf));
     await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
+    if (!isNewest()) return;
     const shape = await drawProfiles(place, names, [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }], context.signal);
     shape.removeAllListeners?.("plotly_hover");
     shape.on?.("plotly_hover", (/** @type {any} */ event) => read(event.points, names));

@@ -7,7 +7,8 @@ import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, logTicks, SCALE } from "./plots.js";
 import { say, shown, title, unit } from "./units.js";
 
-const RANGES = ["5", "10", "20", "50", "100"];
+/** Frequencies up to which spectrograms are shown [Hz]. */
+export const RANGES = ["5", "10", "20", "50", "100"];
 const LENGTHS = ["1", "2", "4", "8", "16"];
 /** Below this part of the highest amplitude a logarithmic scale ends. */
 const DEPTH = 1e-3;
@@ -130,7 +131,7 @@ export async function drawSpectrogram(place, table, { isLog, range, most }, sign
   await draw(
     place,
     [{ type: "heatmap", x: time, y: frequency, z, zmin: least, zmax: largest, colorscale: SCALE, customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)), colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) }, hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>` }],
-    { xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
+    { shows: range, xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
     signal,
   );
 }

@@ -1,6 +1,7 @@
 // The well in space with the string in it at rest, coloured by a quantity.
 
 import { choice, fill, h } from "./dom.js";
+import { works } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, lineScale } from "./plots.js";
 import { pythonColumns, QUANTITIES, tableOf } from "./point-profiles.js";
@@ -22,8 +23,10 @@ export function well(context) {
   const caption = h("figcaption", {});
   const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
   const factor = () => exaggeration(query, USUAL);
+  const begin = works();
 
   async function redraw() {
+    const isNewest = begin();
     const name = colour();
     const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
       context.keep({ [key]: value });
@@ -32,6 +35,7 @@ export function well(context) {
     fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), exaggerationChoice(factor(), set("exaggerate")));
     const statics = (await context.table("statics")).columns;
     const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
+    if (!isNewest()) return;
     const values = onNodes(table, name, statics.measured_depth.length);
     const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
     const string = displaced(statics, axis, factor());
@@ -94,7 +98,10 @@ export function saysExaggeration(whose, factor) {
 export function onNodes(columns, name, nodes) {
   const values = columns[name];
   if (values.length === nodes) return values;
-  return Array.from({ length: nodes }, (_, node) => (values[Math.max(0, node - 1)] + values[Math.min(values.length - 1, node)]) / 2);
+  return Array.from({ length: nodes }, (_, node) => {
+    const [above, below] = [values[Math.max(0, node - 1)] ?? null, values[Math.min(values.length - 1, node)] ?? null];
+    return above === null || below === null ? (above ?? below) : (above + below) / 2;
+  });
 }
 
 /**

@@ -24,7 +24,7 @@ export function verifiedWindow({ recording, duration }) {
 }
 
 /** Samples that a spectrum needs. */
-const FEWEST = 8;
+export const FEWEST = 8;
 
 /**
  * The number of the scenario's window of spectra that a window is, from 1; 0 of any other.
@@ -32,7 +32,7 @@ const FEWEST = 8;
  * @param {{from: number, to: number}} window [s]
  */
 export function spectrumWindow({ recording, duration }, window) {
-  const first = Math.ceil(((duration * 5) / 6) * recording.rate_hz) / recording.rate_hz;
+  const first = Math.round(((duration * 5) / 6) * recording.rate_hz) / recording.rate_hz;
   const usual = (duration - first) * recording.rate_hz >= FEWEST ? [{ from: first, to: duration }] : [];
   return 1 + (recording.spectrum_windows ?? usual).findIndex((/** @type {{from: number, to: number}} */ known) => isSame(window, known, duration));
 }

@@ -184,7 +184,7 @@ export function stringPlayer(strings, onLoad) {
     const motion = /** @type {Frames} */ (actor.motion);
     if (source === "profile") {
       const values = onNodes((await context.table("profile", { fields: name })).columns, name, there.nodes);
-      return { value: (node) => values[node] ?? 0, range: covered(values.map(Number)) };
+      return { value: (node) => values[node] ?? 0, range: covered(values.flatMap((value) => value ?? [])) };
     }
     if (source === "snapshots" && !motion.columns[name]) Object.assign(motion.columns, (await frames(context, [name], span(), there.nodes)).columns);
     if (name === "orbit_radius_rms") {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Route, expect
 
 from drillsweep import Client, Sweep
 from service import SHORT, Service
-from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drag, drawn, named, opened, troubles, until
+from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drag, drawn, named, opened, taken, troubles, until
 from test_page_points import run_curl, run_python, said, shown_lines
 from test_tokens import make_token
 
@@ -229,17 +229,15 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
 def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
     picture = drawn(page, "Full spectra")
-    names = picture.evaluate("place => place.layout.annotations.map(({ text, font }) => [text, font.color])")
-    colours = picture.evaluate("place => place.data.map(({ line }) => line.color)")
+    names = picture.evaluate("place => place.layout.annotations.map(({ text }) => text)")
     own = [named.point(number).spectrum(node=49, time=(0.5 / 3, 0.5), window="hann", range_hz=100) for number in (1, 2)]
     lines = [
-        f"{'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
-        for table in own
+        f"{number}: {'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
+        for number, table in enumerate(own, 1)
         for peak in table.attributes["peaks"]
     ]
     assert names
-    assert {text for text, _ in names} <= set(lines)
-    assert {colour for _, colour in names} <= set(colours)
+    assert set(names) <= set(lines)
     shades = picture.evaluate("place => place.layout.shapes.map(({ x0 }) => x0)")
     resolved = min(table.attributes["resolved_hz"] for table in own)
     assert shades[:1] == pytest.approx([resolved] if resolved < 100 else [])
@@ -271,6 +269,20 @@ def test_points_of_the_same_words_are_told_apart(opened: Opens, client: Client) 
     assert [re.sub(".*rotation speed ", "", name) for name in shown] == ["110 rpm", "120 rpm"]
     page = opened(f"#/compare?points={key(speeds[1])},{key(again)}&view=orbit")
     assert [name.rpartition(", ")[2] for name in names(page, "Orbits")] == ["speeds", "again"]
+    page = opened(f"#/compare?points={key(speeds[0])},{key(speeds[1])},{key(again)}&view=orbit")
+    shown = [re.sub(".*rotation speed ", "", name) for name in names(page, "Orbits")]
+    assert shown == ["110 rpm", "120 rpm, speeds", "120 rpm, again"]
+    # Their names make no difference.
+    preset = client.get_json("/v1/scenarios/paper-200m")["scenario"]
+    called = [
+        client.submit(scenario=preset | {"name": name}, set=SHORT | {"operation.rotation_speed_rpm": speed}, axes=axes)
+        for name, speed in (("one", 110), ("other", 120))
+    ]
+    for sweep in called:
+        sweep.wait(timeout=120.0)
+    page = opened(f"#/compare?points={key(called[0])},{key(called[1])}&view=orbit")
+    told = [name.partition(": ")[2].split(", ")[2:] for name in names(page, "Orbits")]
+    assert told == [["rotation speed 110 rpm"], ["rotation speed 120 rpm"]]
 
 
 def test_what_takes_seconds_says_so(opened: Opens, named: Sweep) -> None:
@@ -465,3 +477,51 @@ def test_the_lines_of_a_comparison_read_what_it_shows(
     is_table = view not in ("modes", "effects", "accuracy", "cost")
     is_drawn = view.startswith("spectrum&")
     assert not is_table or is_drawn or sum(columns <= set(found) for found in tables.values()) == 2
+
+
+def test_an_answer_of_a_comparison_that_comes_late_is_not_shown(opened: Opens, named: Sweep) -> None:
+    page = opened("#/nowhere")
+    held: list[tuple[Route, Any]] = []
+    page.route("**/statistics?*from=0.1&*", lambda route: held.append((route, route.fetch().json())))
+    page.goto(page.url.replace("#/nowhere", f"#/compare?points={key(named)}&view=statistics&from=0.2&to=0.5"))
+    first = cells(page, "Statistics", "Samples")
+    page.get_by_label("From [s]").fill("0.1")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: len(held) == 1)
+    page.get_by_label("From [s]").fill("0.3")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: cells(page, "Statistics", "Samples") != first)
+    newest = cells(page, "Statistics", "Samples")
+    route, answer = held[0]
+    answer["attributes"]["samples"] = 12345
+    route.fulfill(json=answer)
+    taken(page)
+    assert cells(page, "Statistics", "Samples") == newest
+
+
+def test_the_lines_of_a_comparison_follow_what_is_chosen(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)}&view=spectrum")
+    drawn(page, "Full spectra")
+    assert "range_hz=20" in shown_lines(page)["curl"]
+    page.get_by_label("Frequencies up to").select_option("100")
+    until(page, lambda: "range_hz=100" in shown_lines(page)["curl"])
+    # Without a number the window begins where it usually does, in the link as in the view.
+    page.get_by_label("From [s]").fill("0.3")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: "from=0.3" in page.url)
+    page.get_by_label("From [s]").fill("")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: "from=" not in page.url)
+    expect(page.get_by_label("From [s]")).to_have_value("0.167")
+
+
+def test_the_whole_hole_is_shown_where_it_is_chosen(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/compare?points={key(named)}&view=orbit&zoom.orbit=x:0.001:0.002,y:0.001:0.002")
+    picture = drawn(page, "Orbits")
+    width = "place => place._fullLayout.xaxis.range[1] - place._fullLayout.xaxis.range[0]"
+    assert picture.evaluate(width) < 10.0
+    page.get_by_label("Shows", exact=True).select_option("hole")
+    statics = named.point(1).statics()
+    clearance = 1e3 * float(statics["clearance"].max())
+    until(page, lambda: picture.evaluate(width) > clearance)
+    assert "zoom.orbit" not in page.url

@@ -1,6 +1,7 @@
 //! A PostgreSQL server of a test's own.
 
 use std::ffi::OsStr;
+use std::fs::File;
 use std::io::Write as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -97,19 +98,10 @@ impl Server {
         // The server's user is not the one that the directory belongs to.
         super::run(Command::new("chmod").arg("0777").arg(directory.path()));
         let server = Self { directory, data, process: None, port: super::free_ports::<1>()[0], settings };
-        super::run(
-            program("initdb")
-                .args([
-                    "--auth=trust",
-                    "--username=drillsweep",
-                    "--encoding=UTF8",
-                    "--no-locale",
-                    "--no-sync",
-                ])
-                .args(log.into_iter().flat_map(|log| [OsStr::new("--waldir"), log.as_os_str()]))
-                .args(["--wal-segsize=1", "--pgdata"])
-                .arg(server.data()),
-        );
+        match log {
+            Some(log) => initialise(&server.data, &[OsStr::new("--waldir"), log.as_os_str()]),
+            None => copy(&initialised(), &server.data),
+        }
         server
     }
 
@@ -264,6 +256,47 @@ impl Drop for Server {
     fn drop(&mut self) {
         self.end("QUIT");
     }
+}
+
+/// Files of a new database, as all tests of a target directory share them: making them takes longer than most tests.
+fn initialised() -> PathBuf {
+    let version = program("initdb").arg("--version").output().expect("the version of PostgreSQL").stdout;
+    let version = String::from_utf8_lossy(&version).replace(|sign: char| !sign.is_ascii_alphanumeric(), "-");
+    let files = Path::new(env!("CARGO_TARGET_TMPDIR")).join(version);
+    // Until the end of this function others wait, of other processes too.
+    let lock = File::create(files.with_extension("lock")).expect("a lock file in the target directory");
+    lock.lock().expect("a lock on it");
+    if !files.exists() {
+        // The server's user need not reach the target directory.
+        let directory = TempDir::new().expect("a temporary directory");
+        super::run(Command::new("chmod").arg("0777").arg(directory.path()));
+        let data = directory.path().join("data");
+        initialise(&data, &[]);
+        // Under another name first: what has its name is whole.
+        let part = files.with_extension("part");
+        let _ = std::fs::remove_dir_all(&part);
+        copy(&data, &part);
+        std::fs::rename(&part, &files).expect("the files' name");
+    }
+    files
+}
+
+/// Copies files with their owner.
+fn copy(files: &Path, to: &Path) {
+    super::run(Command::new("cp").args(["--recursive", "--preserve=mode,ownership"]).arg(files).arg(to));
+}
+
+/// Makes the files of a new database.
+fn initialise(data: &Path, more: &[&OsStr]) {
+    let options = [
+        "--auth=trust",
+        "--username=drillsweep",
+        "--encoding=UTF8",
+        "--no-locale",
+        "--no-sync",
+        "--wal-segsize=1",
+    ];
+    super::run(program("initdb").args(options).args(more).arg("--pgdata").arg(data));
 }
 
 /// One of PostgreSQL's programs.

@@ -287,6 +287,49 @@ def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> N
         before.append(reading.text_content())
 
 
+def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles&profiles=effective_tension,normal_force")
+    picture = drawn(page, "Profiles over measured depth")
+    statics, profile = sweep.point(1).statics(), sweep.point(1).profile()
+    depths = statics["measured_depth"]
+    cursor = page.get_by_role("slider", name="Depth cursor")
+    reading = page.get_by_role("status").filter(has_text=re.compile("^(At|Point at) "))
+    line = "place => (place.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
+
+    def stands_at(node: int) -> None:
+        depth, force = float(depths[node]), float(statics["normal_force"][node]) / 1e3
+        tension = float(profile["effective_tension"][max(0, node - 1)]) / 1e3
+        until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
+        words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*normal force (\S+) k?N", reading.inner_text())
+        assert words is not None, reading.inner_text()
+        assert [float(word) for word in words.groups()[:2]] == pytest.approx([depth, tension], rel=1e-3)
+        assert float(words.group(3)) == pytest.approx(force, rel=1e-3, abs=1e-9)
+        expect(cursor).to_have_attribute("aria-valuetext", f"{words.group(1)} m")
+
+    cursor.focus()
+    last = len(depths) - 1
+    keys = {"ArrowDown": 1, "PageDown": 11, "ArrowUp": 10, "ArrowRight": 11, "PageUp": 1, "End": last, "Home": 0}
+    for key, node in keys.items():
+        page.keyboard.press(key)
+        stands_at(node)
+    for _ in range(3):
+        page.keyboard.press("PageDown")
+    stands_at(30)
+    # The link holds where the cursor is, in any unit.
+    other = opened(f"#{page.url.partition('#')[2]}")
+    copy = drawn(other, "Profiles over measured depth")
+    until(other, lambda: len(copy.evaluate(line)) == 1)
+    other.get_by_role("button", name="Units: SI. Switch").click()
+    in_feet = float(depths[30]) / 0.3048
+    until(other, lambda: copy.evaluate(line) == [pytest.approx([in_feet, in_feet], rel=1e-6)])
+    # The mouse takes it along, and has a line of its own.
+    box = picture.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"], steps=3)
+    until(page, lambda: picture.evaluate(line) == [])
+    until(page, lambda: float(depths[int(cursor.input_value())]) == pytest.approx(100.0, abs=10.0))
+
+
 def test_numbers_beside_bars_of_energy_leave_the_names_free(opened: Opens, sweep: Sweep) -> None:
     page = opened("#/nowhere", viewport={"width": 600, "height": 800})
 

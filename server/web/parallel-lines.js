@@ -78,7 +78,11 @@ function nearest(axes, x, y) {
 }
 
 /** @param {Dimension} dimension @param {number} line */
-function isKept({ values, constraintrange = [] }, line) {
-  const ranges = /** @type {number[][]} */ (Array.isArray(constraintrange[0]) ? constraintrange : [constraintrange]);
-  return ranges.some(([from, to]) => values[line] >= from && values[line] <= to);
+export function isKept(dimension, line) {
+  return rangesOf(dimension).some(([from, to]) => dimension.values[line] >= from && dimension.values[line] <= to);
+}
+
+/** The stretches of an axis to which points are kept; of one alone the drawing library has no list. @param {Dimension} dimension @returns {number[][]} */
+export function rangesOf({ constraintrange = [] }) {
+  return /** @type {number[][]} */ (constraintrange.length && !Array.isArray(constraintrange[0]) ? [constraintrange] : constraintrange);
 }

@@ -3,13 +3,14 @@
 import { choice, fill, h } from "./dom.js";
 import { works } from "./newest.js";
 import { attend } from "./notices.js";
-import { followLines } from "./parallel-lines.js";
+import { followLines, isKept, rangesOf } from "./parallel-lines.js";
+import { rangeFields } from "./parallel-ranges.js";
 import { canvas, colourBar, draw, lineScale } from "./plots.js";
 import { link } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { label, say, shown, title, unit } from "./units.js";
 
-const HOW = "Drag along an axis to keep the points that pass there; drag an axis by its name to move it. Point at a line to read its values.";
+const HOW = "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name to move it. Point at a line to read its values.";
 
 /**
  * Dragging along an axis keeps what passes there.
@@ -21,6 +22,7 @@ export function parallel(context) {
   const place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
   const caption = h("figcaption", {});
   const reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
+  const left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
   const controls = h("div", { class: "controls" });
   const begin = works();
 
@@ -35,6 +37,21 @@ export function parallel(context) {
   /** Says what a line of the picture is of. @type {(line: number) => void} */
   let toldOf = () => {};
   followLines(place, (line) => toldOf(line), context.signal);
+
+  const fields = rangeFields((name, ranges) => {
+    const others = (query.get("brush") ?? "").split(",").filter((part) => part && part.split(":")[0] !== name);
+    context.keep({ brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null });
+    attend(redraw(), context.signal);
+  });
+
+  /** Says to which stretches points are kept in the picture, and how many are. @param {import("./parallel-lines.js").Dimension[]} dimensions */
+  function tell(dimensions) {
+    fields.show(dimensions.map((dimension) => ({ name: dimension.name, ends: endsOf(dimension), ranges: opened(dimension) })));
+    const filters = dimensions.filter((dimension) => rangesOf(dimension).length);
+    const all = dimensions[0].values.length;
+    const kept = dimensions[0].values.filter((_, line) => filters.every((dimension) => isKept(dimension, line))).length;
+    left.textContent = filters.length ? `${kept} of ${all} points are kept.` : "";
+  }
 
   async function redraw() {
     const isNewest = begin();
@@ -56,16 +73,22 @@ export function parallel(context) {
       return;
     }
     const kept = brushed(query.get("brush") ?? "");
-    const dimensions = names.map((name, order) => ({ name, label: title(name), constraintrange: kept.get(name)?.map((range) => range.map((end) => end / unit(name).size)), values: shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))) }));
+    const dimensions = names.map((name, order) => {
+      const values = /** @type {number[]} */ (shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))));
+      const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
+      return { name, label: title(name), constraintrange: ranges && closed({ name, values, constraintrange: ranges }), values };
+    });
     const last = dimensions[names.indexOf(colour)];
     fill(caption, HOW, [...new Set([beside, colour])].map((name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`));
     const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
     toldOf = (line) => read(Number(ordinals[rows[line]]), names, columns.map((column) => column[rows[line]]));
+    tell(dimensions);
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => {
       const { dimensions } = shape.data[0];
       const order = dimensions.map((/** @type {{name: string}} */ { name }) => name).join(",");
       context.keep({ brush: written(dimensions) || null, order: order === usual.join(",") ? null : order });
+      tell(dimensions);
     });
   }
 
@@ -76,7 +99,7 @@ export function parallel(context) {
   }
 
   return {
-    element: h("div", {}, controls, h("figure", {}, place, reading, caption)),
+    element: h("div", {}, controls, h("figure", {}, place, reading, left, caption), fields.element),
     draw: undelayed(redraw, context),
     fields: () => {
       const { colour, beside } = chosen();
@@ -86,25 +109,45 @@ export function parallel(context) {
 }
 
 /**
- * The stretches of axes to which points are kept, as the link has them in the service's units: `flow_rate:0.01:0.02,mud_density:1200:1500`.
+ * The stretches of axes to which points are kept, as the link has them in the service's units: `flow_rate:0.01:0.02,mud_density::1500`.
  * @param {string} text
- * @returns {Map<string, number[][]>} by column
+ * @returns {Map<string, number[][]>} by column; an end that is not given is infinite
  */
 function brushed(text) {
   /** @type {Map<string, number[][]>} */
   const kept = new Map();
   for (const part of text.split(",")) {
     const [name, ...ends] = part.split(":");
-    const range = ends.map(Number);
-    if (range.length === 2 && range.every(Number.isFinite)) kept.set(name, [...(kept.get(name) ?? []), range]);
+    const range = ends.map((end, index) => (end ? Number(end) : index ? Infinity : -Infinity));
+    if (range.length === 2 && !range.some(Number.isNaN)) kept.set(name, [...(kept.get(name) ?? []), range]);
   }
   return kept;
 }
 
-/** The same of a picture. @param {any[]} dimensions */
+/** The same of a picture. @param {import("./parallel-lines.js").Dimension[]} dimensions */
 function written(dimensions) {
-  return dimensions.flatMap(({ name, constraintrange }) => {
-    const ranges = constraintrange?.length ? (Array.isArray(constraintrange[0]) ? constraintrange : [constraintrange]) : [];
-    return ranges.map((/** @type {number[]} */ range) => [name, ...range.map((end) => Number((end * unit(name).size).toPrecision(7)))].join(":"));
-  }).join(",");
+  return dimensions.flatMap((dimension) => opened(dimension).map((range) => writtenRange(dimension.name, range))).join(",");
+}
+
+/** @param {string} name @param {number[]} range in the unit in which it is shown */
+function writtenRange(name, range) {
+  return [name, ...range.map((end) => (Number.isFinite(end) ? Number((end * unit(name).size).toPrecision(7)) : ""))].join(":");
+}
+
+/** The least and the largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */
+function endsOf({ values }) {
+  return [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+}
+
+/** The stretches of an axis whose ends are infinite where they are at or beyond those of the values, which so need not be written. @param {import("./parallel-lines.js").Dimension} dimension */
+function opened(dimension) {
+  const [least, largest] = endsOf(dimension);
+  const ranges = rangesOf(dimension).map(([from, to]) => [from <= least ? -Infinity : from, to >= largest ? Infinity : to]);
+  return ranges.filter((range) => range.some(Number.isFinite));
+}
+
+/** The same with finite ends, as the drawing library needs them. @param {import("./parallel-lines.js").Dimension} dimension */
+function closed(dimension) {
+  const [least, largest] = endsOf(dimension);
+  return rangesOf(dimension).map(([from, to]) => [from === -Infinity ? Math.min(least, to) : from, to === Infinity ? Math.max(largest, from) : to]);
 }

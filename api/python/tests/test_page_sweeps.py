@@ -451,6 +451,50 @@ def test_the_link_holds_what_is_brushed_on_parallel_coordinates(opened: Opens, n
     until(other, lambda: len(copy.evaluate(script)["mud_density"] or []) == 2)
 
 
+def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel")
+    picture = drawn(page, "Parallel coordinates")
+    ranges = "place => Object.fromEntries(place.data[0].dimensions.map(one => [one.name, one.constraintrange?.flat()]))"
+    kept = page.get_by_role("status", name="Points that are kept")
+    summary = page.locator("summary", has_text="Keep points by numbers")
+    summary.focus()
+    page.keyboard.press("Enter")
+    page.get_by_label("mud density [kg/m³], from").focus()
+    page.keyboard.type("1500")
+    page.keyboard.press("Tab")
+    until(page, lambda: picture.evaluate(ranges)["mud_density"] == [1500, 1800])
+    expect(kept).to_have_text("4 of 8 points are kept.")
+    assert "mud_density%3A1500%3A" in page.url
+    expect(page.get_by_label("mud density [kg/m³], to")).to_be_focused()
+    page.get_by_label("flow rate [m³/s], to").focus()
+    page.keyboard.type("0.02")
+    page.keyboard.press("Enter")
+    expect(kept).to_have_text("2 of 8 points are kept.")
+    until(page, lambda: picture.evaluate(ranges)["flow_rate"] == [0.01, 0.02])
+    # In the units of who opens the link.
+    other = opened(f"#{page.url.partition('#')[2]}")
+    copy = drawn(other, "Parallel coordinates")
+    until(other, lambda: copy.evaluate(ranges)["mud_density"] == [1500, 1800])
+    expect(other.get_by_role("status", name="Points that are kept")).to_have_text("2 of 8 points are kept.")
+    other.get_by_role("button", name="Units: SI. Switch").click()
+    expect(other.locator("legend", has_text="mud density [ppg]")).to_have_count(1)
+    other.locator("summary", has_text="Keep points by numbers").click()
+    field = other.get_by_label("mud density [ppg], from", exact=True)
+    expect(field).to_have_value(re.compile(r"^12\.5"))
+    # What is brushed by the mouse stands in the fields, a second stretch of an axis in those of its own.
+    axis = picture.locator(".axis-brush").nth(1)
+    drag(page, axis, (0.5, 0.7), (0.5, 0.9))
+    second = page.get_by_label("mud density [kg/m³], from, stretch 2")
+    expect(second).to_have_value(re.compile(r"^1[56]\d\d"))
+    until(page, lambda: page.url.count("mud_density") == 2)
+    # Without its numbers an axis keeps all.
+    for name in ("flow rate [m³/s], to", "mud density [kg/m³], from, stretch 2"):
+        page.get_by_label(name, exact=True).fill("")
+        page.get_by_label(name, exact=True).press("Enter")
+    expect(second).to_have_count(0)
+    until(page, lambda: picture.evaluate(ranges)["flow_rate"] is None)
+
+
 def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
     picture = drawn(page, "Parallel coordinates")

@@ -1,0 +1,67 @@
+// Fields for the stretches of axes to which points are kept: what dragging along an axis does, for who has no mouse.
+
+import { fill, h } from "./dom.js";
+import { number, title } from "./units.js";
+
+/** Digits of an end. */
+const DIGITS = 7;
+const SIDES = ["from", "to"];
+
+/**
+ * An axis in the unit in which it is shown: the ends of its values, and its stretches, whose ends may be infinite.
+ * @typedef {{name: string, ends: number[], ranges: number[][]}} Axis
+ */
+
+/**
+ * @param {(name: string, ranges: number[][]) => void} onChange
+ * @returns {{element: HTMLElement, show: (axes: Axis[]) => void}} `show` says what holds
+ */
+export function rangeFields(onChange) {
+  const body = h("div", {});
+  /** What the fields are for. */
+  let made = "";
+  /** Two for each stretch of an axis. @type {Map<string, HTMLInputElement[][]>} */
+  const inputs = new Map();
+
+  /** Takes what the fields of an axis say. @param {string} name */
+  function take(name) {
+    const ranges = (inputs.get(name) ?? []).map(([from, to]) => [from.value ? from.valueAsNumber : -Infinity, to.value ? to.valueAsNumber : Infinity].sort((a, b) => a - b));
+    onChange(name, ranges.filter((range) => range.some(Number.isFinite)));
+  }
+
+  /** @param {Axis[]} axes */
+  function show(axes) {
+    const wanted = JSON.stringify(axes.map((axis) => [title(axis.name), axis.ends, rangesOf(axis).length]));
+    if (wanted !== made) make(axes);
+    made = wanted;
+    for (const axis of axes) {
+      rangesOf(axis).forEach((range, order) => {
+        range.forEach((end, side) => {
+          const input = inputs.get(axis.name)?.[order][side];
+          // What is being typed stays.
+          if (input && input !== document.activeElement) input.value = Number.isFinite(end) ? String(Number(end.toPrecision(DIGITS))) : "";
+        });
+      });
+    }
+  }
+
+  /** @param {Axis[]} axes */
+  function make(axes) {
+    inputs.clear();
+    const parts = axes.map((axis) => {
+      const name = title(axis.name);
+      const pairs = rangesOf(axis).map((_, order) => SIDES.map((side, index) => h("input", { type: "number", step: "any", placeholder: number(axis.ends[index]), "aria-label": `${name}, ${side}${order ? `, stretch ${order + 1}` : ""}`, onchange: () => take(axis.name) })));
+      inputs.set(axis.name, pairs);
+      const fields = pairs.flatMap((pair) => pair.map((input, index) => h("label", { class: "field" }, h("span", {}, SIDES[index]), input)));
+      return h("fieldset", {}, h("legend", {}, name), h("div", { class: "controls" }, fields));
+    });
+    fill(body, h("p", { class: "small soft" }, "An end that is left empty is that of the axis."), h("div", { class: "ranges" }, parts));
+  }
+
+  return { element: h("details", {}, h("summary", {}, "Keep points by numbers"), body), show };
+}
+
+/** The stretches of an axis; one that is to be given, where it has none. @param {Axis} axis */
+function rangesOf({ ranges }) {
+  return ranges.length ? ranges : [[-Infinity, Infinity]];
+}

@@ -5,15 +5,17 @@ import { choice, debounced, fill, h } from "./dom.js";
 import { bodyLines, lines, python, shell } from "./lines.js";
 import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
-import { go, keep, link } from "./router.js";
+import { go, held, hold, keep, link } from "./router.js";
 import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "./session.js";
 import { settings } from "./settings.js";
 import { NoSurvey, surveyField } from "./survey.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "./units.js";
 
-/** Characters of a request that a link may hold. */
+/** Characters of a request that a link may hold; a longer one is held beside it. */
 const LINKED = 4000;
+/** What the link says in the place of such a request. */
+const HELD = "held";
 const SURVEY = "well.survey";
 /** Short names of parameters. @type {Record<string, string>} */
 const ALIASES = { flow_rate: "mud.flow_rate", mud_density: "mud.density" };
@@ -26,9 +28,9 @@ const DRAWN = ["latin_hypercube", "sobol"];
 /** @type {import("./main.js").View} */
 export async function show(main, route, signal) {
   const { scenarios } = await get("/v1/scenarios", {}, signal);
-  const start = await begun(route.query, signal);
+  const { start, isGoneOn } = await begun(route.query, signal);
   /** @type {{name: string, values: string}[]} */
-  const axes = Object.entries(start.axes ?? (isGoneOnWith(route.query) ? {} : { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } })).map(([name, axis]) => ({ name, values: written(axis) }));
+  const axes = Object.entries(start.axes ?? (isGoneOn ? {} : { flow_rate: { values: [0.01, 0.04, 0.06] }, mud_density: { from: 1200, to: 2100, count: 4 } })).map(([name, axis]) => ({ name, values: written(axis) }));
   /** @type {{name: string, values: string}[]} */
   const changes = Object.entries(start.set ?? {}).filter(([name, value]) => !(name === "accuracy" && typeof value === "string") && name !== SURVEY).map(([name, value]) => ({ name, values: JSON.stringify(value) }));
   const form = {
@@ -39,7 +41,7 @@ export async function show(main, route, signal) {
     outputs: typeof start.outputs === "string" ? start.outputs : start.outputs ? PART : "",
   };
 
-  const carried = isGoneOnWith(route.query) ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
+  const carried = isGoneOn ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
 
   const changed = debounced(() => void plan(), 400);
   const box = (/** @type {string} */ value, /** @type {Record<string, any>} */ attributes = {}) => h("input", { value, oninput: changed, ...attributes });
@@ -72,6 +74,7 @@ export async function show(main, route, signal) {
   const changesPart = h("div", {});
   const sourcePart = h("div", { "data-pointer": "/scenario" });
   const drawnPart = h("div", { class: "controls" });
+  const beside = h("p", { class: "small soft", role: "status" });
   const general = h("p", { class: "wrong", role: "alert" });
   const planned = h("div", {});
   const previewed = h("div", { class: "controls" });
@@ -243,7 +246,10 @@ export async function show(main, route, signal) {
     try {
       const body = request();
       const text = JSON.stringify(body);
-      keep({ from: null, request: text.length <= LINKED ? text : null });
+      const isLinked = text.length <= LINKED;
+      keep({ from: null, preset: null, request: isLinked ? text : null, [HELD]: isLinked ? null : "tab" });
+      hold(isLinked ? null : text);
+      beside.textContent = isLinked ? "" : `This request is too long for the link of this page, which alone does not hold it. This tab keeps it: it is here again where the page is loaded anew, and after going back or forward. To pass it on, take its lines below.`;
       const answer = await send("POST", "/v1/sweeps?dry_run=true", body, signal);
       if (mine !== generation) return;
       mark(answer.warnings ?? []);
@@ -318,7 +324,7 @@ export async function show(main, route, signal) {
       changed();
     })), h("h2", {}, "Changes to the scenario"), changesPart, fields.element, survey.element),
     h("section", { class: "panel", "aria-label": "Parameters", "data-pointer": "/axes" }, h("h2", {}, "What is varied"), h("p", { class: "small soft" }, "Values separated by commas, or from:to:count, with :log for logarithmic spacing. Drawn designs take from:to."), drawnPart, axesPart),
-    h("section", { class: "panel", "aria-label": "Name" }, h("div", { class: "controls" }, field("Name", name, "/name"), field("Tags", tags, "/tags"), field("Verify a sample", verify, "/verify")), general, submit),
+    h("section", { class: "panel", "aria-label": "Name" }, h("div", { class: "controls" }, field("Name", name, "/name"), field("Tags", tags, "/tags"), field("Verify a sample", verify, "/verify")), general, beside, submit),
     paths,
   );
   drawRows(axesPart, axes, "axes");
@@ -328,6 +334,7 @@ export async function show(main, route, signal) {
   fill(
     main,
     h("div", { class: "head" }, h("h1", {}, "New sweep")),
+    route.query.has(HELD) && !isGoneOn && h("p", { class: "wrong", role: "status" }, "The request of this link was too long for it; only the tab in which it was made keeps it."),
     h("div", { class: "half" }, form_, h("aside", { "aria-label": "What it would become" }, h("section", { class: "panel", "aria-label": "Plan", "aria-live": "polite" }, h("h2", {}, "What it would become"), planned), pointsPart)),
     taken,
   );
@@ -336,29 +343,20 @@ export async function show(main, route, signal) {
 }
 
 /**
- * The request that the form begins with: that of the link, of another sweep, or none.
+ * The request that the form begins with: that of the link, of another sweep, or none; and whether it goes on with this, instead of one that
+ * it proposes.
  * @param {URLSearchParams} query
  * @param {AbortSignal} signal
+ * @returns {Promise<{start: any, isGoneOn: boolean}>}
  */
 async function begun(query, signal) {
   const from = query.get("from");
   if (from) {
     const { request } = await get(`/v1/sweeps/${encodeURIComponent(from)}`, {}, signal);
-    return { ...request, tags: request?.tags ?? [] };
+    return { start: { ...request, tags: request?.tags ?? [] }, isGoneOn: true };
   }
-  try {
-    return { ...(query.has("preset") ? { preset: query.get("preset") } : {}), ...JSON.parse(query.get("request") ?? "{}") };
-  } catch {
-    return {};
-  }
-}
-
-/**
- * Whether the form goes on with a request that there is, instead of one that it proposes.
- * @param {URLSearchParams} query
- */
-function isGoneOnWith(query) {
-  return query.has("from") || query.has("request");
+  const request = query.get("request") ?? (query.has(HELD) ? held() : null);
+  return { start: { ...(query.has("preset") ? { preset: query.get("preset") } : {}), ...object(request ?? "") }, isGoneOn: request !== null };
 }
 
 /** A text of the form that cannot be read. */

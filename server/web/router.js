@@ -35,5 +35,18 @@ export function keep(changes) {
     if (value === null || value === undefined || value === "") query.delete(name);
     else query.set(name, String(value));
   }
-  history.replaceState(null, "", link(path, Object.fromEntries(query)));
+  history.replaceState(history.state, "", link(path, Object.fromEntries(query)));
+}
+
+/**
+ * Holds beside the link what is too long for it: in this tab it is there again where the page is loaded anew, and after going back or forward.
+ * @param {string | null} text
+ */
+export function hold(text) {
+  history.replaceState(text === null ? null : { held: text }, "");
+}
+
+/** @returns {string | null} what is held beside the link */
+export function held() {
+  return history.state?.held ?? null;
 }

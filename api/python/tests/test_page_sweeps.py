@@ -76,6 +76,48 @@ def test_a_file_of_a_preset_with_changes_fills_the_form(opened: Opens) -> None:
     assert changes["recording.orbit_window"] == {"from": 0, "to": 1}
 
 
+def test_a_request_that_is_too_long_for_the_link_is_there_again(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    told = page.get_by_text("too long for the link")
+    expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+    expect(told).to_have_count(0)
+    page.get_by_role("combobox", name="Scenario", exact=True).select_option("")
+    text = page.get_by_label("Scenario as JSON")
+    scenario = json.loads(text.input_value())
+    scenario["well"]["survey"] = [
+        {"measured_depth": 2.0 * station, "inclination_deg": 30.0, "azimuth_deg": 0.0} for station in range(101)
+    ]
+    text.fill(json.dumps(scenario))
+    page.get_by_role("textbox", name="Name", exact=True).fill("too long for a link")
+    until(page, lambda: "held=tab" in page.url)
+    expect(told).to_be_visible()
+    assert "request=" not in page.url
+    link = f"#{page.url.partition('#')[2]}"
+
+    def is_there() -> None:
+        expect(page.get_by_role("textbox", name="Name", exact=True)).to_have_value("too long for a link")
+        assert json.loads(text.input_value()) == scenario
+        expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
+        expect(told).to_be_visible()
+
+    page.reload()
+    is_there()
+    page.get_by_role("link", name="Sweeps").first.click()
+    expect(page.get_by_role("table", name="Sweeps")).to_be_visible()
+    page.go_back()
+    is_there()
+    page.go_forward()
+    expect(page.get_by_role("table", name="Sweeps")).to_be_visible()
+    page.go_back()
+    is_there()
+    # A new sweep is not the one that was begun.
+    page.get_by_role("link", name="New sweep").first.click()
+    expect(page.get_by_role("textbox", name="Name", exact=True)).to_have_value("")
+    # Elsewhere it is said that the link does not hold it.
+    other = opened(link)
+    expect(other.get_by_text("only the tab in which it was made keeps it")).to_be_visible()
+
+
 def test_a_file_that_cannot_be_read_says_where(opened: Opens, troubles: list[str], tmp_path: Path) -> None:
     file = tmp_path / "well.toml"
     file.write_text("duration = 1\nname = nonsense\n")

@@ -131,7 +131,7 @@ function painted() {
 /** Keeps in the link how the reader zooms a picture. @param {HTMLElement} place */
 function followZoom(place) {
   /** @type {any} */ (place).on("plotly_relayout", async (/** @type {any} */ event) => {
-    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene)/.test(name))) return;
+    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene\.camera)/.test(name))) return;
     await rested(place);
     const known = drawn.get(place);
     if (known && place.isConnected) keepZoom(keyOf(place), place, known.layout, known.whole);

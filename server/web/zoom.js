@@ -1,5 +1,5 @@
 // The part of a picture that the reader has zoomed in to, kept in the link in the service's units: `zoom.map=x:0.01:0.02,y:1200:1500`,
-// or `zoom.well=camera:...` of a picture in space.
+// or `zoom.well=camera:...` of a picture in space: its eye, its centre and, where its horizon is not level, what is upwards.
 
 import { keep, route } from "./router.js";
 import { unit } from "./units.js";
@@ -8,6 +8,10 @@ import { unit } from "./units.js";
 const DIGITS = 7;
 /** Part of a range by which an end may differ from where it was drawn, and the picture counts as whole. */
 const SAME = 1e-6;
+/** By how much a horizon may be off the level [rad], and counts as level. */
+const LEVEL = 1e-5;
+/** What is upwards where the horizon is level. */
+const UPRIGHT = [0, 0, 1];
 
 /**
  * What the link says of a picture, as changes of its layout; nothing of axes that it has not.
@@ -22,10 +26,11 @@ export function zoomed(key, layout) {
     const [name, ...texts] = part.split(":");
     const ends = texts.map(Number);
     if (!name || ends.some((end) => !Number.isFinite(end))) continue;
-    if (name === "camera" && ends.length === 6 && layout.scene) {
-      const [x, y, z, ...centre] = ends;
-      changes["scene.camera.eye"] = { x, y, z };
-      changes["scene.camera.center"] = { x: centre[0], y: centre[1], z: centre[2] };
+    if (name === "camera" && (ends.length === 6 || ends.length === 9) && layout.scene) {
+      const [eye, center, up] = [0, 3, 6].map((first) => ({ x: ends[first], y: ends[first + 1], z: ends[first + 2] }));
+      Object.assign(changes, { "scene.camera.eye": eye, "scene.camera.center": center });
+      // A picture that is turned about its vertical would put that upright again.
+      if (ends.length === 9) Object.assign(changes, { "scene.camera.up": up, "scene.dragmode": "orbit" });
     }
     const axis = `${name[0]}axis${name.slice(1)}`;
     if (!layout[axis] || ends.length !== 2 || ends[0] === ends[1]) continue;
@@ -60,7 +65,7 @@ export function keepZoom(key, place, layout, whole) {
     const drawn = whole[name];
     const width = Math.abs(drawn[1] - drawn[0]) || 1;
     if (now.every((/** @type {number} */ end, /** @type {number} */ index) => Math.abs(end - drawn[index]) <= SAME * width)) return [];
-    const served = name === "camera" ? now : now.map((/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end));
+    const served = name === "camera" ? (now.slice(6).join() === UPRIGHT.join() ? now.slice(0, 6) : now) : now.map((/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end));
     return [[name.replace("axis", ""), ...served.map((/** @type {number} */ end) => Number(end.toPrecision(DIGITS)))].join(":")];
   });
   keep({ [`zoom.${key}`]: parts.join(",") });
@@ -91,8 +96,11 @@ function viewOf(place) {
 /** @param {any} place that plotly draws in */
 function cameraOf(place) {
   // The layouts have the camera as it was when the mouse let go, or before that.
-  const { eye, center } = place._fullLayout.scene._scene.getCamera();
-  return [eye.x, eye.y, eye.z, center.x, center.y, center.z];
+  const { eye, center, up } = place._fullLayout.scene._scene.getCamera();
+  const [across, along] = [eye.x - center.x, eye.y - center.y];
+  // Turned about any axis, a picture has for up what is at right angles to the view, even where its horizon is level.
+  const isLevel = up.z > 0 && Math.abs(up.x * along - up.y * across) <= LEVEL * Math.hypot(across, along);
+  return [eye.x, eye.y, eye.z, center.x, center.y, center.z, ...(isLevel ? UPRIGHT : [up.x, up.y, up.z])];
 }
 
 /** How many of the served unit one of an axis is. @param {any} axis */

@@ -416,6 +416,29 @@ def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) 
     until(other, lambda: picture.evaluate(camera) == pytest.approx(kept, abs=1e-5))
 
 
+def test_a_well_that_is_tilted_stays_so(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=well")
+    picture = drawn(page, "The well and the string in it")
+    picture.scroll_into_view_if_needed()
+    picture.hover()
+    picture.locator(".modebar-btn[data-title='Orbital rotation']").click()
+    upward = "place => place._fullLayout.scene._scene.getCamera().up"
+    picture.evaluate(TURN)
+    until(page, lambda: "zoom.well=camera" in page.url)
+    kept = page.url.split("zoom.well=camera")[1].replace("%3A", ":").split(":")[7:10]
+    up = dict(zip("xyz", map(float, kept), strict=True))
+    assert abs(up["x"]) + abs(up["y"]) > 0.01
+    assert picture.evaluate(upward) == pytest.approx(up, abs=1e-5)
+    other = opened(f"#{page.url.partition('#')[2]}")
+    copy = drawn(other, "The well and the string in it")
+    until(other, lambda: copy.evaluate(upward) == pytest.approx(up, abs=1e-5))
+    copy.hover()
+    copy.locator(".modebar-btn[data-title='Reset camera to last save']").click()
+    until(other, lambda: "zoom.well" not in other.url)
+    eye, up = copy.evaluate("place => place._fullLayout.scene._scene.getCamera().eye"), copy.evaluate(upward)
+    assert up["x"] * eye["y"] == pytest.approx(up["y"] * eye["x"], abs=1e-6)
+
+
 def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Opens, client: Client) -> None:
     windows = [{"from": 0.0, "to": 0.4}, {"from": 0.1, "to": 0.5}]
     changes = SHORT | {"recording.spectrum_windows": windows}

@@ -426,7 +426,7 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
 def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1&from=0&to=0.5")
     modes = named.point(1).modes(to_hz=20.0)["modes"]
-    expect(page.get_by_text(f"{len(modes)} modes were found up to 20 Hz")).to_be_visible(timeout=30_000)
+    expect(page.get_by_text(f"{len(modes)} modes were found up to 20 Hz")).to_be_visible(timeout=60_000)
     cells = page.locator("[data-frequency]")
     assert cells.count() > 0
     for cell in cells.all():

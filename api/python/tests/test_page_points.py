@@ -493,7 +493,7 @@ def test_a_mode_is_named_beside_a_line_only_where_that_says_something(opened: Op
     assert beside(2.03, dense, 0.1) == [None, 20]
     # With a run of 0.4 s every line is near some mode.
     table = page.get_by_role("region", name="Lines, scrollable")
-    expect(table.get_by_text(re.compile(r"among \d+ modes from")).first).to_be_visible()
+    expect(table.get_by_text(re.compile(r"among \d+ modes from")).first).to_be_visible(timeout=60_000)
 
 
 def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sweep) -> None:

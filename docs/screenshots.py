@@ -16,7 +16,14 @@ from playwright.sync_api import Page, sync_playwright
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 WIDTH, LARGEST_HEIGHT = 1200, 1150
-TALLER = {"sweep-map": 1400, "sweep-effects": 1300, "point-motion": 1500, "point-string": 1500, "compare-string": 1500}
+TALLER = {
+    "sweep-map": 1400,
+    "sweep-parallel": 1400,
+    "sweep-effects": 1300,
+    "point-motion": 1500,
+    "point-string": 1500,
+    "compare-string": 1500,
+}
 """Pictures whose lower part is what they are taken for."""
 COMPARED = [
     *("profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string", "contacts"),
@@ -24,6 +31,8 @@ COMPARED = [
 ]
 """Views of a comparison."""
 QUALITY = 40
+SLOWEST_MS = 90_000
+"""How long the slowest part of a view may take on a machine with other work [ms]."""
 STRING_TIME = "50"
 """Time at which the string is shown [s]."""
 
@@ -37,6 +46,7 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
     for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
+    links["point-profiles"] += "&cursor=123.5"
     points = f"{sweep}:1,{sweep}:4,{other}:4"
     for view in COMPARED:
         links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
@@ -51,7 +61,10 @@ def unfold(page: Page, name: str) -> None:
     if name == "new":
         page.get_by_text("All fields, with units").click()
         page.locator("summary", has_text="operation").first.click()
+    if name == "point-motion":
+        page.get_by_text("modes were found up to").wait_for(timeout=SLOWEST_MS)
     if name == "sweep-parallel":
+        page.get_by_text("Keep points by numbers").click()
         said = page.get_by_role("status", name="The point that the mouse is at")
         box = page.locator(".plot").bounding_box()
         # Down between two axes, until there is a line.

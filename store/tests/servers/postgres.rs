@@ -100,7 +100,7 @@ impl Server {
         let server = Self { directory, data, process: None, port: super::free_ports::<1>()[0], settings };
         match log {
             Some(log) => initialise(&server.data, &[OsStr::new("--waldir"), log.as_os_str()]),
-            None => copy(&initialised(), &server.data),
+            None => copy_files(&initialised(), &server.data),
         }
         server
     }
@@ -275,14 +275,14 @@ fn initialised() -> PathBuf {
         // Under another name first: what has its name is whole.
         let part = files.with_extension("part");
         let _ = std::fs::remove_dir_all(&part);
-        copy(&data, &part);
+        copy_files(&data, &part);
         std::fs::rename(&part, &files).expect("the files' name");
     }
     files
 }
 
 /// Copies files with their owner.
-fn copy(files: &Path, to: &Path) {
+fn copy_files(files: &Path, to: &Path) {
     super::run(Command::new("cp").args(["--recursive", "--preserve=mode,ownership"]).arg(files).arg(to));
 }
 

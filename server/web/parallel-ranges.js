@@ -1,10 +1,9 @@
 // Fields for the stretches of axes to which points are kept: what dragging along an axis does, for who has no mouse.
 
 import { fill, h } from "./dom.js";
+import { rounded } from "./router.js";
 import { number, title } from "./units.js";
 
-/** Digits of an end. */
-const DIGITS = 7;
 const SIDES = ["from", "to"];
 
 /**
@@ -39,7 +38,7 @@ export function rangeFields(onChange) {
         range.forEach((end, side) => {
           const input = inputs.get(axis.name)?.[order][side];
           // What is being typed stays.
-          if (input && input !== document.activeElement) input.value = Number.isFinite(end) ? String(Number(end.toPrecision(DIGITS))) : "";
+          if (input && input !== document.activeElement) input.value = Number.isFinite(end) ? String(rounded(end)) : "";
         });
       });
     }

@@ -4,7 +4,7 @@ import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { pythonNode } from "./lines.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, rangesOf, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
@@ -43,8 +43,8 @@ export function motion(context) {
   let whole;
   /** @type {any} */
   let windowed;
-  const beginNode = works();
-  const beginWindow = works();
+  const beginNode = generations();
+  const beginWindow = generations();
 
   const selector = () => {
     const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];

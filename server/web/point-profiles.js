@@ -2,9 +2,10 @@
 
 import { fill, h } from "./dom.js";
 import { python } from "./lines.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, draw, inks, LINES } from "./plots.js";
+import { rounded } from "./router.js";
 import { label, meaning, say, shown, title, unit } from "./units.js";
 
 /** Quantities over depth, and the table that has each. @type {[string, string][]} */
@@ -29,8 +30,6 @@ export const QUANTITIES = [
 
 /** Keys that move the cursor, and by how many nodes; what is deeper is below, as in the picture. @type {Record<string, number>} */
 const STEPS = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -Infinity, End: Infinity };
-/** Digits of the cursor's depth in the link. */
-const DIGITS = 7;
 
 const USUAL = ["friction_coefficient", "rotation_damping", "eccentricity", "effective_tension", "torque", "largest_normal_force"];
 
@@ -136,7 +135,7 @@ export function profiles(context) {
   let depths = [];
   /** Whether the picture has a line where the cursor was moved to. */
   let isMarked = false;
-  const begin = works();
+  const begin = generations();
 
   async function redraw() {
     const isNewest = begin();
@@ -176,7 +175,7 @@ export function profiles(context) {
   /** Moves the cursor to a node. @param {number} index */
   function move(index) {
     slideTo(index);
-    context.keep({ cursor: String(Number((depths[index] * unit("measured_depth").size).toPrecision(DIGITS))) });
+    context.keep({ cursor: String(rounded(depths[index] * unit("measured_depth").size)) });
     show(index);
   }
 

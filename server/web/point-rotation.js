@@ -3,7 +3,7 @@
 import { Problem } from "./api.js";
 import { h } from "./dom.js";
 import { python, pythonNode } from "./lines.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { frames, snapshotsOf } from "./snapshots.js";
 import { say, shown, title } from "./units.js";
@@ -119,7 +119,7 @@ function sayTorqueOnBit({ scenario }) {
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
   const caption = h("figcaption", {});
-  const begin = works();
+  const begin = generations();
   const element = h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption));
   return {
     element,

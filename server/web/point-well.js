@@ -1,7 +1,7 @@
 // The well in space with the string in it at rest, coloured by a quantity.
 
 import { choice, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, inks, lineScale } from "./plots.js";
 import { pythonColumns, QUANTITIES, tableOf } from "./point-profiles.js";
@@ -23,7 +23,7 @@ export function well(context) {
   const caption = h("figcaption", {});
   const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
   const factor = () => exaggeration(query, USUAL);
-  const begin = works();
+  const begin = generations();
 
   async function redraw() {
     const isNewest = begin();

@@ -20,6 +20,14 @@ export function link(path, query = {}) {
   return `#/${path.map(encodeURIComponent).join("/")}${text ? `?${text}` : ""}`;
 }
 
+/** Digits of a number in a link. */
+const DIGITS = 7;
+
+/** @param {number} value @returns {number} as a link holds it */
+export function rounded(value) {
+  return Number(value.toPrecision(DIGITS));
+}
+
 /** @param {string} target a link as `link` makes it */
 export function go(target) {
   location.hash = target;

@@ -3,7 +3,7 @@
 import { get, Problem } from "./api.js";
 import { Biases } from "./bias.js";
 import { choice, debounced, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, DASHES, draw, LINES } from "./plots.js";
 import { go, link } from "./router.js";
@@ -33,7 +33,7 @@ export function difference(context) {
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
   const figure = h("figure", {}, place, caption);
-  const begin = works();
+  const begin = generations();
   const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
   const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250) });
   const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);

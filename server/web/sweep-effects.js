@@ -1,7 +1,7 @@
 // Which of the swept parameters matters to a result.
 
 import { choice, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, draw, LINES } from "./plots.js";
 import { LEAST_POINTS, shares } from "./sensitivity.js";
@@ -19,7 +19,7 @@ export function effects(context) {
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const empty = h("p", { class: "empty", hidden: true });
-  const begin = works();
+  const begin = generations();
   const pictures = h("div", {}, h("h2", {}, "How much of the variation each parameter explains"), h("figure", {}, bars, caption), h("h2", {}, "Mean over all other parameters"), h("figure", {}, curves, h("figcaption", {}, "Bars are standard errors of the means.")));
 
   function chosen() {

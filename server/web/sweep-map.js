@@ -1,7 +1,7 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { choice, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "./plots.js";
 import { link } from "./router.js";
@@ -41,7 +41,7 @@ export function map(context) {
     sayRegion();
     void adjust(place, { dragmode: "zoom", selections: [] });
   });
-  const begin = works();
+  const begin = generations();
   /** What the slice that was drawn last holds: a finer grid is of the slice that is shown. */
   let sliceBefore = "";
   const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;

@@ -1,12 +1,12 @@
 // All swept parameters and a few results side by side, a line a point.
 
 import { choice, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
 import { rangeFields } from "./parallel-ranges.js";
 import { canvas, colourBar, draw, lineScale } from "./plots.js";
-import { link } from "./router.js";
+import { link, rounded } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { label, say, shown, title, unit } from "./units.js";
 
@@ -24,7 +24,7 @@ export function parallel(context) {
   const reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
   const left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
   const controls = h("div", { class: "controls" });
-  const begin = works();
+  const begin = generations();
 
   function chosen() {
     const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
@@ -131,7 +131,7 @@ function written(dimensions) {
 
 /** @param {string} name @param {number[]} range in the unit in which it is shown */
 function writtenRange(name, range) {
-  return [name, ...range.map((end) => (Number.isFinite(end) ? Number((end * unit(name).size).toPrecision(7)) : ""))].join(":");
+  return [name, ...range.map((end) => (Number.isFinite(end) ? rounded(end * unit(name).size) : ""))].join(":");
 }
 
 /** The least and the largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */

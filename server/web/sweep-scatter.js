@@ -1,7 +1,7 @@
 // Clouds of points: any two columns against each other.
 
 import { choice, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "./plots.js";
 import { preferred, undelayed } from "./sweep-map.js";
@@ -20,7 +20,7 @@ export function scatter(context) {
   const place = canvas("Scatter of the points", "scatter", "tall", context.sweep.counts.total > MANY ? "whole" : "flat");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
-  const begin = works();
+  const begin = generations();
 
   function chosen() {
     const names = table.results();

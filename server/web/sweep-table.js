@@ -1,7 +1,7 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
 import { choice, debounced, fill, h } from "./dom.js";
-import { works } from "./newest.js";
+import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { link } from "./router.js";
 import { preferred } from "./sweep-map.js";
@@ -45,7 +45,7 @@ export function table(context) {
   let columns = [];
   /** @type {string[]} */
   let names = [];
-  const begin = works();
+  const begin = generations();
 
   async function redraw() {
     const isNewest = begin();

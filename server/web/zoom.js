@@ -1,11 +1,9 @@
 // The part of a picture that the reader has zoomed in to, kept in the link in the service's units: `zoom.map=x:0.01:0.02,y:1200:1500`,
 // or `zoom.well=camera:...` of a picture in space: its eye, its centre and, where its horizon is not level, what is upwards.
 
-import { keep, route } from "./router.js";
+import { keep, rounded, route } from "./router.js";
 import { unit } from "./units.js";
 
-/** Digits of an end. */
-const DIGITS = 7;
 /** Part of a range by which an end may differ from where it was drawn, and the picture counts as whole. */
 const SAME = 1e-6;
 /** By how much a horizon may be off the level [rad], and counts as level. */
@@ -66,7 +64,7 @@ export function keepZoom(key, place, layout, whole) {
     const width = Math.abs(drawn[1] - drawn[0]) || 1;
     if (now.every((/** @type {number} */ end, /** @type {number} */ index) => Math.abs(end - drawn[index]) <= SAME * width)) return [];
     const served = name === "camera" ? (now.slice(6).join() === UPRIGHT.join() ? now.slice(0, 6) : now) : now.map((/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end));
-    return [[name.replace("axis", ""), ...served.map((/** @type {number} */ end) => Number(end.toPrecision(DIGITS)))].join(":")];
+    return [[name.replace("axis", ""), ...served.map(rounded)].join(":")];
   });
   keep({ [`zoom.${key}`]: parts.join(",") });
 }

@@ -204,7 +204,7 @@ struct Missing {
 impl Files {
     /// Writes what the server answers; a problem that it answers with is noted.
     fn download(&mut self, client: &Client, path: &str, file: PathBuf) -> anyhow::Result<()> {
-        // A file is empty where the machine lost power before its bytes were on the disk.
+        // A file may be empty: the machine lost power before its bytes were on the disk.
         if self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() > 0) {
             self.written.push(file);
             return Ok(());

@@ -22,7 +22,7 @@ pub fn read_strictly<'de, T: Deserialize<'de>, D: Deserializer<'de>>(format: D) 
     T::deserialize(Strict(format))
 }
 
-/// A format, or a part of serde's conversation with it, whose structs and names are read strictly.
+/// A deserializer, visitor, seed or access of serde's that reads structs and names strictly.
 pub(super) struct Strict<T>(pub(super) T);
 
 impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
@@ -72,7 +72,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
     }
 }
 
-/// Declares methods of a visitor that hand on a value without parts.
+/// Declares methods of a visitor that hand on a scalar or text.
 macro_rules! hand_on {
     ($($method:ident($type:ty))*) => {$(
         fn $method<E: Error>(self, value: $type) -> Result<V::Value, E> {
@@ -118,7 +118,7 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<V> {
     }
 }
 
-/// The visitor of a struct, which takes objects. What it is not given reaches the visitor's own message of a wrong type.
+/// The visitor of a struct, which takes objects. All else is refused as of a wrong type, in the visitor's own words.
 struct Struct<V>(V);
 
 impl<'de, V: Visitor<'de>> Visitor<'de> for Struct<V> {

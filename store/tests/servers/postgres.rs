@@ -258,7 +258,7 @@ impl Drop for Server {
     }
 }
 
-/// Files of a new database, as all tests of a target directory share them: making them takes longer than most tests.
+/// The files of a new database, for all tests with this target directory to copy: `initdb` takes longer than most tests do.
 fn initialised() -> PathBuf {
     let version = program("initdb").arg("--version").output().expect("the version of PostgreSQL").stdout;
     let version = String::from_utf8_lossy(&version).replace(|sign: char| !sign.is_ascii_alphanumeric(), "-");

@@ -12,37 +12,12 @@ from service import binary
 
 STEPS = 10
 
-KERNELS = {
-    "esdirk4": {
-        "linalg::factor::Factor": 399_000,
-        "linalg::pair::MatrixPair": 167_000,
-        "transient::forces::Forces": 236_000,
-        "linalg::skew::SkewPart": 70_000,
-        "transient::forms::Forms": 58_000,
-        "": 1_042_000,
-    },
-    "generalized_alpha": {
-        "linalg::factor::Factor": 80_000,
-        "linalg::pair::MatrixPair": 33_500,
-        "transient::forces::Forces": 58_700,
-        "linalg::skew::SkewPart": 11_000,
-        "transient::forms::Forms": 9_600,
-        "": 248_600,
-    },
-    "rk4": {
-        "linalg::factor::Factor": 160_000,
-        "linalg::pair::MatrixPair": 100_000,
-        "transient::forces::Forces": 70_600,
-        "linalg::skew::SkewPart": 54_500,
-        "transient::forms::Forms": 48_000,
-        "": 501_600,
-    },
-}
-"""Instructions of one step of the paper's case (297 nodes, 150 in the wall) by method and kernel, with Rust 1.95; the
-empty name is all of the simulation's own. A change that lowers a count lowers it here too."""
+STEP = {"esdirk4": 1_060_000, "generalized_alpha": 252_500, "rk4": 508_400}
+"""Instructions of the simulation's own in one step of the paper's case (297 nodes, 150 in the wall) by method, with
+Rust 1.95 and without incremental compilation. A change that lowers a count lowers it here too."""
 
-MARGIN = 1.05
-"""What another processor or C library may add."""
+MARGIN = 0.05
+"""What another processor or C library may add, or incremental compilation save: it cuts the code into other units."""
 
 
 def counts(method: str, steps: int, folder: Path) -> Counter[str]:
@@ -62,20 +37,12 @@ def counts(method: str, steps: int, folder: Path) -> Counter[str]:
     return by_function
 
 
-@pytest.mark.parametrize("method", KERNELS)
+@pytest.mark.parametrize("method", STEP)
 def test_a_step_takes_no_more_instructions_than_it_did(method: str, tmp_path: Path) -> None:
     # What a run does before its first step is the same whatever its length.
     fewer, more = (counts(method, steps, tmp_path) for steps in (STEPS, 2 * STEPS))
-    step = {function: (more[function] - fewer[function]) / STEPS for function in more}
-    own = {function: count for function, count in step.items() if "drillsweep_sim" in function}
-    seen = {
-        kernel: round(sum(count for function, count in own.items() if kernel in function)) for kernel in KERNELS[method]
-    }
-    too_many = {
-        kernel: f"{count} of {KERNELS[method][kernel]}"
-        for kernel, count in seen.items()
-        if count > MARGIN * KERNELS[method][kernel]
-    }
-    assert not too_many, f"all counts: {seen}"
-    # A kernel that was renamed or became part of another function is looked for in vain.
-    assert all(count > 0.5 * KERNELS[method][kernel] for kernel, count in seen.items()), f"counts to update: {seen}"
+    step = Counter({name: (more[name] - fewer[name]) // STEPS for name in more if "drillsweep_sim" in name})
+    # The total only: which function an instruction stands in depends on what the compiler inlines.
+    total = step.total()
+    assert total <= (1 + MARGIN) * STEP[method], f"{total} of {STEP[method]}; most in {step.most_common(8)}"
+    assert total >= (1 - MARGIN) * STEP[method], f"{total} of {STEP[method]}: the count to hold is lower"

@@ -3,10 +3,11 @@
 import { Problem } from "./api.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./compare-many.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./compare-tables.js";
+import { h } from "./dom.js";
 import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
 import { colourBar, draw, inks, lineScale } from "./plots.js";
 import { ACCOUNTS, ledger } from "./point-energy.js";
-import { drawProfiles, QUANTITIES, tableOf } from "./point-profiles.js";
+import { drawProfiles, nodeDepths, QUANTITIES, reading, tableOf } from "./point-profiles.js";
 import { displaced, exaggeration, onNodes, saysExaggeration } from "./point-well.js";
 import { label, say, shown, title, unit } from "./units.js";
 
@@ -34,6 +35,8 @@ const APART = 0.12;
  * @property {string[]} lacking sentences about what points lack, which a view adds to
  * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to
+ * @property {{depths: number[], read: (depth: number, told: any[]) => import("./dom.js").Child[]} | null} [profiled] what a cursor reads of the
+ *   picture, of which a view says it, as `depthCursor` takes it
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
  * @property {AbortSignal} signal of the view, whose one picture stays while it is drawn anew
  * @property {AbortSignal} drawing the same, which ends as well when what is shown is asked for anew: of requests, and of what is made anew
@@ -132,8 +135,12 @@ async function drawQuantities(place, comparison) {
     const found = await each(comparison, (point) => comparison.table(point, name), parts);
     for (const [point, table] of found) tables.set(point.number, { ...tables.get(point.number), [name]: table });
   }
-  const drawable = comparison.points.filter((point) => tables.has(point.number));
-  return drawProfiles(place, profiles, drawable.map((point) => ({ ...point, table: (name) => tables.get(point.number)?.[tableOf(name)] })), comparison.signal);
+  const drawable = comparison.points.filter((point) => tables.has(point.number)).map((point) => ({ ...point, table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)] }));
+  comparison.profiled = {
+    depths: drawable.length ? nodeDepths(profiles, drawable[0].table) : [],
+    read: (depth, told) => drawable.map((point) => h("p", {}, `${point.name}: ${reading(profiles, point.table, depth, told.filter(({ data }) => data.name === point.name))}`)),
+  };
+  return drawProfiles(place, profiles, drawable, comparison.signal);
 }
 
 /**

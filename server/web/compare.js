@@ -5,6 +5,7 @@ import { dragWindow } from "./brush.js";
 import { endOf, rangeOf } from "./compare-many.js";
 import { comparedRange, comparedRate, energyAccount, VIEWS, wellColour, wellFactor } from "./compare-views.js";
 import { comparedIn, MOST, rememberComparison } from "./comparison.js";
+import { depthCursor } from "./depth-cursor.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { lines, python, pythonNode, requestLines } from "./lines.js";
 import { attend } from "./notices.js";
@@ -166,6 +167,10 @@ export async function show(main, route, signal) {
   /** Tables that points are drawn from, by their numbers, where the view has a choice. @type {Map<number, string>} */
   let sources = new Map();
 
+  /** What the points' profiles are at a depth. @type {NonNullable<import("./compare-views.js").Comparison["profiled"]>["read"]} */
+  let readAt = () => [];
+  const cursor = depthCursor(place, { query, keep: remember }, (depth, told) => readAt(depth, told));
+
   async function redraw() {
     latest.abort();
     latest = new AbortController();
@@ -192,7 +197,11 @@ export async function show(main, route, signal) {
     // Of modes and effects the service computes for seconds.
     if (kind && isRecorded && !place.hasChildNodes()) fill(place, loading);
     try {
-      if (isRecorded) await VIEWS[view].draw(place, comparison);
+      const shape = isRecorded && (await VIEWS[view].draw(place, comparison));
+      if (!drawing.aborted && comparison.profiled) {
+        readAt = comparison.profiled.read;
+        cursor.follow(shape, comparison.profiled.depths);
+      }
     } catch (error) {
       if (!drawing.aborted) throw error;
     } finally {
@@ -254,7 +263,7 @@ export async function show(main, route, signal) {
       unknown.map(({ key, text }) => h("p", { class: "wrong" }, `${text} `, takeOut(key, "it"))),
       adding,
     ),
-    points.length > 0 && [h("div", { style: "height:1rem" }), tabs, h("section", { class: "panel", "aria-label": "Picture" }, controls, lacking, h("figure", {}, view === "profiles" ? scrolled(place) : place, caption)), taken],
+    points.length > 0 && [h("div", { style: "height:1rem" }), tabs, h("section", { class: "panel", "aria-label": "Picture" }, controls, lacking, h("figure", {}, view === "profiles" ? scrolled(place) : place, caption), view === "profiles" && cursor.element), taken],
   );
   if (points.length) {
     drawControls();

@@ -1,11 +1,11 @@
 // Quantities over depth, side by side with one depth cursor.
 
-import { fill, h } from "./dom.js";
+import { depthCursor, nearest } from "./depth-cursor.js";
+import { h } from "./dom.js";
 import { python } from "./lines.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
-import { adjust, canvas, draw, inks, LINES } from "./plots.js";
-import { rounded } from "./router.js";
+import { canvas, draw, inks, LINES } from "./plots.js";
 import { label, meaning, say, shown, title, unit } from "./units.js";
 
 /** Quantities over depth, and the table that has each. @type {[string, string][]} */
@@ -27,9 +27,6 @@ export const QUANTITIES = [
   ["friction_gradient", "profile"],
   ["radius", "statics"],
 ];
-
-/** Keys that move the cursor, and by how many nodes; what is deeper is below, as in the picture. @type {Record<string, number>} */
-const STEPS = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -Infinity, End: Infinity };
 
 const USUAL = ["friction_coefficient", "rotation_damping", "eccentricity", "effective_tension", "torque", "largest_normal_force"];
 
@@ -122,19 +119,13 @@ export function quantityTicks(chosen, onChange) {
  */
 export function profiles(context) {
   const place = canvas("Profiles over measured depth", "profiles", "tall");
-  const reading = h("p", { class: "small soft", role: "status" }, "Point at a depth, or move the cursor, to read all profiles there.");
-  const slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: "0", disabled: true, "aria-label": "Depth cursor", onkeydown: stepped, oninput: () => move(slider.valueAsNumber) });
-  const cursor = h("label", { class: "field wide" }, h("span", {}, "Depth cursor: arrow keys move it by a node, Page Up and Page Down by ten, Home and End to the ends"), slider);
   const ticks = quantityTicks(context.query.get("profiles") ?? "", (names) => {
     context.keep({ profiles: names.join(",") });
     attend(redraw(), context.signal);
   });
   /** @type {Record<string, any>} */
   const tables = {};
-  /** Depths of the nodes downwards, in the unit in which they are shown. @type {number[]} */
-  let depths = [];
-  /** Whether the picture has a line where the cursor was moved to. */
-  let isMarked = false;
+  const cursor = depthCursor(place, context, (depth, told) => reading(ticks.names(), (name) => tables[tableOf(name)], depth, told));
   const begin = generations();
 
   async function redraw() {
@@ -144,81 +135,11 @@ export function profiles(context) {
     await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
     if (!isNewest()) return;
     const shape = await drawProfiles(place, names, [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }], context.signal);
-    shape.removeAllListeners?.("plotly_hover");
-    shape.on?.("plotly_hover", (/** @type {any} */ event) => {
-      const { y } = event.points[0];
-      slideTo(nearest(depths, y));
-      // The mouse has a line of its own.
-      if (isMarked) mark(null);
-      read(y, event.points);
-    });
-    depths = [...new Set(has(names).slice(0, 1).flatMap((name) => overDepth(name, tables[tableOf(name)]).depth))].map(Number);
-    Object.assign(slider, { max: String(depths.length - 1), disabled: !depths.length });
-    const asked = context.query.has("cursor") ? Number(context.query.get("cursor")) : NaN;
-    slideTo(Number.isFinite(asked) ? nearest(depths, asked / unit("measured_depth").size) : 0);
-    if (Number.isFinite(asked)) show(slider.valueAsNumber);
-  }
-
-  /** Those of some quantities that the tables have. @param {string[]} names */
-  function has(names) {
-    return names.filter((name) => tables[tableOf(name)]?.columns[name]);
-  }
-
-  /** @param {KeyboardEvent} event */
-  function stepped(event) {
-    const step = STEPS[event.key];
-    if (!step || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    move(Math.max(0, Math.min(depths.length - 1, slider.valueAsNumber + step)));
-  }
-
-  /** Moves the cursor to a node. @param {number} index */
-  function move(index) {
-    slideTo(index);
-    context.keep({ cursor: String(rounded(depths[index] * unit("measured_depth").size)) });
-    show(index);
-  }
-
-  /** @param {number} index of a node */
-  function slideTo(index) {
-    slider.value = String(index);
-    slider.setAttribute("aria-valuetext", depthOf(depths[index] ?? 0));
-  }
-
-  /** Shows and reads what is at a node. @param {number} index */
-  function show(index) {
-    mark(depths[index]);
-    read(depths[index], []);
-  }
-
-  /** Draws a line at a depth, or none. @param {number | null} depth */
-  function mark(depth) {
-    isMarked = depth !== null;
-    void adjust(place, { shapes: isMarked ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: depth, y1: depth, line: { color: inks().text, width: 1 } }] : [] });
-  }
-
-  /** @param {number} depth in the unit in which it is shown */
-  function depthOf(depth) {
-    return say("measured_depth", depth * unit("measured_depth").size);
-  }
-
-  /**
-   * Says in a line what the picture says at its curves; at the end of an element that is the same of both.
-   * @param {number} depth
-   * @param {any[]} points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
-   */
-  function read(depth, points) {
-    const words = has(ticks.names()).map((name) => {
-      const { value, depth: own } = overDepth(name, tables[tableOf(name)]);
-      const told = points.find((point) => point.data.meta === name);
-      const seen = told ? told.x : value[nearest(own, depth)];
-      return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
-    });
-    fill(reading, `At ${depthOf(depth)}: ${words.join(" · ")}`);
+    cursor.follow(shape, nodeDepths(names, (name) => tables[tableOf(name)]));
   }
 
   return {
-    element: h("div", {}, ticks.element, h("figure", {}, scrolled(place)), cursor, reading),
+    element: h("div", {}, ticks.element, h("figure", {}, scrolled(place)), cursor.element),
     draw: redraw,
     request: () => {
       const asked = profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
@@ -228,9 +149,30 @@ export function profiles(context) {
   };
 }
 
-/** Where in a list the depth is that is nearest to another; the first of equals. @param {(number | null)[]} depths @param {number} depth */
-function nearest(depths, depth) {
-  return depths.reduce((/** @type {number} */ best, entry, index) => (Math.abs(Number(entry) - depth) < Math.abs(Number(depths[best]) - depth) ? index : best), 0);
+/**
+ * Depths of the nodes downwards, of the first quantity that is there, in the unit in which they are shown.
+ * @param {string[]} names
+ * @param {(name: string) => any} table of a quantity
+ */
+export function nodeDepths(names, table) {
+  const first = names.find((name) => table(name)?.columns[name]);
+  return first ? [...new Set(overDepth(first, table(first)).depth)].map(Number) : [];
+}
+
+/**
+ * Says in a line what the picture says at a depth; at the end of an element that is the same of both.
+ * @param {string[]} names
+ * @param {(name: string) => any} table of a quantity
+ * @param {number} depth in the unit in which it is shown
+ * @param {any[]} told points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
+ */
+export function reading(names, table, depth, told) {
+  const words = names.filter((name) => table(name)?.columns[name]).map((name) => {
+    const { value, depth: own } = overDepth(name, table(name));
+    const seen = told.find((point) => point.data.meta === name)?.x ?? value[nearest(own, depth)];
+    return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
+  });
+  return words.join(" · ");
 }
 
 /**

@@ -3,14 +3,14 @@
 import { choice, fill, h } from "./dom.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
+import { axisControls } from "./parallel-controls.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
-import { rangeFields } from "./parallel-ranges.js";
 import { canvas, colourBar, draw, lineScale } from "./plots.js";
 import { link, rounded } from "./router.js";
 import { preferred, undelayed } from "./sweep-map.js";
 import { label, say, shown, title, unit } from "./units.js";
 
-const HOW = "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name to move it. Point at a line to read its values.";
+const HOW = "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
 /**
  * Dragging along an axis keeps what passes there.
@@ -38,11 +38,36 @@ export function parallel(context) {
   let toldOf = () => {};
   followLines(place, (line) => toldOf(line), context.signal);
 
-  const fields = rangeFields((name, ranges) => {
+  const fields = axisControls((name, ranges) => {
     const others = (query.get("brush") ?? "").split(",").filter((part) => part && part.split(":")[0] !== name);
     context.keep({ brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null });
     attend(redraw(), context.signal);
+  }, (name, places) => {
+    const names = namesInOrder();
+    const at = names.indexOf(name);
+    [names[at], names[at + places]] = [names[at + places], name];
+    keepOrder(names);
+    attend(redraw(), context.signal);
   });
+
+  /** The axes' names in their usual order. */
+  function usualNames() {
+    const { colour, beside } = chosen();
+    return [...new Set([...axes, beside, colour])];
+  }
+
+  /** The same in the order of the link. */
+  function namesInOrder() {
+    const usual = usualNames();
+    const moved = (query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
+    return [...new Set([...moved, ...usual])];
+  }
+
+  /** @param {string[]} names */
+  function keepOrder(names) {
+    const order = names.join(",");
+    context.keep({ order: order === usualNames().join(",") ? null : order });
+  }
 
   /** Says to which stretches points are kept in the picture, and how many are. @param {import("./parallel-lines.js").Dimension[]} dimensions */
   function tell(dimensions) {
@@ -62,9 +87,7 @@ export function parallel(context) {
     };
     const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));
-    const usual = [...new Set([...axes, beside, colour])];
-    const moved = (query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
-    const names = [...new Set([...moved, ...usual])];
+    const names = namesInOrder();
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
     if (!isNewest()) return;
     const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
@@ -86,8 +109,8 @@ export function parallel(context) {
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => {
       const { dimensions } = shape.data[0];
-      const order = dimensions.map((/** @type {{name: string}} */ { name }) => name).join(",");
-      context.keep({ brush: written(dimensions) || null, order: order === usual.join(",") ? null : order });
+      context.keep({ brush: written(dimensions) || null });
+      keepOrder(dimensions.map((/** @type {{name: string}} */ { name }) => name));
       tell(dimensions);
     });
   }
@@ -101,10 +124,7 @@ export function parallel(context) {
   return {
     element: h("div", {}, controls, h("figure", {}, place, reading, left, caption), fields.element),
     draw: undelayed(redraw, context),
-    fields: () => {
-      const { colour, beside } = chosen();
-      return [...new Set(["ordinal", ...axes, beside, colour])];
-    },
+    fields: () => ["ordinal", ...usualNames()],
   };
 }
 

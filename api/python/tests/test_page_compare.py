@@ -403,6 +403,36 @@ def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> 
     assert 10 ** scales[0][1] == pytest.approx(1e3 * most, rel=1e-6)
 
 
+def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: Sweep) -> None:
+    ordinals = (1, 3)
+    points = ",".join(key(named, ordinal) for ordinal in ordinals)
+    page = opened(f"#/compare?points={points}&view=profiles&profiles=effective_tension,normal_force")
+    picture = drawn(page, "Profiles")
+    depths = named.point(1).statics()["measured_depth"]
+    line = "place => (place.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
+    cursor = page.get_by_role("slider", name="Depth cursor")
+    cursor.focus()
+    for _ in range(3):
+        page.keyboard.press("PageDown")
+    depth = float(depths[30])
+    until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
+    reading = page.get_by_role("status").filter(has_text=re.compile("^At "))
+    # Of the element above the node.
+    tensions = [float(named.point(ordinal).profile()["effective_tension"][29]) / 1e3 for ordinal in ordinals]
+    assert tensions[0] != pytest.approx(tensions[1], rel=2e-3)
+    expect(reading.get_by_role("paragraph")).to_have_count(len(ordinals))
+    for number, tension in enumerate(tensions, 1):
+        text = reading.get_by_role("paragraph").nth(number - 1).inner_text()
+        words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*normal force \S+ k?N", text)
+        assert words is not None, text
+        assert float(words.group(1)) == pytest.approx(tension, rel=1e-3)
+    # The link holds where the cursor is.
+    other = opened(f"#{page.url.partition('#')[2]}")
+    copy = drawn(other, "Profiles")
+    until(other, lambda: copy.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
+    expect(other.get_by_role("status").filter(has_text=re.compile("^At "))).to_have_text(reading.text_content() or "")
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_no_view_of_a_comparison_keeps_anybody_out(
     opened: Opens, server: str, named: Sweep, elsewhere: Sweep, theme: Literal["light", "dark"], troubles: list[str]

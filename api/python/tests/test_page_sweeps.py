@@ -947,6 +947,34 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     assert drawn(copy, "Parallel coordinates").evaluate(order) == moved
 
 
+def test_axes_of_parallel_coordinates_are_moved_by_the_keyboard(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
+    picture = drawn(page, "Parallel coordinates")
+    order = "place => place.data[0].dimensions.map(({ name }) => name)"
+    usual = picture.evaluate(order)
+    assert usual[0] == "flow_rate"
+    page.locator("summary", has_text="move axes").click()
+    right, left = (page.get_by_role("button", name=f"Move flow rate [m³/s] {where}") for where in ("right", "left"))
+    orders = [[*usual[1 : place + 1], "flow_rate", *usual[place + 1 :]] for place in range(len(usual))]
+
+    def shows(names: list[str]) -> None:
+        until(page, lambda: picture.evaluate(order) == names)
+
+    right.focus()
+    for names in orders[1:]:
+        page.keyboard.press("Enter")
+        shows(names)
+        assert f"order={'%2C'.join(names)}" in page.url
+        expect(right).to_be_focused()
+    expect(right).to_have_attribute("aria-disabled", "true")
+    page.keyboard.press("Enter")
+    left.focus()
+    for names in reversed(orders[:-1]):
+        page.keyboard.press("Enter")
+        shows(names)
+    assert "order=" not in page.url
+
+
 LEFT = """({ url }) => {
     const [real, later] = [fetch, setTimeout];
     // Slower machines take longer to show the other view than the library waits for data.

@@ -1,10 +1,13 @@
-// Fields for the stretches of axes to which points are kept: what dragging along an axis does, for who has no mouse.
+// What dragging does in parallel coordinates, for who has no mouse: fields for the stretches of axes to which points are kept, and buttons that
+// move an axis.
 
 import { fill, h } from "./dom.js";
 import { rounded } from "./router.js";
 import { number, title } from "./units.js";
 
 const SIDES = ["from", "to"];
+/** Where an axis is moved, and by how many places. @type {[string, number][]} */
+const MOVES = [["left", -1], ["right", 1]];
 
 /**
  * An axis in the unit in which it is shown: the ends of its values, and its stretches, whose ends may be infinite.
@@ -13,9 +16,10 @@ const SIDES = ["from", "to"];
 
 /**
  * @param {(name: string, ranges: number[][]) => void} onChange
+ * @param {(name: string, places: number) => void} onMove
  * @returns {{element: HTMLElement, show: (axes: Axis[]) => void}} `show` says what holds
  */
-export function rangeFields(onChange) {
+export function axisControls(onChange, onMove) {
   const body = h("div", {});
   /** What the fields are for. */
   let made = "";
@@ -47,17 +51,26 @@ export function rangeFields(onChange) {
   /** @param {Axis[]} axes */
   function make(axes) {
     inputs.clear();
-    const parts = axes.map((axis) => {
+    const parts = axes.map((axis, place) => {
       const name = title(axis.name);
       const pairs = rangesOf(axis).map((_, order) => SIDES.map((side, index) => h("input", { type: "number", step: "any", placeholder: number(axis.ends[index]), "aria-label": `${name}, ${side}${order ? `, stretch ${order + 1}` : ""}`, onchange: () => take(axis.name) })));
       inputs.set(axis.name, pairs);
       const fields = pairs.flatMap((pair) => pair.map((input, index) => h("label", { class: "field" }, h("span", {}, SIDES[index]), input)));
-      return h("fieldset", {}, h("legend", {}, name), h("div", { class: "controls" }, fields));
+      const moves = MOVES.map(([where, by]) => moveButton(`Move ${name} ${where}`, where, axes[place + by] ? () => onMove(axis.name, by) : null));
+      return h("fieldset", {}, h("legend", {}, name), h("div", { class: "controls" }, fields, moves));
     });
     fill(body, h("p", { class: "small soft" }, "An end that is left empty is that of the axis."), h("div", { class: "ranges" }, parts));
   }
 
-  return { element: h("details", {}, h("summary", {}, "Keep points by numbers"), body), show };
+  /**
+   * A button that goes with its axis. At the end of the row it stays, without an effect, so that the keyboard's focus has a place.
+   * @param {string} name @param {string} where @param {(() => void) | null} move
+   */
+  function moveButton(name, where, move) {
+    return h("button", { type: "button", "aria-label": name, "aria-disabled": move ? null : "true", onclick: move }, `Move ${where}`);
+  }
+
+  return { element: h("details", {}, h("summary", {}, "Keep points by numbers, move axes"), body), show };
 }
 
 /** The stretches of an axis; one that is to be given, where it has none. @param {Axis} axis */

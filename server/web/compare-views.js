@@ -15,6 +15,8 @@ import { label, say, shown, title, unit } from "./units.js";
 const SHOWN = 6000;
 /** Clearances that differ by less are one [m]. */
 const SAME_CLEARANCE = 1e-6;
+/** Part of a depth below which the ends of two strings are one. */
+const SAME_END = 1e-6;
 /** How many times a string's distance from the axis of its hole is drawn, unless the link says so. */
 const EXAGGERATION = 100;
 /** Part of a well's length by which coloured wells are drawn aside of each other. */
@@ -35,8 +37,8 @@ const APART = 0.12;
  * @property {string[]} lacking sentences about what points lack, which a view adds to
  * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to
- * @property {{depths: number[], read: (depth: number, told: any[]) => import("./dom.js").Child[]} | null} [profiled] what a cursor reads of the
- *   picture, of which a view says it, as `depthCursor` takes it
+ * @property {{depths: number[], read: (depth: number, told: any[]) => import("./dom.js").Child[]}} [profiled] what a depth cursor reads of a
+ *   view over depth, which sets it
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
  * @property {AbortSignal} signal of the view, whose one picture stays while it is drawn anew
  * @property {AbortSignal} drawing the same, which ends as well when what is shown is asked for anew: of requests, and of what is made anew
@@ -136,9 +138,12 @@ async function drawQuantities(place, comparison) {
     for (const [point, table] of found) tables.set(point.number, { ...tables.get(point.number), [name]: table });
   }
   const drawable = comparison.points.filter((point) => tables.has(point.number)).map((point) => ({ ...point, table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)] }));
+  const nodes = new Map(drawable.map((point) => [point.number, nodeDepths(profiles, point.table)]));
+  const endOfString = (/** @type {number} */ number) => nodes.get(number)?.at(-1) ?? -Infinity;
+  const deepest = drawable.reduce((/** @type {number} */ best, { number }) => (endOfString(number) > endOfString(best) ? number : best), drawable[0]?.number);
   comparison.profiled = {
-    depths: drawable.length ? nodeDepths(profiles, drawable[0].table) : [],
-    read: (depth, told) => drawable.map((point) => h("p", {}, `${point.name}: ${reading(profiles, point.table, depth, told.filter(({ data }) => data.name === point.name))}`)),
+    depths: nodes.get(deepest) ?? [],
+    read: (depth, told) => drawable.map((point) => h("p", {}, `${point.name}: ${depth > endOfString(point.number) * (1 + SAME_END) ? "its string ends above" : reading(profiles, point.table, depth, told.filter(({ data }) => data.name === point.name))}`)),
   };
   return drawProfiles(place, profiles, drawable, comparison.signal);
 }

@@ -15,9 +15,10 @@ const MOVES = [["left", -1], ["right", 1]];
  */
 
 /**
- * @param {(name: string, ranges: number[][]) => void} onChange
- * @param {(name: string, places: number) => void} onMove
- * @returns {{element: HTMLElement, show: (axes: Axis[]) => void}} `show` says what holds
+ * The controls of all axes, a group for each.
+ * @param {(name: string, ranges: number[][]) => void} onChange of an axis's stretches
+ * @param {(name: string, places: number) => void} onMove of an axis, to the right or, where negative, to the left
+ * @returns {{element: HTMLElement, show: (axes: Axis[]) => void}} `show` fills them with what holds
  */
 export function axisControls(onChange, onMove) {
   const body = h("div", {});

@@ -45,8 +45,11 @@ export function parallel(context) {
   }, (name, places) => {
     const names = namesInOrder();
     const at = names.indexOf(name);
-    [names[at], names[at + places]] = [names[at + places], name];
-    keepOrder(names);
+    const to = at + places;
+    // Pressed again before it is redrawn, a button may lead beyond the end of the row.
+    if (!names[to]) return;
+    [names[at], names[to]] = [names[to], name];
+    context.keep(inLink(names));
     attend(redraw(), context.signal);
   });
 
@@ -63,10 +66,10 @@ export function parallel(context) {
     return [...new Set([...moved, ...usual])];
   }
 
-  /** @param {string[]} names */
-  function keepOrder(names) {
+  /** An order as the link holds it; the usual one it does not. @param {string[]} names */
+  function inLink(names) {
     const order = names.join(",");
-    context.keep({ order: order === usualNames().join(",") ? null : order });
+    return { order: order === usualNames().join(",") ? null : order };
   }
 
   /** Says to which stretches points are kept in the picture, and how many are. @param {import("./parallel-lines.js").Dimension[]} dimensions */
@@ -109,8 +112,7 @@ export function parallel(context) {
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => {
       const { dimensions } = shape.data[0];
-      context.keep({ brush: written(dimensions) || null });
-      keepOrder(dimensions.map((/** @type {{name: string}} */ { name }) => name));
+      context.keep({ brush: written(dimensions) || null, ...inLink(dimensions.map((/** @type {{name: string}} */ { name }) => name)) });
       tell(dimensions);
     });
   }

@@ -433,6 +433,22 @@ def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: S
     expect(other.get_by_role("status").filter(has_text=re.compile("^At "))).to_have_text(reading.text_content() or "")
 
 
+def test_below_the_end_of_a_string_there_is_nothing_to_read(opened: Opens, client: Client, named: Sweep) -> None:
+    changes = {**SHORT, "string.sections[0].length": 3.0, "string.gauges[2].measured_depth": 198.0}
+    shorter = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.014]}, name="shorter").wait(timeout=120.0)
+    assert shorter.counts.succeeded == 1
+    end = float(shorter.point(1).statics()["measured_depth"][-1])
+    last = float(named.point(1).statics()["measured_depth"][-1])
+    assert end < last - 0.5
+    page = opened(f"#/compare?points={key(shorter)},{key(named)}&view=profiles&profiles=effective_tension")
+    drawn(page, "Profiles")
+    page.get_by_role("slider", name="Depth cursor").focus()
+    page.keyboard.press("End")
+    readings = page.get_by_role("status").filter(has_text=re.compile("^At ")).get_by_role("paragraph")
+    expect(readings.nth(0)).to_have_text(re.compile("^1: .*: its string ends above$"))
+    expect(readings.nth(1)).to_have_text(re.compile(r"^2: .*: effective tension \S+ kN$"))
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_no_view_of_a_comparison_keeps_anybody_out(
     opened: Opens, server: str, named: Sweep, elsewhere: Sweep, theme: Literal["light", "dark"], troubles: list[str]

@@ -85,7 +85,7 @@ pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
     let source_use = if arguments.while_running { SourceUse::Running } else { SourceUse::Idle };
     let bar = ProgressBar::no_length();
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} tables of results, {msg}")?);
-    let show = |progress| match progress {
+    let mut show = |progress| match progress {
         TransferProgress::Blobs { done, of } => {
             bar.set_length(of);
             bar.set_position(done);
@@ -95,7 +95,7 @@ pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
         TransferProgress::Compared(table) => bar.set_message(format!("comparing the rows of {table}")),
     };
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
-    let report = runtime.block_on(transfer(&source, &target, source_use, show));
+    let report = runtime.block_on(transfer(&source, &target, source_use, &mut show));
     bar.finish_and_clear();
     let report = report.with_context(|| {
         format!("the store was not carried over to {} and {}", target.database, target.objects)

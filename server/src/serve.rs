@@ -60,8 +60,18 @@ pub fn serve(
     config: Config,
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> BoxFuture<'static, Result<(), ServeError>> {
-    // Boxed, as its argument is, so that what it calls is compiled with this crate, and not again in each that calls it.
-    Box::pin(serve_until_drained(listeners, store, config, Box::pin(shutdown)))
+    boxed(listeners, store, config, Box::pin(shutdown))
+}
+
+/// Without a parameter in its types, and with a boxed future, so that all that serves is compiled in this crate, and not in the one that
+/// calls it.
+fn boxed(
+    listeners: Listeners,
+    store: Store,
+    config: Config,
+    shutdown: BoxFuture<'static, ()>,
+) -> BoxFuture<'static, Result<(), ServeError>> {
+    Box::pin(serve_until_drained(listeners, store, config, shutdown))
 }
 
 async fn serve_until_drained(

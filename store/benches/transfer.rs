@@ -60,7 +60,7 @@ async fn carry(what: &str, from: &StoreConfig, to: &StoreConfig, points: u64) {
     forget_peak();
     let (began, processor) = (Instant::now(), processor_time());
     let mut parts: Vec<(String, Instant)> = Vec::new();
-    let carried = transfer(from, to, SourceUse::Idle, |progress| {
+    let mut show = |progress| {
         let part = match progress {
             TransferProgress::Blobs { .. } => "blobs".to_owned(),
             TransferProgress::Rows(table) => format!("rows of {table}"),
@@ -69,8 +69,8 @@ async fn carry(what: &str, from: &StoreConfig, to: &StoreConfig, points: u64) {
         if parts.last().is_none_or(|(last, _)| *last != part) {
             parts.push((part, Instant::now()));
         }
-    });
-    let report = carried.await.expect("carried over");
+    };
+    let report = transfer(from, to, SourceUse::Idle, &mut show).await.expect("carried over");
     let seconds = began.elapsed().as_secs_f64();
     println!(
         "{what}: {seconds:.1} s, {:.0} points a second, {:.1} s of processor time, at most {:.0} MB of memory, {} blobs of {:.0} MB, {} rows",

@@ -9,6 +9,7 @@ mod table;
 
 use std::time::Duration;
 
+use futures::future::LocalBoxFuture;
 use futures::{StreamExt, TryStreamExt, stream};
 
 use self::table::Table;
@@ -133,11 +134,21 @@ pub enum TransferError {
 ///
 /// # Errors
 /// When one of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
-pub async fn transfer(
+pub fn transfer<'a>(
+    source: &'a StoreConfig,
+    target: &'a StoreConfig,
+    source_use: SourceUse,
+    progress: &'a mut dyn FnMut(TransferProgress),
+) -> LocalBoxFuture<'a, Result<TransferReport, TransferError>> {
+    // Boxed, so that it is compiled with this crate.
+    Box::pin(carry_over(source, target, source_use, progress))
+}
+
+async fn carry_over(
     source: &StoreConfig,
     target: &StoreConfig,
     source_use: SourceUse,
-    mut progress: impl FnMut(TransferProgress),
+    progress: &mut dyn FnMut(TransferProgress),
 ) -> Result<TransferReport, TransferError> {
     if is_same(&source.database, &target.database) {
         return Err(TransferError::Itself);
@@ -160,7 +171,7 @@ pub async fn transfer(
     empty.rollback().await?;
 
     let mut report = TransferReport::default();
-    copy_blobs(&source, &mut snapshot, &target, &mut report, &mut progress).await?;
+    copy_blobs(&source, &mut snapshot, &target, &mut report, progress).await?;
     let mut writing = target.write().await?;
     // Somebody may have come meanwhile.
     refuse_rows(&target_tables, &mut writing).await?;
@@ -231,7 +242,7 @@ async fn copy_blobs(
     snapshot: &mut Transaction,
     target: &Store,
     report: &mut TransferReport,
-    progress: &mut impl FnMut(TransferProgress),
+    progress: &mut dyn FnMut(TransferProgress),
 ) -> Result<(), StoreError> {
     let of: i64 = query(sql::transfer::COUNT_BLOBS).scalar(&mut *snapshot).await?;
     let of = of.unsigned_abs();

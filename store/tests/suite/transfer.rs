@@ -157,8 +157,9 @@ async fn a_store_that_is_there_and_the_store_itself_are_not_written_to() {
     {
         engine.open().await.close().await;
         let before = dump(&local).await;
-        let refused =
-            transfer(&engine.config(Role::Server, 0), &target, SourceUse::Idle, |_| {}).await.unwrap_err();
+        let refused = transfer(&engine.config(Role::Server, 0), &target, SourceUse::Idle, &mut |_| {})
+            .await
+            .unwrap_err();
         assert!(matches!(refused, TransferError::Itself | TransferError::NotEmpty(_)), "{refused}");
         assert_eq!(dump(&local).await, before);
     }
@@ -166,7 +167,7 @@ async fn a_store_that_is_there_and_the_store_itself_are_not_written_to() {
     let refused = carry(&local, &remote).await.unwrap_err();
     assert!(matches!(refused, TransferError::NotEmpty("scenario")), "{refused}");
     let [itself, config] = [remote.config(Role::Server, 0), remote.config(Role::Worker, 0)];
-    let refused = transfer(&itself, &config, SourceUse::Idle, |_| {}).await.unwrap_err();
+    let refused = transfer(&itself, &config, SourceUse::Idle, &mut |_| {}).await.unwrap_err();
     assert!(matches!(refused, TransferError::Itself), "{refused}");
 }
 
@@ -225,7 +226,7 @@ async fn carry_while(
     to: &impl Engine,
     source_use: SourceUse,
 ) -> Result<TransferReport, TransferError> {
-    transfer(&from.config(Role::Worker, 0), &to.config(Role::Worker, 0), source_use, |_| {}).await
+    transfer(&from.config(Role::Worker, 0), &to.config(Role::Worker, 0), source_use, &mut |_| {}).await
 }
 
 /// A sweep with points in every final and waiting state, and runs that verify some.

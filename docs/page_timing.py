@@ -1,6 +1,8 @@
 """How fast the web page is, and what it transfers: `python docs/page_timing.py SERVER SWEEP`.
 
-The sweep has complete points with histories; that of point 1 is shown and brushed. Prints a Markdown table of medians.
+The sweep has complete points with histories; that of point 1 is shown and brushed. Prints a Markdown table of medians,
+each time of a browser that has just been started with an empty profile on disk, as a reader's own browser has one: what
+it keeps of a page, for a private window it keeps otherwise.
 
 A view is there once it has its numbers, and its picture is seen: sketched, or drawn by the drawing library. Once the
 latter has drawn it, the picture answers to the mouse as well.
@@ -9,14 +11,19 @@ latter has drawn it, the picture answers to the mouse as well.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from itertools import pairwise
 from statistics import median
+from tempfile import TemporaryDirectory
 
-from playwright.sync_api import BrowserContext, Page, sync_playwright
+from playwright.sync_api import BrowserContext, Page, Playwright, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
+PAUSE_MS = 1000
+"""Between two loads of a page, and after the start of the browser [ms]: it writes its cache, and comes to rest."""
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
@@ -88,12 +95,26 @@ def views(sweep: str) -> list[View]:
     ]
 
 
+@contextmanager
+def started(playwright: Playwright) -> Iterator[BrowserContext]:
+    """A browser with an empty profile on disk, at rest."""
+    with TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        context = playwright.chromium.launch_persistent_context(
+            profile, executable_path=CHROMIUM, args=OPTIONS, viewport={"width": 1400, "height": 900}
+        )
+        context.pages[0].wait_for_timeout(PAUSE_MS)
+        yield context
+        context.close()
+
+
 def opened(context: BrowserContext, server: str, link: str, selector: str) -> tuple[float, float]:
     """Milliseconds from the start of loading until something is there, and bytes transferred for it."""
     page = context.new_page()
     page.goto(f"{server}/{link}", wait_until="commit")
     _, time = page.evaluate(SHOWN, [None, selector])
     size = page.evaluate(BYTES)
+    page.wait_for_load_state("networkidle")
+    page.wait_for_timeout(PAUSE_MS)
     page.close()
     return time, size
 
@@ -182,14 +203,12 @@ def main() -> None:
     parser.add_argument("--difference", metavar="OTHER", help="measure the map of another sweep's differences alone")
     arguments = parser.parse_args()
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         if arguments.map or arguments.difference:
             view = f"difference&with={arguments.difference}" if arguments.difference else "map"
             maps = []
             for _ in range(arguments.times):
-                context = browser.new_context(viewport={"width": 1400, "height": 900})
-                maps.append(mapped(context.new_page(), arguments.server, arguments.sweep, view))
-                context.close()
+                with started(playwright) as context:
+                    maps.append(mapped(context.new_page(), arguments.server, arguments.sweep, view))
             for name in maps[0][0]:
                 print(f"{name}: {median(answers[name] for answers, _ in maps):.0f} ms")
             print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
@@ -200,34 +219,31 @@ def main() -> None:
         for view in [] if arguments.brushing else views(arguments.sweep):
             cold, warm, drawn, inside = [], [], [], []
             for _ in range(arguments.times):
-                context = browser.new_context(viewport={"width": 1400, "height": 900})
-                cold.append(opened(context, arguments.server, view.link, view.seen))
-                warm.append(opened(context, arguments.server, view.link, view.seen))
-                drawn.append(opened(context, arguments.server, view.link, view.drawn))
-                page = context.new_page()
-                # Pictures need the drawing library, which a first one has loaded.
-                page.goto(f"{arguments.server}/#/sweeps/{arguments.sweep}?view=scatter")
-                page.locator(f".plot {DRAWN}").first.wait_for()
-                page.goto(f"{arguments.server}/#/nowhere")
-                page.locator("main a").wait_for()
-                inside.append(moved(page, view.link, view.drawn))
-                context.close()
+                with started(playwright) as context:
+                    cold.append(opened(context, arguments.server, view.link, view.seen))
+                    warm.append(opened(context, arguments.server, view.link, view.seen))
+                    drawn.append(opened(context, arguments.server, view.link, view.drawn))
+                    page = context.new_page()
+                    # Pictures need the drawing library, which a first one has loaded.
+                    page.goto(f"{arguments.server}/#/sweeps/{arguments.sweep}?view=scatter")
+                    page.locator(f".plot {DRAWN}").first.wait_for()
+                    page.goto(f"{arguments.server}/#/nowhere")
+                    page.locator("main a").wait_for()
+                    inside.append(moved(page, view.link, view.drawn))
             times = [median(time for time, _ in of) for of in (cold, warm, drawn, inside)]
             sizes = [median(size for _, size in of) / 1000 for of in (cold, warm)]
             told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
             print("| " + " | ".join([view.name, *told]) + " |", flush=True)
         drags = []
         for _ in range(arguments.times):
-            context = browser.new_context(viewport={"width": 1400, "height": 900})
-            drags.append(brushed(context.new_page(), arguments.server, arguments.sweep))
-            context.close()
+            with started(playwright) as context:
+                drags.append(brushed(context.new_page(), arguments.server, arguments.sweep))
         drag = {field.name: median(getattr(drag, field.name) for drag in drags) for field in fields(Brushed)}
         print(
             "\nBrushing: {frames:.0f} frames a second, at most {longest_frame:.0f} ms apart; {orbits:.0f} orbits a "
             "second, each {delay:.1f} ms after the mouse, at most {longest_delay:.0f} ms; {worked:.1f} ms of the "
             "page's thread for each.".format(**drag)
         )
-        browser.close()
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """How fast the web page is, and what it transfers: `python docs/page_timing.py SERVER SWEEP`.
 
 The sweep has complete points with histories; that of point 1 is shown and brushed. Prints a Markdown table of medians,
-each time of a browser that has just been started with an empty profile on disk, as a reader's own browser has one: what
-it keeps of a page, for a private window it keeps otherwise.
+each time of a browser that has just been started with an empty profile on disk. A reader's browser has a profile, too;
+in a private window, which has none, pages take longer to load.
 
 A view is there once it has its numbers, and its picture is seen: sketched, or drawn by the drawing library. Once the
 latter has drawn it, the picture answers to the mouse as well.
@@ -23,7 +23,7 @@ from playwright.sync_api import BrowserContext, Page, Playwright, sync_playwrigh
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 PAUSE_MS = 1000
-"""Between two loads of a page, and after the start of the browser [ms]: it writes its cache, and comes to rest."""
+"""Pause between two loads of a page, and after the start of the browser [ms], in which it writes its cache."""
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 

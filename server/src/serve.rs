@@ -60,12 +60,12 @@ pub fn serve(
     config: Config,
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> BoxFuture<'static, Result<(), ServeError>> {
-    boxed(listeners, store, config, Box::pin(shutdown))
+    serve_boxed(listeners, store, config, Box::pin(shutdown))
 }
 
-/// Without a parameter in its types, and with a boxed future, so that all that serves is compiled in this crate, and not in the one that
-/// calls it.
-fn boxed(
+/// [`serve`] without type parameters. Since its future is boxed here, all that serves is compiled with this crate; boxed in a generic
+/// function, it would be compiled with each crate that calls it.
+fn serve_boxed(
     listeners: Listeners,
     store: Store,
     config: Config,

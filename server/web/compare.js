@@ -73,7 +73,7 @@ export async function show(main, route, signal) {
     const page = await get("/v1/sweeps", { limit: OFFERED, name }, signal);
     if (mine === searches) offerSweeps(page, name);
   };
-  const search = h("input", { type: "search", oninput: debounced(() => attend(look(), signal), REST_MS), style: "width:12rem" });
+  const search = h("input", { type: "search", oninput: debounced(() => attend(look(), signal), REST_MS, signal), style: "width:12rem" });
   const adding = h(
     "form",
     { class: "controls", onsubmit: (/** @type {Event} */ event) => {

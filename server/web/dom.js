@@ -77,15 +77,17 @@ export function choice(label, options, chosen, onChange) {
 }
 
 /**
- * Runs `call` once things have been quiet for `delay` milliseconds.
+ * Runs `call` once things have been quiet for `delay` milliseconds, and not after `signal` is aborted.
  * @param {() => void} call
  * @param {number} delay
+ * @param {AbortSignal} signal of the view that it belongs to
  */
-export function debounced(call, delay) {
+export function debounced(call, delay, signal) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
+  signal.addEventListener("abort", () => clearTimeout(timer));
   return () => {
     clearTimeout(timer);
-    timer = setTimeout(call, delay);
+    if (!signal.aborted) timer = setTimeout(call, delay);
   };
 }

@@ -3,7 +3,7 @@
 import { answerAfter, connection, Problem, Unreachable } from "./api.js";
 import { fill, h } from "./dom.js";
 import { reported } from "./notices.js";
-import { route } from "./router.js";
+import { arrive, route } from "./router.js";
 import { loadSession, logIn, logOut, onLoginNeeded, session } from "./session.js";
 import { apply, choose, settings, theme, unitSystem } from "./settings.js";
 import { loadQuantities } from "./units.js";
@@ -31,8 +31,6 @@ const switches = element("switches");
 
 /** @type {AbortController} */
 let shown = new AbortController();
-/** The link of the view that is shown, without its query. */
-let place = "";
 
 /** @param {string} id */
 function element(id) {
@@ -47,8 +45,7 @@ async function show() {
   const mine = (shown = new AbortController());
   const asked = route();
   const view = ahead.viewOf(asked.path);
-  const isElsewhere = asked.path.join("/") !== place;
-  place = asked.path.join("/");
+  const isElsewhere = arrive(asked.path);
   for (const entry of document.querySelectorAll(".bar nav a")) {
     const isHere = entry.getAttribute("href") === `#/${asked.path[0]}`;
     if (isHere) entry.setAttribute("aria-current", "page");

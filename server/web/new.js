@@ -43,7 +43,12 @@ export async function show(main, route, signal) {
 
   const carried = isGoneOn ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
 
-  const changed = debounced(() => void plan(), 400);
+  const rested = debounced(() => void plan(), 400, signal);
+  /** What is submitted is what was planned. */
+  function changed() {
+    submit.disabled = true;
+    rested();
+  }
   const box = (/** @type {string} */ value, /** @type {Record<string, any>} */ attributes = {}) => h("input", { value, oninput: changed, ...attributes });
   const name = box(start.name ?? "", { maxlength: 200 });
   const tags = box((start.tags ?? []).join(", "), { placeholder: "separated by commas" });
@@ -237,6 +242,7 @@ export async function show(main, route, signal) {
     general.textContent = rest.join(" ");
   }
 
+  let isSent = false;
   let generation = 0;
   async function plan() {
     const mine = ++generation;
@@ -254,7 +260,7 @@ export async function show(main, route, signal) {
       if (mine !== generation) return;
       mark(answer.warnings ?? []);
       fill(planned, ...plannedPart(answer));
-      submit.disabled = !maySubmit();
+      submit.disabled = isSent || !maySubmit();
       submit.title = maySubmit() ? "" : MAY_NOT;
       submit.textContent = `Submit ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
       await drawPreview(answer.points);
@@ -308,11 +314,13 @@ export async function show(main, route, signal) {
     { novalidate: true, onsubmit: async (/** @type {Event} */ event) => {
       event.preventDefault();
       submit.disabled = true;
+      isSent = true;
       try {
         const sweep = await send("POST", "/v1/sweeps", request());
         go(link(["sweeps", sweep.id]));
       } catch (error) {
         mark(error instanceof Problem && error.errors.length ? error.errors : [{ detail: error instanceof Error ? error.message : String(error) }]);
+        isSent = false;
         submit.disabled = false;
       }
     } },

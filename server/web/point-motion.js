@@ -243,9 +243,9 @@ export function motion(context) {
     rested();
   }
 
-  const rested = debounced(() => dragged && !signal.aborted && void lookAt(dragged).catch((error) => {
+  const rested = debounced(() => dragged && void lookAt(dragged).catch((error) => {
     if (!(error instanceof Problem) && !signal.aborted) console.error(error);
-  }), REST_MS);
+  }), REST_MS, signal);
 
   /** All samples of a window that rests while it is dragged. @param {[number, number]} range */
   async function lookAt(range) {

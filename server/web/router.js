@@ -33,11 +33,31 @@ export function go(target) {
   location.hash = target;
 }
 
+/** The link of the view that is shown, without its query. */
+let place = "";
+
+/**
+ * Says which view is shown from now on: of the one that it takes the place of, nothing is kept any more.
+ * @param {string[]} path
+ * @returns {boolean} whether it is another one than before
+ */
+export function arrive(path) {
+  const before = place;
+  place = link(path);
+  return place !== before;
+}
+
+/** Whether the view that is shown is still the one of the link: this changes at once, the view only after that. */
+function isHere() {
+  return link(route().path) === place;
+}
+
 /**
  * Changes the query of the link without leaving the view; `null` or an empty text takes an entry away.
  * @param {Record<string, string | number | null | undefined>} changes
  */
 export function keep(changes) {
+  if (!isHere()) return;
   const { path, query } = route();
   for (const [name, value] of Object.entries(changes)) {
     if (value === null || value === undefined || value === "") query.delete(name);
@@ -51,6 +71,7 @@ export function keep(changes) {
  * @param {string | null} text
  */
 export function hold(text) {
+  if (!isHere()) return;
   history.replaceState(text === null ? null : { held: text }, "");
 }
 

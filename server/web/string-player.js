@@ -72,8 +72,8 @@ export function stringPlayer(strings, onLoad) {
     go(Number(slider.value));
   } });
   const view = readView(query.get("turn") ?? "");
-  const keepView = debounced(() => signal.aborted || keep({ turn: sayView(view) || null }), REST_MS);
-  const keepTime = debounced(() => signal.aborted || isPlaying || keep({ time: time > first() ? String(Number(time.toFixed(4))) : null }), REST_MS);
+  const keepView = debounced(() => keep({ turn: sayView(view) || null }), REST_MS, signal);
+  const keepTime = debounced(() => isPlaying || keep({ time: time > first() ? String(Number(time.toFixed(4))) : null }), REST_MS, signal);
   /** @type {Actor[]} */
   const actors = strings.map((one) => ({
     ...one,

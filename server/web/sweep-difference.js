@@ -35,7 +35,7 @@ export function difference(context) {
   const figure = h("figure", {}, place, caption);
   const begin = generations();
   const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
-  const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250) });
+  const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250, signal) });
   const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);
   /** Those that can be chosen. @type {any[] | undefined} */
   let sweeps;

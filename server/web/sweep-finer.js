@@ -37,6 +37,7 @@ export function finer(context) {
   /** @type {Held[]} */
   let held = [];
   let generation = 0;
+  let isSent = false;
 
   /** Keeps the region in the link, in the service's units. */
   const keepRegion = () => context.keep({ finer: sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(",") });
@@ -53,9 +54,8 @@ export function finer(context) {
     return { axes: Object.fromEntries(axes) };
   }
 
-  const plan = debounced(async () => {
+  const rested = debounced(async () => {
     const mine = ++generation;
-    add.disabled = true;
     taken.dispatchEvent(new Event("redraw"));
     try {
       const scene = Object.fromEntries(Object.entries(context.sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)));
@@ -64,7 +64,7 @@ export function finer(context) {
       wrong.textContent = "";
       const time = answer.known === answer.total ? "nothing is left to compute" : answer.wall_time ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time` : "how long is not known";
       fill(planned, `${answer.total} points; ${answer.known} are known and not computed again; ${time}. Points that the sweep has already are skipped.`);
-      add.disabled = !maySubmit();
+      add.disabled = isSent || !maySubmit();
       add.title = maySubmit() ? "" : MAY_NOT;
       add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
     } catch (error) {
@@ -73,7 +73,13 @@ export function finer(context) {
       const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
       wrong.textContent = details || (error instanceof Error ? error.message : String(error));
     }
-  }, 300);
+  }, 300, context.signal);
+
+  /** What is added is what was planned. */
+  function plan() {
+    add.disabled = true;
+    rested();
+  }
 
   const taken = lines(() => {
     const body = request();
@@ -116,6 +122,7 @@ export function finer(context) {
   async function submit(/** @type {Event} */ event) {
     event.preventDefault();
     add.disabled = true;
+    isSent = true;
     try {
       const before = context.sweep.counts.total;
       const changed = await send("POST", path(), request());
@@ -126,6 +133,8 @@ export function finer(context) {
     } catch (error) {
       wrong.textContent = error instanceof Error ? error.message : String(error);
       add.disabled = false;
+    } finally {
+      isSent = false;
     }
   }
 

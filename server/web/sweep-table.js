@@ -24,7 +24,7 @@ export function table(context) {
   const filter = h("input", { type: "search", value: query.get("filter") ?? "", placeholder: "e.g. flow_rate>0.02 state=failed", size: 34, oninput: debounced(() => {
     context.keep({ filter: filter.value || null });
     attend(redraw(), context.signal);
-  }, 250) });
+  }, 250, signal) });
   const wrong = h("p", { class: "wrong", role: "alert" });
   const columnsPart = h("details", {});
 

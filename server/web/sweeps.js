@@ -27,7 +27,7 @@ export async function show(main, route, signal) {
     keep(filters());
     redraw();
     attend(load(), signal);
-  }, 250);
+  }, 250, signal);
   const input = (/** @type {string} */ label, /** @type {string} */ name, /** @type {string} */ type = "text") =>
     h("input", { type, value: route.query.get(name) ?? "", oninput: filtered, "aria-label": label, placeholder: label, size: 12 });
   const search = input("Search names", "name", "search");
@@ -149,7 +149,7 @@ export async function show(main, route, signal) {
     const isAsked = [...unknown].some((id) => !known.has(id));
     unknown.clear();
     if (isAsked) void poll().catch(() => {});
-  }, COLLECT_MS);
+  }, COLLECT_MS, signal);
 
   /** Takes what the stream tells of a sweep. @param {any} sweep */
   function hear(sweep) {

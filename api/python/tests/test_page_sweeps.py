@@ -64,6 +64,46 @@ def test_a_scenario_file_becomes_a_sweep(opened: Opens, client: Client, tmp_path
     assert sweep.request["scenario"]["mud"] == client.get_json("/v1/scenarios/paper-200m")["scenario"]["mud"]
 
 
+@pytest.mark.parametrize(
+    ("left", "field"),
+    [("#/new?preset=paper-200m", "input[maxlength='200']"), ("#/sweeps", "[aria-label='Search names']")],
+)
+def test_what_is_typed_just_before_a_view_is_left_stays_out_of_the_next_link(
+    opened: Opens, named: Sweep, left: str, field: str
+) -> None:
+    page = opened(left)
+    box = page.locator(field)
+    expect(box).to_be_visible()
+    # The longest rest after which a view keeps what was typed is 400 ms.
+    box.evaluate(
+        """async (box, next) => {
+            box.value = "typed at last";
+            box.dispatchEvent(new Event("input", { bubbles: true }));
+            location.hash = next;
+            await new Promise((resolve) => setTimeout(resolve, 600));
+        }""",
+        f"#/sweeps/{named.id}",
+    )
+    expect(page.get_by_role("heading", level=1)).to_have_text(str(named.name))
+    assert "typed" not in page.url
+    assert "request" not in page.url
+
+
+def test_what_is_submitted_is_what_was_planned(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    submit = page.get_by_role("button", name=re.compile(r"Submit \d+ points"))
+    expect(submit).to_be_enabled()
+    tags = page.get_by_role("textbox", name="Tags", exact=True)
+    typed_then_disabled = """(box) => {
+        box.value = "late";
+        box.dispatchEvent(new Event("input", { bubbles: true }));
+        return document.querySelector("form button[type=submit]").disabled;
+    }"""
+    assert tags.evaluate(typed_then_disabled)
+    expect(submit).to_be_enabled()
+    assert requested(page)["tags"] == ["late"]
+
+
 def test_a_file_of_a_preset_with_changes_fills_the_form(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m-damped")
     page.get_by_label("Scenario file").set_input_files(PRESETS / "hard" / "light-mud.toml")

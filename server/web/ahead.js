@@ -5,6 +5,8 @@
 const ahead = (() => {
   /** Points up to which the whole table of a sweep is one answer. */
   const WHOLE = 3000;
+  /** Sweeps on a page of the list. */
+  const PAGE = 100;
   /** How long an answer waits for the view to ask for it; later it may not be true any more. */
   const KEPT_MS = 3000;
 
@@ -54,6 +56,24 @@ const ahead = (() => {
     } catch {
       return segment;
     }
+  }
+
+  /**
+   * @param {string} path
+   * @param {Record<string, string | number | boolean | null | undefined>} [query] what is absent or empty is left out
+   */
+  function address(path, query = {}) {
+    const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+    const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
+    return text ? `${path}?${text}` : path;
+  }
+
+  /**
+   * The query of the list's first page.
+   * @param {Record<string, string>} filters an empty one is none
+   */
+  function firstPage({ state, name, owner, tag }) {
+    return { state, name: name.trim(), owner: owner.trim(), tag: tag.trim(), limit: PAGE };
   }
 
   /**
@@ -116,11 +136,15 @@ const ahead = (() => {
   const view = viewOf(first.path);
   send("/v1/quantities");
   send("/v1/session");
+  if (view === "sweeps") {
+    const [state, name, owner, tag] = ["state", "name", "owner", "tag"].map((filter) => first.query.get(filter) ?? "");
+    send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
+  }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`);
   load("main.js");
   preload(first);
   setTimeout(() => answers.clear(), KEPT_MS);
-  return { WHOLE, route, viewOf, preload, sent };
+  return { WHOLE, address, firstPage, route, viewOf, preload, sent };
 })();

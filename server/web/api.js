@@ -29,15 +29,7 @@ const LONGEST_RETRY_MS = 30_000;
 const REFUSED_MS = 5000;
 let isLost = false;
 
-/**
- * @param {string} path
- * @param {Record<string, string | number | boolean | null | undefined>} [query] what is absent or empty is left out
- */
-export function address(path, query = {}) {
-  const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
-  const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
-  return text ? `${path}?${text}` : path;
-}
+export const address = ahead.address;
 
 /** What every answer waits for. @type {Promise<unknown>} */
 let needed = Promise.resolve();

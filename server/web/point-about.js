@@ -2,7 +2,7 @@
 
 import { address, get } from "./api.js";
 import { fill, h } from "./dom.js";
-import { bytes, duration, label, meaning, number, say } from "./units.js";
+import { bytes, duration, label, meaning, moment, number, say } from "./units.js";
 
 /**
  * @param {import("./point.js").PointContext} context
@@ -118,6 +118,6 @@ function summaryPart({ point, bias }) {
 function provenancePart(point) {
   const { provenance = {} } = point;
   /** @type {[string, string][]} */
-  const facts = [["Key", point.key], ["Version", `${provenance.version ?? "–"}, physics ${provenance.physics_version ?? "–"}`], ["Computed by", `${provenance.worker ?? "–"} on ${provenance.host ?? "–"}`], ["Begun", provenance.started ? new Date(provenance.started).toLocaleString() : "–"], ["Ended", provenance.ended ? new Date(provenance.ended).toLocaleString() : "–"], ["Attempts", String(point.attempts)]];
+  const facts = [["Key", point.key], ["Version", `${provenance.version ?? "–"}, physics ${provenance.physics_version ?? "–"}`], ["Computed by", `${provenance.worker ?? "–"} on ${provenance.host ?? "–"}`], ["Begun", provenance.started ? moment(provenance.started, "second") : "–"], ["Ended", provenance.ended ? moment(provenance.ended, "second") : "–"], ["Attempts", String(point.attempts)]];
   return factsPart("Where it comes from", facts, [h("details", {}, h("summary", {}, "Scenario as simulated"), h("pre", { tabindex: "0", style: "max-height:24rem" }, JSON.stringify(point.scenario, null, 2)))]);
 }

@@ -6,9 +6,8 @@ import { lines, requestLines, shell } from "./lines.js";
 import { attend } from "./notices.js";
 import { Pace } from "./pace.js";
 import { go, keep, link } from "./router.js";
-import { duration } from "./units.js";
+import { duration, moment } from "./units.js";
 
-const PAGE = 100;
 /** How often the list is asked for while no stream tells of changes. */
 const POLL_MS = 4000;
 /** The least time between two looks at the queue, the workers and the failures while sweeps change, and the longest while none does. */
@@ -19,7 +18,11 @@ const COLLECT_MS = 300;
 
 /** @type {import("./main.js").View} */
 export async function show(main, route, signal) {
-  const filters = () => ({ state: state(), name: search.value.trim(), owner: owner.value.trim(), tag: tag.value.trim() });
+  const firstPage = () => ahead.firstPage({ state: state(), name: search.value, owner: owner.value, tag: tag.value });
+  const filters = () => {
+    const { limit: _, ...filters } = firstPage();
+    return filters;
+  };
   let chosenState = route.query.get("state") ?? "";
   const state = () => chosenState;
 
@@ -64,7 +67,7 @@ export async function show(main, route, signal) {
 
   async function load() {
     const mine = ++generation;
-    const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
+    const page = await get("/v1/sweeps", firstPage(), signal);
     if (mine !== generation) return;
     known.clear();
     selected = null;
@@ -78,7 +81,7 @@ export async function show(main, route, signal) {
     isLoading = true;
     const mine = generation;
     try {
-      const page = await get("/v1/sweeps", { ...filters(), limit: PAGE, cursor: next }, signal);
+      const page = await get("/v1/sweeps", { ...firstPage(), cursor: next }, signal);
       if (mine === generation) {
         next = page.next ?? null;
         add(page.sweeps);
@@ -179,7 +182,7 @@ export async function show(main, route, signal) {
   async function poll() {
     const mine = generation;
     const look = ++looks;
-    const page = await get("/v1/sweeps", { ...filters(), limit: PAGE }, signal);
+    const page = await get("/v1/sweeps", firstPage(), signal);
     if (mine !== generation || look !== looks) return;
     // Identifiers grow with time: what that page would have and has not does not pass the filters any more.
     const [listed, last] = [new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)), page.next ? page.sweeps.at(-1).id : ""];
@@ -270,7 +273,8 @@ export async function show(main, route, signal) {
       h("aside", { "aria-label": "Service" }, service, failures),
     ),
   );
-  await Promise.all([load(), drawService()]);
+  await load();
+  main.addEventListener("shown", () => attend(drawService(), signal), { once: true });
   followAll({
     sweep: hear,
     deleted: (id) => {
@@ -340,9 +344,7 @@ export function progressPart(sweep, pace) {
 
 /** @param {string} time RFC 3339 */
 export function when(time) {
-  const date = new Date(time);
-  const text = date.toLocaleString(undefined, { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit", ...(date.getFullYear() === new Date().getFullYear() ? {} : { year: "numeric" }) });
-  return h("time", { datetime: time, title: date.toLocaleString() }, text);
+  return h("time", { datetime: time, title: moment(time, "second") }, moment(time));
 }
 
 /** @param {any} queue @param {any[]} workers */

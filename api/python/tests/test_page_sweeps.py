@@ -635,6 +635,25 @@ def test_the_bar_of_colours_says_the_depth_of_its_node(opened: Opens, named: Swe
     assert picture.evaluate(title) == f"orbit radius rms, node 49 at {float(f'{depth:.4g}'):g} m [mm]"
 
 
+def test_the_list_is_asked_for_once_and_waits_for_nothing_beside_it(opened: Opens, named: Sweep) -> None:
+    page = opened("#/sweeps?tag=%3Cb%3Ebold&name=img+")
+    beside = page.get_by_role("region", name="Workers and queue")
+    expect(beside).to_contain_text("process")
+    asked: list[str] = []
+    held: list[Route] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.route("**/v1/workers", lambda route: held.append(route))
+    # When the stream of changes is there the list is asked for again.
+    page.route("**/v1/events*", lambda route: held.append(route))
+    page.reload()
+    expect(page.get_by_text("No sweep matches these filters")).to_be_visible()
+    assert [url.partition("?")[2] for url in asked if "/v1/sweeps?" in url] == ["name=img&tag=%3Cb%3Ebold&limit=100"]
+    assert beside.text_content() == ""
+    for route in held:
+        route.continue_()
+    expect(beside).to_contain_text("process")
+
+
 def test_a_map_does_not_wait_for_the_depths_of_nodes(opened: Opens, named: Sweep) -> None:
     page = opened("#/nowhere")
     held: list[Route] = []

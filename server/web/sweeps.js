@@ -89,6 +89,9 @@ export async function show(main, route, signal) {
     } finally {
       isLoading = false;
     }
+    // Where the reader was at the new end before the browser looked, nothing has changed for the observer.
+    observer.unobserve(end);
+    observer.observe(end);
   }
 
   /** @param {any[]} sweeps */

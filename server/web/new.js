@@ -43,9 +43,13 @@ export async function show(main, route, signal) {
 
   const carried = isGoneOn ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name))) : {};
 
+  let isSent = false;
+  /** Numbers the plans, so that an older one is dropped. */
+  let generation = 0;
   const rested = debounced(() => void plan(), 400, signal);
-  /** What is submitted is what was planned. */
+  /** What is submitted is what was planned: a plan that is under way is of what was there before. */
   function changed() {
+    generation += 1;
     submit.disabled = true;
     rested();
   }
@@ -242,8 +246,6 @@ export async function show(main, route, signal) {
     general.textContent = rest.join(" ");
   }
 
-  let isSent = false;
-  let generation = 0;
   async function plan() {
     const mine = ++generation;
     taken.dispatchEvent(new Event("redraw"));

@@ -37,7 +37,7 @@ export function go(target) {
 let place = "";
 
 /**
- * Says which view is shown from now on: of the one that it takes the place of, nothing is kept any more.
+ * Notes which view is shown from now on; the link no longer takes choices of the one before.
  * @param {string[]} path
  * @returns {boolean} whether it is another one than before
  */
@@ -47,7 +47,7 @@ export function arrive(path) {
   return place !== before;
 }
 
-/** Whether the view that is shown is still the one of the link: this changes at once, the view only after that. */
+/** Whether the link still names the view that is shown: the link changes at once, and the view follows. */
 function isHere() {
   return link(route().path) === place;
 }

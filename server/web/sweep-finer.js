@@ -75,8 +75,9 @@ export function finer(context) {
     }
   }, 300, context.signal);
 
-  /** What is added is what was planned. */
+  /** What is added is what was planned: a plan that is under way is of what was there before. */
   function plan() {
+    generation += 1;
     add.disabled = true;
     rested();
   }

@@ -89,7 +89,7 @@ export async function show(main, route, signal) {
     } finally {
       isLoading = false;
     }
-    // Where the reader was at the new end before the browser looked, nothing has changed for the observer.
+    // The observer tells of changes only, and a reader who has scrolled to the new end already has not left the end for it.
     observer.unobserve(end);
     observer.observe(end);
   }

@@ -104,6 +104,35 @@ def test_what_is_submitted_is_what_was_planned(opened: Opens) -> None:
     assert requested(page)["tags"] == ["late"]
 
 
+def test_a_plan_that_comes_while_somebody_types_lets_nothing_be_submitted(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    submit = page.locator("form button[type=submit]")
+    expect(submit).to_be_enabled()
+    held: list[Route] = []
+    page.route("**/v1/sweeps?dry_run=true", lambda route: held.append(route), times=1)
+    tags = page.get_by_role("textbox", name="Tags", exact=True)
+    tags.fill("planned")
+    until(page, lambda: held != [])
+    # The form waits for 400 ms of rest before it plans again.
+    tags.evaluate(
+        """(box) => {
+            const submit = document.querySelector("form button[type=submit]");
+            const type = () => box.dispatchEvent(new Event("input", { bubbles: true }));
+            type();
+            window.typing = setInterval(type, 20);
+            window.wasEnabled = false;
+            new MutationObserver(() => (window.wasEnabled ||= !submit.disabled)).observe(submit, { attributes: true });
+        }"""
+    )
+    with page.expect_response("**/v1/sweeps?dry_run=true"):
+        held[0].continue_()
+    taken(page)
+    assert not page.evaluate("() => window.wasEnabled")
+    page.evaluate("() => clearInterval(window.typing)")
+    expect(submit).to_be_enabled()
+    assert page.evaluate("() => window.wasEnabled")
+
+
 def test_a_file_of_a_preset_with_changes_fills_the_form(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m-damped")
     page.get_by_label("Scenario file").set_input_files(PRESETS / "hard" / "light-mud.toml")

@@ -16,8 +16,7 @@ import { profileTables, QUANTITIES, quantityTicks, scrolled, tableOf } from "./p
 import { RANGES } from "./point-spectrogram.js";
 import { exaggerationChoice } from "./point-well.js";
 import { go, keep, link, route as currentRoute } from "./router.js";
-import { parameters } from "./sweep-failures.js";
-import { label, say } from "./units.js";
+import { label, say, sayParameters } from "./units.js";
 
 /** How long typing must rest before sweeps are looked for. */
 const REST_MS = 200;
@@ -50,7 +49,7 @@ export async function show(main, route, signal) {
   const list = h(
     "table",
     { "aria-label": "Points compared" },
-    h("tbody", {}, points.map((point) => h("tr", {}, h("td", {}, h("span", { style: `color:${point.colour};font-weight:700`, "aria-hidden": "true" }, "━━ "), String(point.number)), h("td", {}, h("a", { href: link(["sweeps", point.id, "points", String(point.ordinal)]) }, `${nameOf(point.id)}, point ${point.ordinal}`)), h("td", {}, parameters(point.detail.parameters)), h("td", {}, takeOut(`${point.id}:${point.ordinal}`, `point ${point.number}`))))),
+    h("tbody", {}, points.map((point) => h("tr", {}, h("td", {}, h("span", { style: `color:${point.colour};font-weight:700`, "aria-hidden": "true" }, "━━ "), String(point.number)), h("td", {}, h("a", { href: link(["sweeps", point.id, "points", String(point.ordinal)]) }, `${nameOf(point.id)}, point ${point.ordinal}`)), h("td", {}, sayParameters(point.detail.parameters)), h("td", {}, takeOut(`${point.id}:${point.ordinal}`, `point ${point.number}`))))),
   );
 
   let chosenSweep = points.at(-1)?.id ?? sweeps[0]?.id ?? "";
@@ -301,7 +300,7 @@ async function pointOf(key, order, signal) {
  */
 function toldApart(points, nameOf) {
   /** What tells a point from those that are alike so far. @type {((point: Compared, alike: Compared[]) => string)[]} */
-  const tells = [({ detail }) => parameters(detail.parameters), changesAmong, ({ id }) => nameOf(id), ({ ordinal }) => `point ${ordinal}`];
+  const tells = [({ detail }) => sayParameters(detail.parameters), changesAmong, ({ id }) => nameOf(id), ({ ordinal }) => `point ${ordinal}`];
   return points.map((point) => {
     let alike = points;
     /** @type {string[]} */
@@ -327,7 +326,7 @@ function changesAmong(point, alike) {
   const own = leaves(point.detail.scenario);
   // A name and what was recorded make no other motion.
   const paths = [...new Set(scenarios.flatMap((one) => [...one.keys()]))].filter((path) => path !== "name" && !path.startsWith("recording.") && scenarios.some((one) => one.get(path) !== own.get(path)));
-  return paths.length <= MOST_CHANGES ? parameters(Object.fromEntries(paths.map((path) => [path, own.get(path)]))) : "";
+  return paths.length <= MOST_CHANGES ? sayParameters(Object.fromEntries(paths.map((path) => [path, own.get(path)]))) : "";
 }
 
 /**

@@ -6,8 +6,7 @@ import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
 import { lines, requestLines } from "./lines.js";
 import { keep, link } from "./router.js";
-import { parameters } from "./sweep-failures.js";
-import { say } from "./units.js";
+import { say, sayParameters } from "./units.js";
 
 /**
  * What a view of a point is made with.
@@ -78,7 +77,7 @@ export async function show(main, route, signal) {
       h(
         "div",
         { class: "head" },
-        h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, parameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "")),
+        h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, sayParameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "")),
         h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), waysToCompare(`${id}:${ordinal}`).map(({ text, href }) => h("a", { class: "button", href }, text))),
       ),
       current.error && h("div", { class: "panel", role: "alert" }, h("h2", { class: "wrong" }, `Failed: ${current.error.class}`), h("p", {}, current.error.reason), h("p", { class: "soft" }, [typeof current.error.time === "number" && `at ${say("time", current.error.time)}`, current.error.node && `node ${current.error.node}`].filter(Boolean).join(", "))),

@@ -3,7 +3,7 @@
 import { get } from "./api.js";
 import { fill, h } from "./dom.js";
 import { link } from "./router.js";
-import { label, say } from "./units.js";
+import { say, sayParameters } from "./units.js";
 
 const PAGE = 500;
 
@@ -48,19 +48,11 @@ export function failures(context) {
           h("h2", {}, h("span", { class: "state failed" }, error?.class ?? "unknown"), ` ${points.length} ${points.length === 1 ? "point" : "points"}`),
           h("p", { class: "soft small" }, MEANING[error?.class] ?? ""),
           h("p", {}, error?.reason ?? "No reason is known."),
-          h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Point"), h("th", {}, "Parameters"), h("th", {}, "At"), h("th", { class: "number" }, "Attempts"))), h("tbody", {}, points.map((point) => h("tr", {}, h("td", {}, h("a", { href: link(["sweeps", sweep.id, "points", String(point.ordinal)]) }, point.ordinal)), h("td", {}, parameters(point.parameters)), h("td", { class: "small" }, [typeof point.error?.time === "number" && say("time", point.error.time), point.error?.node && `node ${point.error.node}`].filter(Boolean).join(", ")), h("td", { class: "number" }, point.attempts)))))),
+          h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Point"), h("th", {}, "Parameters"), h("th", {}, "At"), h("th", { class: "number" }, "Attempts"))), h("tbody", {}, points.map((point) => h("tr", {}, h("td", {}, h("a", { href: link(["sweeps", sweep.id, "points", String(point.ordinal)]) }, point.ordinal)), h("td", {}, sayParameters(point.parameters)), h("td", { class: "small" }, [typeof point.error?.time === "number" && say("time", point.error.time), point.error?.node && `node ${point.error.node}`].filter(Boolean).join(", ")), h("td", { class: "number" }, point.attempts)))))),
         );
       }),
       page.next ? h("p", { class: "soft" }, `The first ${PAGE} failures are shown.`) : null,
     );
   }
   return { element, draw: redraw, fields: () => ["ordinal", "state", ...context.axes, "error", "error_time", "error_node"] };
-}
-
-/**
- * @param {Record<string, number>} values
- * @returns {string} such as `flow rate 0.01 m³/s, mud density 1200 kg/m³`
- */
-export function parameters(values) {
-  return Object.entries(values).map(([name, value]) => `${label(name)} ${say(name, value)}`).join(", ");
 }

@@ -115,6 +115,15 @@ export function sayer(name, digits = 4) {
 }
 
 /**
+ * Parameters of a point in words.
+ * @param {Record<string, number>} values
+ * @returns {string} such as `flow rate 0.01 m³/s, mud density 1200 kg/m³`
+ */
+export function sayParameters(values) {
+  return Object.entries(values).map(([name, value]) => `${label(name)} ${say(name, value)}`).join(", ");
+}
+
+/**
  * A number in a few significant digits.
  * @param {number} value
  * @param {number} [digits]

@@ -53,8 +53,8 @@ export async function library(traces) {
   return libraryAtHand(traces) ?? load(isFlat(traces) ? "flat" : "whole");
 }
 
-/** @param {any[]} traces */
-function isFlat(traces) {
+/** Whether the small build draws it. @param {any[]} traces */
+export function isFlat(traces) {
   return traces.every(({ type }) => FLAT.has(type));
 }
 

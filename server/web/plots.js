@@ -3,7 +3,7 @@
 import { isWaiting } from "./api.js";
 import { colourOf } from "./colours.js";
 import { h } from "./dom.js";
-import { fetchAhead, library, libraryAtHand } from "./drawing.js";
+import { fetchAhead, isFlat, library, libraryAtHand } from "./drawing.js";
 import { settings, theme } from "./settings.js";
 import { sketch } from "./sketch.js";
 import { forgetZoom, keepZoom, rested, wholeOf, zoomed } from "./zoom.js";
@@ -53,8 +53,8 @@ export function canvas(name, key, size = "", build = "flat") {
   return place;
 }
 
-/** How long no picture has been sketched and nothing is awaited when the drawing library is compiled, and how long that waits at most. */
-const REST_MS = 40, LONGEST_MS = 500, STEP_MS = 10;
+/** How long no picture of a view has been sketched and nothing is awaited when the first is drawn, and how long that waits at most. */
+const REST_MS = 10, LONGEST_MS = 500, STEP_MS = 10;
 
 /**
  * What is known of a picture that is drawn: its layout, what its axes are, and how it is when it is not zoomed.
@@ -83,7 +83,8 @@ export async function draw(place, traces, layout, signal) {
   await laidOut(place, signal);
   if (signal.aborted) return place;
   const complete = merged(common(), layout);
-  if (!libraryAtHand(traces)) await sketched(place, traces, complete);
+  // Of what WebGL draws, a sketch takes as long.
+  if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces))) await sketched(place, traces, complete, signal);
   const Plotly = await library(traces);
   // What has been asked for since is drawn in the place of this.
   if (signal.aborted || asked.get(place) !== mine) return place;
@@ -100,12 +101,13 @@ export async function draw(place, traces, layout, signal) {
 }
 
 /**
- * Shows roughly what will be drawn, as long as the drawing library is not there.
+ * Shows roughly what will be drawn. To compile the drawing library, and to draw a picture, each hold up whatever else a view is to show.
  * @param {HTMLElement} place
  * @param {any[]} traces
  * @param {any} layout complete
+ * @param {AbortSignal} signal of the view
  */
-async function sketched(place, traces, layout) {
+async function sketched(place, traces, layout, signal) {
   const ranges = Object.entries(zoomed(keyOf(place), layout)).filter(([path]) => path.endsWith(".range"));
   const zoomedAxes = ranges.map(([path, range]) => [path.split(".")[0], range]);
   const axes = Object.fromEntries(zoomedAxes.map(([name, range]) => [name, { ...layout[name], range, autorange: undefined }]));
@@ -114,14 +116,15 @@ async function sketched(place, traces, layout) {
   for (const rough of older) rough.remove();
   await painted();
   if (!isSketched) return;
-  firstSketch ??= performance.now();
-  lastSketch = performance.now();
+  const now = performance.now();
+  const times = sketches.get(signal) ?? { first: now, last: now };
+  sketches.set(signal, times);
+  times.last = now;
   // What else the view shows is sketched before.
-  while (performance.now() < Math.min(firstSketch + LONGEST_MS, isWaiting() ? Infinity : lastSketch + REST_MS)) await new Promise((resolve) => setTimeout(resolve, STEP_MS));
+  while (performance.now() < Math.min(times.first + LONGEST_MS, isWaiting() ? Infinity : times.last + REST_MS)) await new Promise((resolve) => setTimeout(resolve, STEP_MS));
 }
-/** When pictures were sketched first and last [ms]. @type {number | undefined} */
-let firstSketch;
-let lastSketch = -Infinity;
+/** When pictures of a view were sketched first and last [ms]. @type {WeakMap<AbortSignal, {first: number, last: number}>} */
+const sketches = new WeakMap();
 
 /** Waits until the browser has painted what there is; compiling the drawing library would hold that up. @returns {Promise<void>} */
 function painted() {

@@ -54,8 +54,10 @@ export function energy(context) {
     // Numbers stand beyond the ends of bars.
     const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (bars.clientWidth || USUAL) - NAMES));
     const room = (part / (1 - 2 * part)) * (largest - least || 1);
-    await draw(bars, traces, { xaxis: { title: `energy [${symbol}]`, quantity: backwards[0], range: [least < 0 ? least - room : 0, largest + room] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal);
-    await draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${symbol}]`, quantity: backwards[0] }, hovermode: "x" }, context.signal);
+    await Promise.all([
+      draw(bars, traces, { xaxis: { title: `energy [${symbol}]`, quantity: backwards[0], range: [least < 0 ? least - room : 0, largest + room] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal),
+      draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${symbol}]`, quantity: backwards[0] }, hovermode: "x" }, context.signal),
+    ]);
   }
 
   return {

@@ -293,6 +293,27 @@ def test_a_picture_is_seen_before_the_drawing_library_has_come(opened: Opens, na
     expect(rough).to_have_count(0)
 
 
+def test_all_pictures_of_the_next_view_are_seen_before_one_is_drawn(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map")
+    drawn(page, "over flow rate")
+    # Of the pictures of the view that takes its place, how many are seen when the first has been drawn.
+    page.evaluate("""() => {
+        const look = () => {
+            const places = [...document.querySelectorAll("main .plot")];
+            const isNext = places.every((place) => !place.getAttribute("aria-label").includes("over flow rate"));
+            if (!isNext || !places.some((place) => place.querySelector(".main-svg"))) return;
+            const seen = places.filter((place) => place.querySelector(".sketch, .main-svg"));
+            window.seen ??= [seen.length, places.length];
+        };
+        new MutationObserver(look).observe(document.querySelector("main"), { childList: true, subtree: true });
+    }""")
+    page.get_by_role("link", name="Sensitivities").click()
+    drawn(page, "Shares of the variance")
+    drawn(page, "Main effects")
+    assert page.evaluate("window.seen") == [2, 2]
+    expect(page.locator(".plot .sketch")).to_have_count(0)
+
+
 def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=friction_coefficient_max")
     drawn(page, "friction coefficient C_f max|friction coefficient max")

@@ -8,14 +8,16 @@
 //!
 //! Futures are boxed here for the reason that `query.rs` gives.
 
+pub(crate) mod connections;
 mod location;
 pub(crate) mod postgres;
 pub(crate) mod sqlite;
 
 use futures::future::BoxFuture;
-use sqlx::{PgPool, SqlitePool, SqliteTransaction};
+use sqlx::{SqlitePool, SqliteTransaction};
 use tokio::sync::OwnedMutexGuard;
 
+use self::connections::Connections;
 pub use self::location::DatabaseLocation;
 use self::postgres::PostgresTransaction;
 pub(crate) use self::sqlite::Writers;
@@ -29,7 +31,7 @@ pub(crate) enum Database {
     /// A file, and whose turn it is to write.
     Sqlite(SqlitePool, Writers),
     /// A server.
-    Postgres(PgPool),
+    Postgres(Connections),
 }
 
 /// A transaction. It is undone unless it is committed.
@@ -74,7 +76,9 @@ impl Database {
                 Database::Sqlite(pool, _) => {
                     Transaction::Sqlite { transaction: pool.begin_with("BEGIN").await?, _turn: None }
                 }
-                Database::Postgres(pool) => Transaction::Postgres(PostgresTransaction::read(pool).await?),
+                Database::Postgres(connections) => {
+                    Transaction::Postgres(PostgresTransaction::read(connections).await?)
+                }
             })
         })
     }
@@ -84,8 +88,8 @@ impl Database {
         Box::pin(async move {
             match self {
                 Database::Sqlite(..) => self.read().await,
-                Database::Postgres(pool) => {
-                    Ok(Transaction::Postgres(PostgresTransaction::read_applied(pool).await?))
+                Database::Postgres(connections) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::read_applied(connections).await?))
                 }
             }
         })
@@ -96,8 +100,8 @@ impl Database {
         Box::pin(async move {
             match self {
                 Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-                Database::Postgres(pool) => {
-                    Ok(Transaction::Postgres(PostgresTransaction::alone(pool).await?))
+                Database::Postgres(connections) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::alone(connections).await?))
                 }
             }
         })
@@ -108,8 +112,8 @@ impl Database {
         Box::pin(async move {
             match self {
                 Database::Sqlite(pool, writers) => sqlite::write(pool, writers).await,
-                Database::Postgres(pool) => {
-                    Ok(Transaction::Postgres(PostgresTransaction::beside_others(pool).await?))
+                Database::Postgres(connections) => {
+                    Ok(Transaction::Postgres(PostgresTransaction::beside_others(connections).await?))
                 }
             }
         })
@@ -121,7 +125,7 @@ impl Database {
         Box::pin(async move {
             match self {
                 Database::Sqlite(..) => {}
-                Database::Postgres(pool) => postgres::apply_transitions(pool).await,
+                Database::Postgres(connections) => postgres::apply_transitions(connections).await,
             }
         })
     }
@@ -131,7 +135,7 @@ impl Database {
         Box::pin(async move {
             match self {
                 Database::Sqlite(pool, _) => pool.close().await,
-                Database::Postgres(pool) => pool.close().await,
+                Database::Postgres(connections) => connections.close().await,
             }
         })
     }
@@ -175,7 +179,7 @@ impl<'c> From<&'c Database> for Session<'c> {
     fn from(database: &'c Database) -> Self {
         match database {
             Database::Sqlite(pool, _) => Session::SqlitePool(pool),
-            Database::Postgres(pool) => Session::PostgresPool(pool),
+            Database::Postgres(connections) => Session::PostgresAny(connections),
         }
     }
 }

@@ -87,11 +87,11 @@ impl Store {
     }
 
     async fn changes(&self, of: impl Fn(&Listener) -> watch::Receiver<()>) -> Changes {
-        let Database::Postgres(pool) = &self.database else { return Changes(None) };
+        let Database::Postgres(connections) = &self.database else { return Changes(None) };
         let mut listening = self.listening.0.lock().await;
         let listener = listening.get_or_insert_with(|| {
             let (work, sweeps) = (watch::Sender::new(()), watch::Sender::new(()));
-            let task = tokio::spawn(listen(pool.clone(), work.clone(), sweeps.clone()));
+            let task = tokio::spawn(listen(connections.pool().clone(), work.clone(), sweeps.clone()));
             Listener { work, sweeps, task }
         });
         Changes(Some(of(listener)))

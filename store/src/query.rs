@@ -10,11 +10,12 @@ use futures::future::BoxFuture;
 use sqlx::postgres::{PgArguments, PgQueryResult, PgRow};
 use sqlx::sqlite::{SqliteArguments, SqliteQueryResult, SqliteRow};
 use sqlx::{
-    Arguments as _, Decode, FromRow, PgConnection, PgPool, Postgres, Row as _, Sqlite, SqliteConnection,
-    SqlitePool, Type,
+    Arguments as _, Decode, FromRow, PgConnection, Postgres, Row as _, Sqlite, SqliteConnection, SqlitePool,
+    Type,
 };
 
 use crate::database::Database;
+use crate::database::connections::Connections;
 use crate::error::Result;
 
 /// A statement in the words of each engine.
@@ -43,7 +44,7 @@ pub(crate) enum Session<'c> {
     SqlitePool(&'c SqlitePool),
     Postgres(&'c mut PgConnection),
     /// On any connection, in a transaction of its own.
-    PostgresPool(&'c PgPool),
+    PostgresAny(&'c Connections),
 }
 
 /// A parameter. What is absent still has a type: PostgreSQL wants to know it.
@@ -98,9 +99,12 @@ macro_rules! run {
                 let query = sqlx::query_with(statement.postgres, postgres_arguments(parameters)?);
                 $then(query.$method(connection).await?)
             }
-            Session::PostgresPool(pool) => {
+            Session::PostgresAny(connections) => {
                 let query = sqlx::query_with(statement.postgres, postgres_arguments(parameters)?);
-                $then(query.$method(pool).await?)
+                let mut lent = connections.lend().await?;
+                let answer = query.$method(&mut *lent).await?;
+                lent.give_back();
+                $then(answer)
             }
         }
     }};

@@ -6,27 +6,18 @@
 //! those who have made them have returned. The procedure `finish_and_claim` does the same by itself, after its commit. Who reads what follows
 //! from changes calls it now and then as well, since a process may have died in between.
 
-use std::time::Duration;
-
-use sqlx::pool::PoolConnection;
-use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions};
-use sqlx::{AssertSqlSafe, Connection as _, Executor as _, Postgres};
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgPoolOptions};
+use sqlx::{AssertSqlSafe, Connection as _, Executor as _};
 
 use crate::connection::Role;
 use crate::database::Database;
+use crate::database::connections::{CONNECT_TIMEOUT, Connections, Lent, TRUSTED_FOR};
 use crate::error::{Result, not_connected};
 use crate::migration;
 
 /// How long a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
 /// holds nobody up for longer.
 const LOCK_TIMEOUT: &str = "30s";
-
-/// How long a new connection may take.
-const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-
-/// How long a connection is trusted after its last use; later it is asked first whether it is still there, which takes a message and its
-/// answer.
-const TRUSTED_FOR: Duration = Duration::from_secs(1);
 
 /// Takes the writers' advisory lock shared; the schema's functions use the same arbitrary key.
 const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(7237963465534699365)";
@@ -57,13 +48,13 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
             ("enable_seqscan", "off"),
         ]);
     }
-    // One of them listens for notifications.
+    // One of them listens for notifications, and one is kept at hand beside the pool.
     let connections = match role {
         Role::Server => 16,
         Role::Worker => 3,
     };
     let pool = PgPoolOptions::new()
-        .max_connections(connections)
+        .max_connections(connections - 1)
         .acquire_timeout(CONNECT_TIMEOUT)
         .test_before_acquire(false)
         .before_acquire(|connection, use_of_it| {
@@ -93,7 +84,7 @@ pub(crate) async fn open(options: &PgConnectOptions, role: Role, clock_offset_ms
     if !migration::is_current(&pool).await? {
         migration::postgres().run(&pool).await?;
     }
-    Ok(Database::Postgres(pool))
+    Ok(Database::Postgres(Connections::new(pool)))
 }
 
 /// Connects to a server to look at what it has: nothing of it is made or changed.
@@ -109,25 +100,24 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Databas
         .connect_with(options)
         .await
         .map_err(not_connected)?;
-    Ok(Database::Postgres(pool))
+    Ok(Database::Postgres(Connections::new(pool)))
 }
 
 /// A transaction. Where it ends neither by a commit nor by being rolled back, its connection is closed, by which the server undoes it.
 pub(crate) struct PostgresTransaction {
-    connection: PoolConnection<Postgres>,
-    has_ended: bool,
+    connection: Lent,
 }
 
 impl PostgresTransaction {
     /// One that sees one state of the database and changes nothing.
-    pub(crate) async fn read(pool: &PgPool) -> Result<Self> {
-        Self::begin(pool, READ.to_owned()).await
+    pub(crate) async fn read(connections: &Connections) -> Result<Self> {
+        Self::begin(connections, READ.to_owned()).await
     }
 
     /// The same, and in that state nothing is pending. What is pending is applied before, where the schema knows of such, though the
     /// connection may be one that changes nothing by default.
-    pub(crate) async fn read_applied(pool: &PgPool) -> Result<Self> {
-        let mut begun = Self { connection: pool.acquire().await?, has_ended: false };
+    pub(crate) async fn read_applied(connections: &Connections) -> Result<Self> {
+        let mut begun = Self { connection: connections.lend().await? };
         let is_known: bool = sqlx::query_scalar("SELECT to_regproc('apply_pending_transitions') IS NOT NULL")
             .fetch_one(begun.connection())
             .await?;
@@ -150,17 +140,17 @@ impl PostgresTransaction {
     }
 
     /// One that holds the writers' lock exclusively. What follows from its changes is done with each of its statements.
-    pub(crate) async fn alone(pool: &PgPool) -> Result<Self> {
-        Self::begin(pool, "BEGIN; SELECT write_alone()".to_owned()).await
+    pub(crate) async fn alone(connections: &Connections) -> Result<Self> {
+        Self::begin(connections, "BEGIN; SELECT write_alone()".to_owned()).await
     }
 
     /// One that holds the writers' lock shared, as the schema's triggers do for statements outside one.
-    pub(crate) async fn beside_others(pool: &PgPool) -> Result<Self> {
-        Self::begin(pool, format!("BEGIN; {BESIDE_OTHERS}")).await
+    pub(crate) async fn beside_others(connections: &Connections) -> Result<Self> {
+        Self::begin(connections, format!("BEGIN; {BESIDE_OTHERS}")).await
     }
 
-    async fn begin(pool: &PgPool, statements: String) -> Result<Self> {
-        let mut begun = Self { connection: pool.acquire().await?, has_ended: false };
+    async fn begin(connections: &Connections, statements: String) -> Result<Self> {
+        let mut begun = Self { connection: connections.lend().await? };
         begun.connection.execute(sqlx::raw_sql(AssertSqlSafe(statements))).await?;
         Ok(begun)
     }
@@ -184,30 +174,22 @@ impl PostgresTransaction {
 
     async fn end(mut self, statements: String) -> Result<()> {
         self.connection.execute(sqlx::raw_sql(AssertSqlSafe(statements))).await?;
-        self.has_ended = true;
+        self.connection.give_back();
         Ok(())
-    }
-}
-
-impl Drop for PostgresTransaction {
-    fn drop(&mut self) {
-        if !self.has_ended {
-            self.connection.close_on_drop();
-        }
     }
 }
 
 /// Applies what is pending, until nothing is left or somebody else is at it. Where that fails, the changes from which it follows stand
 /// nevertheless, and the next one that comes applies it.
-pub(crate) async fn apply_transitions(pool: &PgPool) {
-    loop {
-        match sqlx::query_scalar(APPLY).fetch_one(pool).await {
-            Ok(true) => {}
-            Ok(false) => return,
-            Err(error) => {
-                tracing::warn!(%error, "what follows from changes of points is left to others");
-                return;
-            }
-        }
+pub(crate) async fn apply_transitions(connections: &Connections) {
+    if let Err(error) = apply_all(connections).await {
+        tracing::warn!(%error, "what follows from changes of points is left to others");
     }
+}
+
+async fn apply_all(connections: &Connections) -> sqlx::Result<()> {
+    let mut lent = connections.lend().await?;
+    while sqlx::query_scalar(APPLY).fetch_one(&mut *lent).await? {}
+    lent.give_back();
+    Ok(())
 }

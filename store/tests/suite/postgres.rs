@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::task::Poll;
 
 use drillsweep_store::{
     Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, patiently,
@@ -290,6 +291,70 @@ async fn what_follows_from_a_change_is_done_by_whoever_comes_next_where_its_proc
     assert!(events.is_sorted_by_key(|event| event.seq));
     let counts = sweep_record(&store, "s").await.counts;
     assert_eq!((counts.running, counts.cancelled), (5, 1));
+}
+
+/// How many connections of stores have been asked for something since a moment, by the database's clock.
+async fn asked_since(database: &PgPool, moment: &str) -> i64 {
+    let count = "SELECT count(*) FROM pg_stat_activity
+                 WHERE application_name = 'drillsweep' AND query_start > $1::text::timestamptz";
+    sqlx::query_scalar(count).bind(moment).fetch_one(database).await.unwrap()
+}
+
+#[tokio::test]
+async fn a_worker_has_one_connection_for_statements_that_follow_each_other() {
+    let engine = <Postgres>::new();
+    let server = engine.open().await;
+    let database = engine.database().await;
+    submit(&server, &sweep("s", 0..10)).await;
+    let store = Store::open(&engine.config(Role::Worker, 0)).await.unwrap();
+    let mut next = Some(claim(&store, "w").await);
+    let now: String =
+        sqlx::query_scalar("SELECT clock_timestamp()::text").fetch_one(&database).await.unwrap();
+    while let Some(claim) = next {
+        assert_eq!(store.renew(&claim.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
+        next = finish_and_claim(&store, &claim).await.next;
+    }
+    assert_eq!(asked_since(&database, &now).await, 1);
+    assert_eq!(sweep_record(&server, "s").await.counts.done, 10);
+}
+
+/// What a call gives; nothing where it has waited so often before, and is dropped at its next wait.
+async fn dropped_at<T>(wait: u32, call: impl Future<Output = T>) -> Option<T> {
+    let mut call = std::pin::pin!(call);
+    let mut waits = 0;
+    std::future::poll_fn(|context| match call.as_mut().poll(context) {
+        Poll::Ready(answer) => Poll::Ready(Some(answer)),
+        Poll::Pending if waits == wait => Poll::Ready(None),
+        Poll::Pending => {
+            waits += 1;
+            Poll::Pending
+        }
+    })
+    .await
+}
+
+#[tokio::test]
+async fn a_call_that_is_dropped_leaves_nothing_to_the_next_one() {
+    let engine = <Postgres>::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", 0..4)).await;
+    let of_s = sweep_record(&store, "s").await;
+    let mut dropped = 0;
+    for wait in 0_u32..40 {
+        // Its rows are no answer to who asks next.
+        if let Some(points) = dropped_at(wait, store.points("s", &[], 0, 10)).await {
+            assert_eq!(points.unwrap().len(), 4);
+        }
+        assert_eq!(sweep_record(&store, "s").await.version, of_s.version);
+        // Its transaction is over, and done or undone as a whole.
+        let two = sweep(&format!("two {wait}"), [1_000 + 2 * wait, 1_001 + 2 * wait]);
+        dropped += u32::from(dropped_at(wait, store.submit_sweep(&two)).await.is_none());
+        submit(&store, &sweep(&format!("one {wait}"), [2_000 + wait])).await;
+        if let Some(stored) = store.sweep(&two.id).await.unwrap() {
+            assert_eq!(stored.counts.total, 2, "{}", two.id);
+        }
+    }
+    assert!(dropped > 3, "{dropped}");
 }
 
 #[tokio::test]

@@ -5,7 +5,8 @@ each time of a browser that has just been started with an empty profile on disk.
 in a private window, which has none, pages take longer to load.
 
 A view is there once it has its numbers, and its picture is seen: sketched, or drawn by the drawing library. Once the
-latter has drawn it, the picture answers to the mouse as well.
+latter has drawn it, the picture answers to the mouse as well. The first load and those that follow are each of a page
+of its own, and so is the way from another view.
 """
 
 from __future__ import annotations
@@ -24,14 +25,20 @@ CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 PAUSE_MS = 1000
 """Pause between two loads of a page, and after the start of the browser [ms], in which it writes its cache."""
+REPEATED = 5
+"""Loads of a view that follow the first in each browser; what stands for them is their median."""
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
-# When the link is changed and when something is there [ms], by the page's own clock, which starts with its loading.
-SHOWN = """([link, selector]) => new Promise((resolve) => {
-    const start = performance.now();
-    const end = () => resolve([start, performance.now()]);
-    const look = () => document.querySelector(selector) ? end() : requestAnimationFrame(look);
+# When the link is changed, and when each of several things is there, one after the other [ms], by the page's own clock,
+# which starts with its loading.
+SHOWN = """([link, ...selectors]) => new Promise((resolve) => {
+    const times = [performance.now()];
+    const look = () => {
+        while (times.length <= selectors.length && document.querySelector(selectors[times.length - 1]))
+            times.push(performance.now());
+        times.length > selectors.length ? resolve(times) : requestAnimationFrame(look);
+    };
     if (link !== null) location.hash = link;
     requestAnimationFrame(look);
 })"""
@@ -107,24 +114,30 @@ def started(playwright: Playwright) -> Iterator[BrowserContext]:
         context.close()
 
 
-def opened(context: BrowserContext, server: str, link: str, selector: str) -> tuple[float, float]:
-    """Milliseconds from the start of loading until something is there, and bytes transferred for it."""
+def opened(context: BrowserContext, server: str, view: View) -> tuple[float, float, float]:
+    """Milliseconds from the start of loading until a view is seen and until it is drawn, and bytes transferred."""
     page = context.new_page()
-    page.goto(f"{server}/{link}", wait_until="commit")
-    _, time = page.evaluate(SHOWN, [None, selector])
+    page.goto(f"{server}/{view.link}", wait_until="commit")
+    _, seen, drawn = page.evaluate(SHOWN, [None, view.seen, view.drawn])
     size = page.evaluate(BYTES)
     page.wait_for_load_state("networkidle")
     page.wait_for_timeout(PAUSE_MS)
     page.close()
-    return time, size
+    return seen, drawn, size
 
 
-def moved(page: Page, link: str, selector: str) -> tuple[float, float]:
-    """Milliseconds from one view to another, and bytes transferred for it."""
+def moved(context: BrowserContext, server: str, sweep: str, view: View) -> tuple[float, float]:
+    """Milliseconds from another view until one is seen and until it is drawn; pictures were drawn before."""
+    page = context.new_page()
+    page.goto(f"{server}/#/sweeps/{sweep}?view=scatter")
+    page.locator(f".plot {DRAWN}").first.wait_for()
+    page.goto(f"{server}/#/nowhere")
+    page.locator("main a").wait_for()
     page.wait_for_load_state("networkidle")
-    before = page.evaluate(BYTES)
-    start, end = page.evaluate(SHOWN, [link, selector])
-    return end - start, page.evaluate(BYTES) - before
+    page.wait_for_timeout(PAUSE_MS)
+    start, seen, drawn = page.evaluate(SHOWN, [view.link, view.seen, view.drawn])
+    page.close()
+    return seen - start, drawn - start
 
 
 def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, float], float]:
@@ -214,24 +227,22 @@ def main() -> None:
             print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
             return
         if not arguments.brushing:
-            print("| view | first load | after it | drawn | from another view | transferred at first | after it |")
-            print("|---|---|---|---|---|---|---|")
+            print(
+                "| view | first load | loads after it | drawn | from another view | drawn | transferred at first "
+                "| after it |"
+            )
+            print("|---|---|---|---|---|---|---|---|")
         for view in [] if arguments.brushing else views(arguments.sweep):
-            cold, warm, drawn, inside = [], [], [], []
+            first, after, inside = [], [], []
             for _ in range(arguments.times):
                 with started(playwright) as context:
-                    cold.append(opened(context, arguments.server, view.link, view.seen))
-                    warm.append(opened(context, arguments.server, view.link, view.seen))
-                    drawn.append(opened(context, arguments.server, view.link, view.drawn))
-                    page = context.new_page()
-                    # Pictures need the drawing library, which a first one has loaded.
-                    page.goto(f"{arguments.server}/#/sweeps/{arguments.sweep}?view=scatter")
-                    page.locator(f".plot {DRAWN}").first.wait_for()
-                    page.goto(f"{arguments.server}/#/nowhere")
-                    page.locator("main a").wait_for()
-                    inside.append(moved(page, view.link, view.drawn))
-            times = [median(time for time, _ in of) for of in (cold, warm, drawn, inside)]
-            sizes = [median(size for _, size in of) / 1000 for of in (cold, warm)]
+                    first.append(opened(context, arguments.server, view))
+                    after += [opened(context, arguments.server, view) for _ in range(REPEATED)]
+                    inside += [moved(context, arguments.server, arguments.sweep, view) for _ in range(2)]
+            columns = [list(zip(*of, strict=True)) for of in (first, after, inside)]
+            (seen, _, size), (seen_after, drawn_after, size_after), (moved_to, drawn_there) = columns
+            times = [median(column) for column in (seen, seen_after, drawn_after, moved_to, drawn_there)]
+            sizes = [median(column) / 1000 for column in (size, size_after)]
             told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
             print("| " + " | ".join([view.name, *told]) + " |", flush=True)
         drags = []

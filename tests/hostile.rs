@@ -75,7 +75,7 @@ fn anything() -> impl Strategy<Value = Value> {
 /// Everything that a request may have, so that any part of it can be spoiled.
 fn full_request() -> Value {
     let preset: Value =
-        serde_json::from_str(&drillsweep_sim::scenario::preset("paper-200m").unwrap().to_json()).unwrap();
+        serde_json::from_str(&drillsweep_scenario::preset("paper-200m").unwrap().to_json()).unwrap();
     json!({
         "name": "hostile",
         "owner": "somebody",

@@ -10,18 +10,23 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 /// Who may use whom, among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
     ("drillsweep-fft", &[]),
-    ("drillsweep-sim", &["drillsweep-fft"]),
+    ("drillsweep-scenario", &[]),
+    ("drillsweep-sim", &["drillsweep-fft", "drillsweep-scenario"]),
     ("drillsweep-table", &[]),
-    ("drillsweep-api", &["drillsweep-sim", "drillsweep-table"]),
-    ("drillsweep-chart", &["drillsweep-api", "drillsweep-sim", "drillsweep-table"]),
+    ("drillsweep-api", &["drillsweep-scenario", "drillsweep-sim", "drillsweep-table"]),
+    ("drillsweep-chart", &["drillsweep-api", "drillsweep-scenario", "drillsweep-table"]),
     ("drillsweep-store", &[]),
     ("drillsweep-server", &["drillsweep-api", "drillsweep-chart", "drillsweep-store", "drillsweep-table"]),
-    ("drillsweep-worker", &["drillsweep-api", "drillsweep-sim", "drillsweep-store", "drillsweep-table"]),
+    (
+        "drillsweep-worker",
+        &["drillsweep-api", "drillsweep-scenario", "drillsweep-sim", "drillsweep-store", "drillsweep-table"],
+    ),
     (
         "drillsweep",
         &[
             "drillsweep-api",
             "drillsweep-chart",
+            "drillsweep-scenario",
             "drillsweep-server",
             "drillsweep-sim",
             "drillsweep-store",
@@ -96,15 +101,17 @@ fn only_tests_make_the_openapi_document() {
 #[test]
 fn simulation_knows_no_clock_files_threads_network_or_async() {
     let metadata = metadata();
-    let sim = metadata.packages.iter().find(|package| package.name.as_str() == "drillsweep-sim").unwrap();
-    for dependency in dependencies(sim) {
-        assert!(
-            !["tokio", "rayon", "tracing", "reqwest", "ureq", "rustix"].contains(&dependency),
-            "sim uses {dependency}"
-        );
-    }
     let mut sources = Vec::new();
-    rust_files(&sim.manifest_path.parent().unwrap().as_std_path().join("src"), &mut sources);
+    for name in ["drillsweep-scenario", "drillsweep-sim"] {
+        let package = metadata.packages.iter().find(|package| package.name.as_str() == name).unwrap();
+        for dependency in dependencies(package) {
+            assert!(
+                !["tokio", "rayon", "tracing", "reqwest", "ureq", "rustix"].contains(&dependency),
+                "{name} uses {dependency}"
+            );
+        }
+        rust_files(&package.manifest_path.parent().unwrap().as_std_path().join("src"), &mut sources);
+    }
     assert!(sources.len() > 30, "the sources were not found");
     for path in sources {
         let text = std::fs::read_to_string(&path).unwrap();
@@ -121,13 +128,13 @@ const LAYERS: &[&str] = &[
     "freedom",
     "linalg",
     "signal",
-    "scenario",
     "well",
     "beam",
     "contact",
     "string",
     "mud",
     "effect",
+    "canonical",
     "model",
     "statics",
     "motion",

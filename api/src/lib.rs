@@ -46,5 +46,5 @@ pub use sweep::{
 };
 pub use verify::{promise_of_scenario, sample};
 
+pub use drillsweep_scenario::{ScenarioRequest, read_strictly};
 pub use drillsweep_sim::PHYSICS_VERSION;
-pub use drillsweep_sim::scenario::{ScenarioRequest, read_strictly};

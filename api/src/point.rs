@@ -1,6 +1,6 @@
 //! One point of a sweep as the service shows it.
 
-use drillsweep_sim::scenario::Scenario;
+use drillsweep_scenario::Scenario;
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};

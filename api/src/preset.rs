@@ -1,6 +1,6 @@
 //! The preset scenarios as the service lists them.
 
-use drillsweep_sim::scenario::{PRESETS, preset};
+use drillsweep_scenario::{PRESETS, preset};
 
 use crate::service::{ScenarioDetail, ScenarioEntry, ScenarioList};
 

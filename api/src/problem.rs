@@ -1,6 +1,6 @@
 //! Errors on the wire: RFC 9457 problem details, all of a request's problems at once.
 
-use drillsweep_sim::scenario::Problem;
+use drillsweep_scenario::Problem;
 use drillsweep_table::Table;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

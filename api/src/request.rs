@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use drillsweep_sim::scenario::{Outputs, Scenario};
+use drillsweep_scenario::{Outputs, Scenario};
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::de::Error as _;

@@ -2,9 +2,9 @@
 
 use std::fmt::Display;
 
+use drillsweep_scenario::Scenario;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::{ModeSearch, modes};
-use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::plan::MachineSpeed;
 

@@ -1,6 +1,6 @@
 //! What the service says about itself.
 
-use drillsweep_sim::scenario::{Scenario, ScenarioRequest};
+use drillsweep_scenario::{Scenario, ScenarioRequest};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 

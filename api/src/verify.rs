@@ -1,6 +1,6 @@
 //! Verifying a sample of a sweep's points: how many, which of them, and what their accuracy promises.
 
-use drillsweep_sim::scenario::{Accuracy, Promise};
+use drillsweep_scenario::{Accuracy, Promise};
 use serde::Deserialize;
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! A cost study as a work-precision diagram.
 
 use drillsweep_api::cost::{CostReport, CostRow, Measure, step_text, three_digits};
-use drillsweep_sim::scenario::{AccuracyPreset, Integrator};
+use drillsweep_scenario::{AccuracyPreset, Integrator};
 
 use crate::picture::{Drawing, Point, Series, WantedAccuracy, WorkPrecisionChart};
 
@@ -92,7 +92,7 @@ fn printed_name(integrator: Integrator) -> &'static str {
 #[cfg(test)]
 mod tests {
     use drillsweep_api::cost::CostErrors;
-    use drillsweep_sim::scenario::TimeWindow;
+    use drillsweep_scenario::TimeWindow;
     use drillsweep_sim::study::cost::StatisticError;
 
     use super::*;

@@ -7,7 +7,8 @@ use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use drillsweep_api::cost::{Measure, summary, summary_table, summary_text, table, text};
 use drillsweep_chart::{PNG_WIDTH, work_precision};
-use drillsweep_sim::scenario::Scenario;
+use drillsweep_scenario::Scenario;
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::study::cost::CostReport;
 use drillsweep_table::csv;
 use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
@@ -160,7 +161,7 @@ fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
     for (path, value) in changes.into_iter().flatten() {
         scenario = scenario.with(path, value)?;
     }
-    scenario.validate()?;
+    validate(&scenario)?;
     Ok(scenario)
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::{Completeness, ModeSearch, Modes, modes};
 use drillsweep_sim::statics::Equilibrium;
@@ -31,7 +32,7 @@ pub(crate) struct ModesArguments {
 /// Finds the modes and prints them.
 pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
-    scenario.validate()?;
+    validate(&scenario)?;
     let model = Model::new(&scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
     let search = ModeSearch { from_hz: arguments.from, to_hz: arguments.to, ..ModeSearch::default() };

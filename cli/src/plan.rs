@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
@@ -24,7 +25,7 @@ pub(crate) struct PlanArguments {
 /// Prints the plan of a scenario, with processor times from some short runs on this machine.
 pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
-    for warning in scenario.validate()? {
+    for warning in validate(&scenario)? {
         tracing::warn!("{}: {}", warning.path, warning.message);
     }
     let speed = calibrate()?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
-use drillsweep_sim::scenario::{PRESETS, Scenario, ScenarioRequest};
+use drillsweep_scenario::{PRESETS, Scenario, ScenarioRequest};
 use serde_json::{Value, json};
 
 /// One scenario with changes.

@@ -10,8 +10,9 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_scenario::{PRESETS, Scenario};
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::{PRESETS, Scenario};
 use drillsweep_sim::study::errors::ResultErrors;
 use drillsweep_worker::{Computed, compute, simulated_time_total};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,7 +40,7 @@ pub(crate) struct SimulateArguments {
 /// Simulates and prints a summary.
 pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(arguments.accuracy.as_deref())?;
-    let warnings = scenario.validate()?;
+    let warnings = validate(&scenario)?;
     for warning in warnings {
         tracing::warn!("{}: {}", warning.path, warning.message);
     }

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use clap::Args;
+use drillsweep_scenario::{AccuracyPreset, Integrator, Scenario};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::{AccuracyPreset, Integrator, Scenario};
 use drillsweep_sim::study::finer::{Difference, Verdict};
 use drillsweep_sim::study::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 use indicatif::{ProgressBar, ProgressStyle};

@@ -10,7 +10,7 @@ use drillsweep_api::{
     AppendRequest, Axis, AxisName, Design, FieldProblem, PlannedPoint, PlannedVerification, Scale, Sweep,
     SweepRequest,
 };
-use drillsweep_sim::scenario::ScenarioRequest;
+use drillsweep_scenario::ScenarioRequest;
 use drillsweep_table::quantity::unit;
 use serde::Deserialize;
 use serde_json::Value;

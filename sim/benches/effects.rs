@@ -2,9 +2,9 @@
 //! Run: `cargo bench -p drillsweep-sim --bench effects`
 
 use divan::Bencher;
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Effect, Scenario, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::Transient;
 

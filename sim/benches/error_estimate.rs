@@ -1,7 +1,7 @@
 //! The error that a result tells of its steps, against the true one, over whole runs through stick-slip and impacts.
 //! Run: `cargo bench -p drillsweep-sim --bench error_estimate` (some ten minutes)
 
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Scenario};
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Scenario};
 use drillsweep_sim::study::errors::TimeError;
 use whole_run_scenes::{WholeRun, apart, scenes};
 

@@ -4,11 +4,11 @@
 use std::hint::black_box;
 
 use divan::Bencher;
+use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
 use drillsweep_sim::linalg::{
     Block, BlockTridiagonal, BlockVector, Factor, MatrixPair, NodalField, SkewPart, Symmetric,
 };
-use drillsweep_sim::scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
 const ROWS: usize = 296;
 

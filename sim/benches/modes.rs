@@ -2,9 +2,9 @@
 //! Run: `cargo bench -p drillsweep-sim --bench modes`
 
 use divan::Bencher;
+use drillsweep_scenario::preset;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::modes::{ModeSearch, modes, stability};
-use drillsweep_sim::scenario::preset;
 use drillsweep_sim::statics::Equilibrium;
 
 fn main() {

@@ -5,10 +5,10 @@
 
 use std::hint::black_box;
 
+use drillsweep_scenario::{Accuracy, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric};
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 

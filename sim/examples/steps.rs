@@ -7,9 +7,10 @@
 
 use std::error::Error;
 
+use drillsweep_scenario::{Accuracy, Integrator, NodeChoice, TimeStepping, preset};
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, Integrator, NodeChoice, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     scenario.recording.nodes = vec![NodeChoice::Node(49)];
     scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
-    scenario.validate().map_err(|problems| problems.to_string())?;
+    validate(&scenario).map_err(|problems| problems.to_string())?;
 
     let model = Model::new(&scenario)?;
     let equilibrium = Equilibrium::find(&model)?;

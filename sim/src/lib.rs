@@ -1,6 +1,6 @@
 //! The dynamics of a drillstring in a 3D well, with mud, borehole contact and friction.
 //!
-//! The crate reads as one sentence: a [`scenario`] becomes a `model` (mesh and matrices of the effects in
+//! The crate reads as one sentence: a [scenario](drillsweep_scenario) becomes a `model` (mesh and matrices of the effects in
 //! play), the model has an equilibrium (`statics`), the equilibrium a hydraulic profile ([`mud`]), and from
 //! there a `transient` yields records, from which orbits and full spectra are cut ([`signal`]).
 //!
@@ -9,6 +9,7 @@
 
 pub mod admission;
 pub mod beam;
+pub mod canonical;
 pub mod contact;
 pub mod control;
 pub mod effect;
@@ -18,7 +19,6 @@ pub mod model;
 pub mod modes;
 pub mod motion;
 pub mod mud;
-pub mod scenario;
 pub mod signal;
 pub mod statics;
 pub mod string;

@@ -1,5 +1,7 @@
 //! The linear part of the equations of motion about an equilibrium: M a + C v + K x = F (equation (37)).
 
+use drillsweep_scenario::{Effect, Switch};
+
 use crate::beam::ElementMatrix;
 use crate::effect::{
     Account, DAMPING, ElementInMotion, MotionTerms, UnbalanceForce, place_of_damping, room, unbalance,
@@ -7,7 +9,6 @@ use crate::effect::{
 use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
-use crate::scenario::{Effect, Switch};
 use crate::statics::Equilibrium;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.

@@ -1,9 +1,9 @@
 //! The time loop lives in the memory that it was given at its start.
 
 use allocation_counter::measure;
+use drillsweep_scenario::{Accuracy, Integrator, Snapshots, TimeStepping, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, Integrator, Snapshots, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Transient};
 

@@ -3,12 +3,13 @@
 
 mod common;
 
+use std::f64::consts::PI;
+
 use common::{STEEL, StraightBeam, critical_factor, eigenvalues, frequencies, select};
+use drillsweep_scenario::preset;
 use drillsweep_sim::beam::BeamSection;
 use drillsweep_sim::mud::{FlowGeometry, FlowMomentum};
-use drillsweep_sim::scenario::preset;
 use nalgebra::DMatrix;
-use std::f64::consts::PI;
 
 const COLLAR: (f64, f64) = (0.159, 0.071);
 

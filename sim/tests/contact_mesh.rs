@@ -1,12 +1,13 @@
 //! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and what rests on it converges.
 
-use drillsweep_sim::contact::Wall;
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::{GRAVITY, Model};
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, SurveyStation, TimeStepping,
     TimeWindow, UnbalanceMass, WallLaw, preset,
 };
+use drillsweep_sim::admission::validate;
+use drillsweep_sim::contact::Wall;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
@@ -224,7 +225,7 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
     scenario.recording.orbit_window = Some(TimeWindow { from: 4.0, to: 5.0 });
     scenario.recording.nodes = [4.0, 10.0, 20.0].map(NodeChoice::Depth).to_vec();
     scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
-    scenario.validate().expect("valid");
+    validate(&scenario).expect("valid");
     let model = Model::new(&scenario).expect("has a model");
     let equilibrium = rest(&model);
     let Ok(Outcome::Finished(records)) =

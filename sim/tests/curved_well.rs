@@ -1,8 +1,8 @@
 //! A string in a curved hole: rigid motion, torque, bending, effective tension, contact load.
 
+use drillsweep_scenario::{Effect, Scenario, SurveyStation, Switch, preset};
 use drillsweep_sim::linalg::{BlockTridiagonal, Factor};
 use drillsweep_sim::model::{GRAVITY, Model, add_element_matrix, add_element_vector, element_values};
-use drillsweep_sim::scenario::{Effect, Scenario, SurveyStation, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::well::WellPath;
 use nalgebra::Vector3;

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     Accuracy, AutoRule, CostStudy, Effect, Integrator, Scenario, Switch, TimeStepping, preset,
 };
+use drillsweep_sim::admission::validate;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::effect::{active_effects, decide_effects};
+use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::cost::{Measure, Role, plan, report};
 use drillsweep_sim::transient::{Outcome, Records, Transient};
@@ -102,7 +104,7 @@ fn what_is_neglected_as_small_stays_within_its_estimate() {
     let mut neglecting = scenario.clone();
     neglecting.effects.auto = AutoRule::Aggressive;
     let left_out: Vec<_> =
-        neglecting.decide_effects().into_iter().filter(|decision| !decision.active).collect();
+        decide_effects(&neglecting).into_iter().filter(|decision| !decision.active).collect();
     assert!(!left_out.is_empty() && left_out.len() <= 3, "{left_out:?}");
     // Each changes frequencies by less than 1e-3, so phases of motion up to 20 Hz by less than 1e-3 * 126 rad/s * 0.5 s.
     let distance = distance(&run(&scenario).0, &run(&neglecting).0);
@@ -190,14 +192,14 @@ fn an_ablation_takes_one_effect_away_at_a_time_and_tells_what_changes() {
     let mut scenario = base(0.1, METHODS[1]);
     scenario.mud.as_mut().unwrap().flow_rate = 0.0;
     scenario.cost_study = Some(CostStudy { effects: true, ..CostStudy::default() });
-    scenario.validate().unwrap();
+    validate(&scenario).unwrap();
     let planned = plan(&scenario).unwrap();
-    let whole = planned[0].scenario.active_effects();
+    let whole = active_effects(&planned[0].scenario);
     assert_eq!((planned[0].role, planned[1].role), (Role::Reference, Role::Twin));
     let mut without = Vec::new();
     for run in &planned[2..] {
         let Role::Without { effect } = run.role else { panic!("{:?}", run.role) };
-        let active = run.scenario.active_effects();
+        let active = active_effects(&run.scenario);
         let changed = Effect::ALL.iter().filter(|&&other| active.is_active(other) != whole.is_active(other));
         assert_eq!(changed.copied().collect::<Vec<_>>(), [effect]);
         without.push(effect);

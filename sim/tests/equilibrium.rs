@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use drillsweep_scenario::{
+    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
+};
 use drillsweep_sim::beam::BeamSection;
 use drillsweep_sim::model::{GRAVITY, Model, element_values};
 use drillsweep_sim::mud::element_flow;
-use drillsweep_sim::scenario::{
-    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
-};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::soak;
 
@@ -99,7 +99,7 @@ fn a_string_that_nothing_stretches_finds_the_wall() {
     // Pinned above, it has no stiffness against turning until it lies on the low side.
     let mut scenario = horizontal(100.0, [0.127, 0.108], 2.0);
     scenario.operation.weight_on_bit = 0.0;
-    scenario.operation.top = drillsweep_sim::scenario::TopCondition::Pinned;
+    scenario.operation.top = drillsweep_scenario::TopCondition::Pinned;
     let model = Model::new(&scenario).expect("valid");
     let equilibrium = Equilibrium::find(&model).expect("rests");
     let beam = section(&scenario);

@@ -1,10 +1,10 @@
 //! The error estimate against the true error, over a set of scenes.
 
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     Accuracy, Effect, Integrator, NodeChoice, RegimeChoice, Scenario, Switch, TimeStepping, preset,
 };
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::transient::{Outcome, Records, Transient};
 

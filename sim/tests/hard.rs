@@ -3,13 +3,14 @@
 
 use std::f64::consts::{PI, TAU};
 
+use drillsweep_scenario::{
+    Accuracy, AccuracyPreset, Gauge, Integrator, PRESETS, Scenario, TimeStepping, preset,
+};
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::modes::{
     InstabilityKind, ModeKind, ModeSearch, Stability, UndampedTorsion, modes, stability,
-};
-use drillsweep_sim::scenario::{
-    Accuracy, AccuracyPreset, Gauge, Integrator, PRESETS, Scenario, TimeStepping, preset,
 };
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::cost::Measure;
@@ -31,7 +32,7 @@ impl Scene {
     }
 
     fn of(scenario: &Scenario) -> Self {
-        scenario.validate().expect("valid");
+        validate(scenario).expect("valid");
         let model = Model::new(scenario).expect("has a model");
         let equilibrium = Equilibrium::find(&model).expect("rests");
         let records = match Transient::new(&model, &equilibrium).expect("sets up").run(&Control::new()) {
@@ -130,7 +131,7 @@ fn every_hard_scene_ships_with_its_reason() {
     assert!(hard.clone().count() >= 25);
     for (name, description) in hard {
         assert!(description.len() > 12, "{name}");
-        assert_eq!(preset(name).expect("resolves").validate(), Ok(vec![]), "{name}");
+        assert_eq!(validate(&preset(name).expect("resolves")), Ok(vec![]), "{name}");
     }
 }
 

@@ -6,10 +6,10 @@ mod annulus;
 use std::f64::consts::PI;
 
 use annulus::{Annulus, YieldPowerLaw, piercy_flow_rate};
+use drillsweep_scenario::{Mud, RegimeChoice};
 use drillsweep_sim::mud::{
     ElementFlow, FlowGeometry, MudError, PressureStep, Regime, SectionFlow, element_flow, pressures,
 };
-use drillsweep_sim::scenario::{Mud, RegimeChoice};
 use nalgebra::{Complex, Matrix4, Vector4};
 use proptest::prelude::*;
 

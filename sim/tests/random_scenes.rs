@@ -1,8 +1,8 @@
 //! Three hundred scenes drawn over wide ranges: each ends with a finite result whose ledger closes within its bound, or as a typed
 //! failure; and at the accuracy of a preset a finer step confirms most results. More of them, and other seeds: `drillsweep soak`.
 
+use drillsweep_scenario::AccuracyPreset;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::AccuracyPreset;
 use drillsweep_sim::study::finer::{Difference, Verdict};
 use drillsweep_sim::study::soak::{Refined, SceneEnd, at_accuracy, run, run_and_refine, scene};
 

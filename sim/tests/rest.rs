@@ -1,8 +1,8 @@
 //! Strings that nothing moves: they stay where they are, at a cost like that of those that move.
 
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::summary::TransientSummary;
 use drillsweep_sim::transient::{NodeHistory, Outcome, Records, Transient};

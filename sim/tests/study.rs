@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping, TimeWindow, preset,
 };
+use drillsweep_sim::admission::validate;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::cost::{CostReport, CostRow, Measure, PlannedRow, Quantity, plan, report};
 use drillsweep_sim::transient::{Outcome, Transient};
@@ -29,7 +30,7 @@ fn hanging(rate_hz: f64, study: CostStudy) -> Scenario {
         scenario = scenario.with(path, value).unwrap();
     }
     scenario.cost_study = Some(study);
-    scenario.validate().unwrap();
+    validate(&scenario).unwrap();
     scenario
 }
 

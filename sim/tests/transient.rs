@@ -1,11 +1,11 @@
 //! The run in time on the base case: agreement of methods, energy, stability limits, suspension.
 
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     Accuracy, AccuracyPreset, Effect, Integrator, NodeChoice, Scenario, Switch, TimeStepping, TimeWindow,
     WallLaw, preset,
 };
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
 use drillsweep_sim::signal::{PeakSearch, Window, full_spectrum};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::summary::TransientSummary;

@@ -1,9 +1,9 @@
 //! Statistics over the window that is read, at the end of whole runs through stick-slip, against a reference that two methods of
 //! different kind reach.
 
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::errors::TimeError;
 use drillsweep_sim::transient::{ContactStatistics, Outcome, Transient};

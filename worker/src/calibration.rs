@@ -1,8 +1,8 @@
 //! How fast this machine is: short runs whose steps are timed, so that plans can predict processor times.
 
+use drillsweep_scenario::{Scenario, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{Scenario, preset};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::plan::{MachineSpeed, RunTime, calibration_runs};
 use drillsweep_sim::transient::{Outcome, Transient};

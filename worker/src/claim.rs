@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use drillsweep_api::{FailureClass, PointError, compose};
+use drillsweep_scenario::Scenario;
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
     BlobId, Claim, Finished, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError,

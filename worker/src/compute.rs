@@ -4,11 +4,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use drillsweep_api::{FailureClass, PointError};
+use drillsweep_scenario::Scenario;
 use drillsweep_sim::PHYSICS_VERSION;
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{Model, ModelError};
 use drillsweep_sim::modes::{Stability, UndampedTorsion, stability};
-use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::signal::sample_range;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::cost::{CostReport, Recommendation, StudyError};
@@ -218,7 +219,7 @@ pub fn compute_from(
     suspended: Option<Suspended>,
     scratch: &Path,
 ) -> Result<Computation, ComputeError> {
-    scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
+    validate(scenario).map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let started = Stopwatch::start();
     let model = Model::new(scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
@@ -401,7 +402,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::os::unix::fs::FileExt;
 
-    use drillsweep_sim::scenario::{
+    use drillsweep_scenario::{
         Effect, NodeChoice, OrbitOutputs, Outputs, Snapshots, Switch, TimeWindow, preset,
     };
     use drillsweep_sim::study::footprint::Footprint;

@@ -1,8 +1,9 @@
 //! A work-precision study: its runs side by side on all cores, each with its own processor time.
 
+use drillsweep_scenario::Scenario;
+use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::Scenario;
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::cost::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
 use drillsweep_sim::study::plan::MachineSpeed;
@@ -17,7 +18,7 @@ use crate::compute::{ComputeError, Stopwatch};
 /// # Errors
 /// When the scenario is not valid, both methods of the reference fail, or it is cancelled.
 pub fn cost_study(scenario: &Scenario, control: &Control) -> Result<CostReport, ComputeError> {
-    scenario.validate().map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
+    validate(scenario).map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let planned = plan(scenario)?;
     let members = planned.iter().flat_map(|row| row.members.clone().map(move |member| (row, member)));
     let members: Vec<_> = members.collect();

@@ -1,7 +1,7 @@
 //! Where a result comes from: which code computed it, how, where, and at what cost.
 
+use drillsweep_scenario::TimeStepping;
 use drillsweep_sim::modes::UndampedTorsion;
-use drillsweep_sim::scenario::TimeStepping;
 use drillsweep_sim::study::errors::ResultErrors;
 use drillsweep_sim::transient::{ErrorEstimate, Records};
 use jiff::Timestamp;
@@ -82,7 +82,7 @@ pub struct RunProvenance {
 /// What of the stepping is told.
 #[derive(Debug, Clone, Serialize)]
 struct Stepping {
-    integrator: drillsweep_sim::scenario::Integrator,
+    integrator: drillsweep_scenario::Integrator,
     step: f64,
     tolerance: Option<f64>,
     contact_sweeps: u32,

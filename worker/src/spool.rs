@@ -338,9 +338,9 @@ impl Suspended {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::preset;
     use drillsweep_sim::control::Control;
     use drillsweep_sim::model::Model;
-    use drillsweep_sim::scenario::preset;
     use drillsweep_sim::statics::Equilibrium;
     use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
 

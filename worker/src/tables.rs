@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
+use drillsweep_scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
 use drillsweep_sim::model::Model;
-use drillsweep_sim::scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
 use drillsweep_sim::signal::{FullSpectrum, Window, full_spectrum, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::spread;

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 use allocation_counter::measure;
+use drillsweep_scenario::{NodeChoice, Scenario, Snapshots, TimeWindow, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::scenario::{NodeChoice, Scenario, Snapshots, TimeWindow, preset};
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_worker::compute;
 

@@ -35,7 +35,7 @@ pub fn three_digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::{Integrator, TimeWindow};
+    use drillsweep_scenario::{Integrator, TimeWindow};
     use drillsweep_sim::study::cost::{
         Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NodeAgreement,
         NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, TotalChoice, TotalCost,

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
 use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use drillsweep_sim::scenario::Integrator;
+use drillsweep_scenario::Integrator;
 use drillsweep_sim::study::cost::{
     Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshPart, NodeAgreement, Quantity,
     StatisticError, TotalCost,

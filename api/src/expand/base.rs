@@ -1,6 +1,7 @@
 //! The scenario that the points of a request share.
 
-use drillsweep_sim::scenario::{PRESETS, Problems, Scenario, ScenarioRequest};
+use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest};
+use drillsweep_sim::admission::validate;
 use indexmap::{IndexMap, IndexSet};
 
 use super::expansion::{number, set_number};
@@ -67,7 +68,7 @@ pub(super) fn set_fields(
 /// The problems of the scenario itself, when the axes cannot be expanded: a sweep's other mistakes are not
 /// kept back until its axes are right. What the axes would replace is not looked at.
 pub(super) fn check_without_axes(request: &SweepRequest, scenario: &Scenario, problems: &mut Found) {
-    let Err(Problems(of_scenario)) = scenario.validate() else { return };
+    let Err(Problems(of_scenario)) = validate(scenario) else { return };
     let replaced: IndexSet<&str> = swept(request).collect();
     for problem in of_scenario.iter().filter(|problem| !replaced.contains(problem.path.as_str())) {
         problems.add(request, |_| None, problem);
@@ -82,7 +83,7 @@ fn swept(request: &SweepRequest) -> impl Iterator<Item = &str> {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::preset;
+    use drillsweep_scenario::preset;
     use serde_json::json;
 
     use crate::expand::tests::{expansion, pointers, problems};

@@ -1,7 +1,8 @@
 //! What a request expands into, and what a point is known by.
 
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
+use drillsweep_sim::canonical::canonical_bytes;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
@@ -120,7 +121,7 @@ pub fn key(scenario: &Scenario) -> PointKey {
     let mut hasher = blake3::Hasher::new();
     hasher.update(b"drillsweep point\0");
     hasher.update(&PHYSICS_VERSION.to_le_bytes());
-    hasher.update(&scenario.canonical_bytes());
+    hasher.update(&canonical_bytes(scenario));
     hasher.finalize().into()
 }
 
@@ -169,7 +170,7 @@ pub(super) fn number(value: f64) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::preset;
+    use drillsweep_scenario::preset;
 
     use super::*;
     use crate::expand::expand;

@@ -1,6 +1,7 @@
 //! The points of a request, validated.
 
-use drillsweep_sim::scenario::{Problem, Problems, Scenario, Warning};
+use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
+use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::transient::step_problem;
 
 use super::expansion::{Expansion, SweepPoint, set_number};
@@ -24,8 +25,8 @@ pub(super) fn points(
         let set =
             paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
         let checked = set.map_err(Problems::from).and_then(|()| match index {
-            0 => scenario.validate(),
-            _ => scenario.validate_changes(paths.iter().copied()),
+            0 => validate(&scenario),
+            _ => validate_changes(&scenario, paths.iter().copied()),
         });
         match checked {
             Ok(of_scenario) => {

@@ -1,6 +1,6 @@
 //! What is wrong with a request, and where in it that is written.
 
-use drillsweep_sim::scenario::Problem;
+use drillsweep_scenario::Problem;
 use indexmap::IndexMap;
 use serde_json::Value;
 
@@ -93,7 +93,7 @@ fn scenario_pointer(path: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::preset;
+    use drillsweep_scenario::preset;
     use serde_json::json;
 
     use super::*;

@@ -2,7 +2,9 @@
 
 use std::iter::{once, repeat};
 
-use drillsweep_sim::scenario::{Accuracy, AccuracyPreset, Problem, Problems};
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
+use drillsweep_sim::admission::{validate, validate_changes};
+use drillsweep_sim::effect::active_effects;
 
 use super::expansion::{Expansion, SweepPoint, set_number};
 use super::problems::Found;
@@ -42,7 +44,7 @@ pub(super) fn references(
             "the points are of the accuracy `reference` already, which verifies others",
         );
     }
-    if base.cost_study.is_some() || !base.active_effects().transient {
+    if base.cost_study.is_some() || !active_effects(&base).transient {
         problems.push(
             pointer,
             None,
@@ -64,8 +66,8 @@ pub(super) fn references(
         let set =
             paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
         let checked = set.map_err(Problems::from).and_then(|()| match is_first {
-            true => scenario.validate(),
-            false => scenario.validate_changes(paths.iter().copied()),
+            true => validate(&scenario),
+            false => validate_changes(&scenario, paths.iter().copied()),
         });
         match checked {
             Ok(_) => points.push(SweepPoint::new(point.ordinal, values, &mut scenario)),
@@ -82,7 +84,7 @@ pub(super) fn references(
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::scenario::Scenario;
+    use drillsweep_scenario::Scenario;
     use serde_json::{Value, json};
 
     use super::*;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use drillsweep_sim::scenario::Promise;
+use drillsweep_scenario::Promise;
 use drillsweep_table::quantity::{Name, Variant, columns};
 use drillsweep_table::{Column, Quantity, Table};
 use indexmap::{IndexMap, IndexSet};

@@ -130,7 +130,7 @@ async fn a_scenario_file_is_read_in_either_format() {
     };
     let preset = bench.get("/v1/scenarios/paper-200m").await.json()["scenario"].clone();
     assert_eq!(read("json", &preset.to_string()).await.json()["scenario"], preset);
-    let toml = include_str!("../../../sim/presets/paper-200m.toml");
+    let toml = include_str!("../../../scenario/presets/paper-200m.toml");
     assert_eq!(read("toml", toml).await.json()["scenario"], preset);
     let changed = read("toml", "preset = \"paper-200m\"\n[set]\n\"mud.density\" = 1500.0").await.json();
     assert_eq!(changed, json!({"preset": "paper-200m", "set": {"mud.density": 1500.0}}));

@@ -1,7 +1,8 @@
 //! Rules of the well.
 
+use drillsweep_scenario::Scenario;
+
 use super::report::Report;
-use crate::scenario::Scenario;
 use crate::well::{WellError, WellPath};
 
 /// Doglegs above this \[deg / 30 m\] are hardly drilled: the survey is probably wrong.
@@ -103,7 +104,7 @@ mod tests {
         for inclination in [-1.0, 180.5] {
             problem("well.survey[4].inclination_deg", |s| s.well.survey[4].inclination_deg = inclination);
         }
-        let straight_up = |s: &mut crate::scenario::Scenario| {
+        let straight_up = |s: &mut drillsweep_scenario::Scenario| {
             for station in &mut s.well.survey {
                 station.inclination_deg = 180.0;
             }

@@ -1,7 +1,8 @@
 //! Rules of mud, operation, contact and damping.
 
+use drillsweep_scenario::{ContactLaw, Mud, Operation, Scenario, WallLaw};
+
 use super::report::Report;
-use crate::scenario::{ContactLaw, Mud, Operation, Scenario, WallLaw};
 
 /// Mud densities \[kg/m3\] outside this range are unheard of: another unit is probably meant.
 const USUAL_MUD_DENSITY: std::ops::RangeInclusive<f64> = 500.0..=3000.0;
@@ -119,8 +120,9 @@ fn belongs(report: &mut Report, contact: &ContactLaw, field: &str, value: f64) -
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Mud, Scenario, WallLaw};
+
     use super::super::report::testing::{problem, warnings};
-    use crate::scenario::{Mud, Scenario, WallLaw};
 
     fn mud_problem(field: &str, change: impl Fn(&mut Mud)) -> String {
         problem(&format!("mud.{field}"), |s| change(s.mud.as_mut().unwrap())).message
@@ -173,7 +175,7 @@ mod tests {
         let found = problem("operation.torque_on_bit", |s| s.operation.torque_on_bit = 5000.0);
         assert!(found.message.contains("-5000 rather than 5000?"), "{found}");
         problem("operation.torque_on_bit", |s| s.operation.rotation_speed_rpm = -120.0);
-        let backwards = |s: &mut crate::scenario::Scenario| {
+        let backwards = |s: &mut drillsweep_scenario::Scenario| {
             (s.operation.rotation_speed_rpm, s.operation.torque_on_bit) = (-120.0, 5000.0);
         };
         assert_eq!(warnings(backwards), []);
@@ -220,7 +222,7 @@ mod tests {
         let found = problem("contact.dynamic_friction", |s| s.contact.dynamic_friction = 0.31);
         assert!(found.message.contains("0.3"), "{found}");
         assert_eq!(warnings(|s| s.contact.dynamic_friction = 0.3), []);
-        let frictionless = |s: &mut crate::scenario::Scenario| {
+        let frictionless = |s: &mut drillsweep_scenario::Scenario| {
             (s.contact.static_friction, s.contact.dynamic_friction) = (0.0, 0.0);
         };
         assert_eq!(warnings(frictionless), []);

@@ -1,6 +1,5 @@
-//! What can be simulated, and under which key: every rule that a scenario must keep, checked all at once, and the bytes that stand for it.
+//! What can be simulated: every rule that a scenario must keep, checked all at once.
 
-mod canonical;
 mod hole;
 mod loads;
 mod report;
@@ -9,109 +8,98 @@ mod string;
 mod study;
 mod time;
 
-use crate::scenario::{Problems, Scenario, Warning};
+use drillsweep_scenario::{Problems, Scenario, Warning};
 use report::Report;
 
-impl Scenario {
-    /// Checks that the scenario can be simulated.
-    ///
-    /// # Errors
-    /// All problems at once, each with the field's path, what it holds and what would be valid. A scenario
-    /// without problems may still earn warnings about what is probably not meant.
-    pub fn validate(&self) -> Result<Vec<Warning>, Problems> {
-        self.check(true)
-    }
-
-    /// Checks again a scenario whose numbers at the paths `changed` differ from those of one that was checked in full.
-    /// Well, string and mesh, the costly part, are left out where none of the paths leads there.
-    ///
-    /// # Errors
-    /// As [`Scenario::validate`]; what does not depend on the changed numbers may be left out, and so may warnings.
-    pub fn validate_changes<'a>(
-        &self,
-        changed: impl IntoIterator<Item = &'a str>,
-    ) -> Result<Vec<Warning>, Problems> {
-        let shapes = ["well", "string", "mesh", "recording", "cost_study"];
-        let leads_to = |path: &str, part: &str| {
-            path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        };
-        // How many snapshots there may be depends on the nodes.
-        let of_snapshots = self.recording.snapshots.is_some().then_some("duration");
-        let parts = || shapes.into_iter().chain(of_snapshots);
-        let mut changed = changed.into_iter();
-        self.check(changed.any(|path| parts().any(|part| leads_to(path, part))))
-    }
-
-    fn check(&self, with_shape: bool) -> Result<Vec<Warning>, Problems> {
-        let mut report = Report::default();
-        let mut is_finite = true;
-        self.clone().each_number(&mut |number| is_finite &= number.is_finite());
-        if !is_finite {
-            finite(&mut report, &self.tree(), String::new());
-        }
-        report.require(
-            !self.name.chars().any(char::is_control),
-            "name",
-            self.name.escape_default(),
-            "must hold no control characters",
-        );
-        // With a mesh that follows from the scenario everything may change it.
-        let mesh = if with_shape || self.mesh.is_auto() {
-            hole::check(&mut report, self);
-            string::check(&mut report, self)
-        } else {
-            None
-        };
-        loads::check(&mut report, self);
-        time::check(&mut report, self, mesh.as_ref());
-        report.finish()
-    }
+/// Checks that a scenario can be simulated.
+///
+/// # Errors
+/// All problems at once, each with the field's path, what it holds and what would be valid. A scenario
+/// without problems may still earn warnings about what is probably not meant.
+pub fn validate(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
+    check(scenario, true)
 }
 
-/// Every number anywhere must be finite; the other rules skip those that are not.
-fn finite(report: &mut Report, tree: &toml::Value, path: String) {
-    match tree {
-        toml::Value::Float(number) => {
-            report.require(number.is_finite(), path, number, "must be a finite number");
-        }
-        toml::Value::Array(entries) => {
-            for (i, entry) in entries.iter().enumerate() {
-                finite(report, entry, format!("{path}[{i}]"));
-            }
-        }
-        toml::Value::Table(fields) => {
-            for (field, value) in fields {
-                let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
-                finite(report, value, path);
-            }
-        }
-        _ => {}
+/// Checks again a scenario whose numbers at the paths `changed` differ from those of one that was checked in full.
+/// Well, string and mesh, the costly part, are left out where none of the paths leads there.
+///
+/// # Errors
+/// As [`validate`]; what does not depend on the changed numbers may be left out, and so may warnings.
+pub fn validate_changes<'a>(
+    scenario: &Scenario,
+    changed: impl IntoIterator<Item = &'a str>,
+) -> Result<Vec<Warning>, Problems> {
+    let shapes = ["well", "string", "mesh", "recording", "cost_study"];
+    let leads_to = |path: &str, part: &str| {
+        path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    // How many snapshots there may be depends on the nodes.
+    let of_snapshots = scenario.recording.snapshots.is_some().then_some("duration");
+    let parts = || shapes.into_iter().chain(of_snapshots);
+    let mut changed = changed.into_iter();
+    check(scenario, changed.any(|path| parts().any(|part| leads_to(path, part))))
+}
+
+fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems> {
+    let mut report = Report::default();
+    // The other rules skip numbers that are not finite.
+    for (path, number) in scenario.numbers_not_finite() {
+        report.require(false, path, number, "must be a finite number");
     }
+    report.require(
+        !scenario.name.chars().any(char::is_control),
+        "name",
+        scenario.name.escape_default(),
+        "must hold no control characters",
+    );
+    // With a mesh that follows from the scenario everything may change it.
+    let mesh = if with_shape || scenario.mesh.is_auto() {
+        hole::check(&mut report, scenario);
+        string::check(&mut report, scenario)
+    } else {
+        None
+    };
+    loads::check(&mut report, scenario);
+    time::check(&mut report, scenario, mesh.as_ref());
+    report.finish()
 }
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{PRESETS, ScenarioRequest, preset};
+
     use super::*;
-    use crate::scenario::{PRESETS, preset};
 
     #[test]
     fn every_preset_is_valid_and_without_warnings() {
         for (name, _) in PRESETS {
-            assert_eq!(preset(name).unwrap().validate(), Ok(vec![]), "{name}");
+            assert_eq!(validate(&preset(name).unwrap()), Ok(vec![]), "{name}");
         }
+    }
+
+    #[test]
+    fn a_presets_windows_are_valid_at_any_duration_and_own_windows_at_that_they_were_made_for() {
+        for duration in [0.03, 6.0, 61.0, 120.0] {
+            let request = format!(r#"{{"preset": "paper-200m", "set": {{"duration": {duration}}}}}"#);
+            let scenario = ScenarioRequest::from_json(&request).unwrap().resolve().unwrap();
+            assert_eq!(validate(&scenario).map(drop), Ok(()), "{duration} s");
+        }
+        let own = Scenario { duration: 6.0, ..preset("paper-200m").unwrap() };
+        assert!(validate(&own).is_err(), "windows that a scenario gives itself are not changed");
     }
 
     #[test]
     fn numbers_that_are_not_finite_are_reported_wherever_they_stand() {
         let scenario = preset("paper-200m").unwrap().with("accuracy.tolerance", 0.01.into()).unwrap();
+        let tree = toml::Value::try_from(&scenario).unwrap();
         let mut paths = Vec::new();
-        collect(&scenario.tree(), String::new(), &mut paths);
+        collect(&tree, String::new(), &mut paths);
         assert!(paths.len() > 100, "the walk found only {} numbers", paths.len());
         for path in paths {
             for number in ["nan", "inf", "-inf"] {
-                let mut tree = scenario.tree();
+                let mut tree = tree.clone();
                 *place(&mut tree, &path) = toml::Value::Float(number.parse().unwrap());
-                let problems = tree.try_into::<Scenario>().unwrap().validate().unwrap_err();
+                let problems = validate(&tree.try_into().unwrap()).unwrap_err();
                 let at: Vec<_> = problems.0.iter().filter(|problem| problem.path == path).collect();
                 assert_eq!(at.len(), 1, "{path} = {number}: {problems}");
                 assert_eq!(at[0].message, "must be a finite number");
@@ -152,9 +140,9 @@ mod tests {
         scenario.string.sections[2].inner_diameter = 0.2;
         scenario.mud.as_mut().unwrap().density = -1200.0;
         scenario.operation.torque_on_bit = 5000.0;
-        scenario.recording.nodes.push(crate::scenario::NodeChoice::Node(400));
+        scenario.recording.nodes.push(drillsweep_scenario::NodeChoice::Node(400));
         scenario.duration = f64::NAN;
-        let problems = scenario.validate().unwrap_err();
+        let problems = validate(&scenario).unwrap_err();
         let mut paths: Vec<&str> = problems.0.iter().map(|problem| problem.path.as_str()).collect();
         paths.sort_unstable();
         assert_eq!(

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use crate::scenario::{Problem, Problems, Warning};
+use drillsweep_scenario::{Problem, Problems, Warning};
 
 /// The findings so far.
 #[derive(Debug, Default)]
@@ -78,13 +78,15 @@ impl Report {
 pub(super) mod testing {
     //! Short assertions on what a changed base case is reported for.
 
-    use crate::scenario::{Problem, Scenario, Warning, preset};
+    use drillsweep_scenario::{Problem, Scenario, Warning, preset};
+
+    use crate::admission::validate;
 
     /// Validates the base case after a change that makes it invalid.
     pub(crate) fn problems(change: impl Fn(&mut Scenario)) -> Vec<Problem> {
         let mut scenario = preset("paper-200m").unwrap();
         change(&mut scenario);
-        scenario.validate().expect_err("the change should make the scenario invalid").0
+        validate(&scenario).expect_err("the change should make the scenario invalid").0
     }
 
     /// The one problem that a change gives rise to.
@@ -99,6 +101,6 @@ pub(super) mod testing {
     pub(crate) fn warnings(change: impl Fn(&mut Scenario)) -> Vec<Warning> {
         let mut scenario = preset("paper-200m").unwrap();
         change(&mut scenario);
-        scenario.validate().expect("the change should leave the scenario valid")
+        validate(&scenario).expect("the change should leave the scenario valid")
     }
 }

@@ -1,8 +1,10 @@
 //! Rules of snapshots of the whole string.
 
+use drillsweep_scenario::{Outputs, Scenario, Snapshots};
+
 use super::report::Report;
 use super::time::{check_window, is_whole};
-use crate::scenario::{Outputs, Scenario, Snapshots};
+use crate::effect::active_effects;
 use crate::string::StringMesh;
 use crate::transient::SnapshotTimes;
 
@@ -27,7 +29,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         "needs the outputs spectra, orbits or full: a summary keeps no table",
     );
     report.warn(
-        scenario.cost_study.is_some() || !scenario.active_effects().transient,
+        scenario.cost_study.is_some() || !active_effects(scenario).transient,
         PATH,
         "there is no run in time of which snapshots could be kept",
     );
@@ -94,8 +96,10 @@ fn valid_rates(recorded: f64, ratio: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{CostStudy, Outputs, Scenario, Snapshots, TimeWindow, preset};
+
     use super::super::report::testing::{problem, warnings};
-    use crate::scenario::{CostStudy, Outputs, Scenario, Snapshots, TimeWindow, preset};
+    use crate::admission::validate_changes;
 
     fn asking(rate_hz: f64, window: Option<(f64, f64)>) -> impl Fn(&mut Scenario) {
         let window = window.map(|(from, to)| TimeWindow { from, to });
@@ -148,7 +152,7 @@ mod tests {
         let mut scenario = preset("paper-200m").unwrap();
         (scenario.duration, scenario.recording.rate_hz) = (1200.0, 200.0);
         asking(200.0, None)(&mut scenario);
-        assert!(scenario.validate_changes(["duration"]).is_err());
+        assert!(validate_changes(&scenario, ["duration"]).is_err());
     }
 
     #[test]

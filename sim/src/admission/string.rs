@@ -1,9 +1,10 @@
 //! Rules of the string and its mesh.
 
-use super::report::Report;
-use crate::scenario::{
+use drillsweep_scenario::{
     ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw,
 };
+
+use super::report::Report;
 use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
 
 /// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
@@ -252,8 +253,9 @@ fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &Strin
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Gauge, Material, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
+
     use super::super::report::testing::{problem, problems, warnings};
-    use crate::scenario::{Gauge, Material, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
 
     #[test]
     fn material_constants_are_physical() {

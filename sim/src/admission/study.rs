@@ -1,8 +1,10 @@
 //! Rules of cost studies.
 
+use drillsweep_scenario::{Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping};
+
 use super::report::Report;
 use super::time::{LARGEST_ENSEMBLE, check_accuracy, is_whole};
-use crate::scenario::{Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping};
+use crate::effect::active_effects;
 
 /// Runs of one cost study at most.
 const MOST_RUNS: usize = 256;
@@ -33,7 +35,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
     );
     report.require(
-        scenario.active_effects().transient,
+        active_effects(scenario).transient,
         "cost_study",
         "effects.transient off",
         "needs the run in time",
@@ -138,8 +140,9 @@ fn with_stepping(scenario: &Scenario, stepping: TimeStepping) -> Scenario {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping};
+
     use super::super::report::testing::{problem, warnings};
-    use crate::scenario::{CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping};
 
     fn with(study: CostStudy) -> impl Fn(&mut Scenario) {
         move |scenario| scenario.cost_study = Some(study.clone())

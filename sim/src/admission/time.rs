@@ -1,11 +1,13 @@
 //! Rules of duration, accuracy and recording.
 
-use super::report::Report;
-use super::{snapshots, study};
-use crate::scenario::{
+use drillsweep_scenario::{
     Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
     TOLERANCES, TimeStepping, TimeWindow,
 };
+
+use super::report::Report;
+use super::{snapshots, study};
+use crate::effect::active_effects;
 use crate::string::StringMesh;
 
 /// Two times that differ by less than this part of them are the same.
@@ -62,7 +64,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         check_window(report, scenario, window, "recording.orbit_window");
     }
     report.warn(
-        recording.nodes.is_empty() && scenario.active_effects().transient,
+        recording.nodes.is_empty() && active_effects(scenario).transient,
         "recording.nodes",
         "no node is recorded: there will be no history",
     );
@@ -143,7 +145,7 @@ pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
         }
     }
 
-    let effects = scenario.active_effects();
+    let effects = active_effects(scenario);
     let friction_drives_torsion = scenario.contact.static_friction > scenario.contact.dynamic_friction
         && effects.contact
         && effects.friction_torque
@@ -336,9 +338,10 @@ pub(super) fn is_whole(ratio: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::AccuracyPreset;
+
     use super::super::report::testing::{problem, problems, warnings};
     use super::*;
-    use crate::scenario::AccuracyPreset;
 
     fn explicit(integrator: Integrator, step: f64) -> TimeStepping {
         TimeStepping::fixed(integrator, step)

@@ -192,8 +192,9 @@ fn difference_row(dof: usize, factor: f64) -> ElementVector {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::Material;
+
     use super::*;
-    use crate::scenario::Material;
 
     fn element() -> BeamElement {
         let steel = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::scenario::Material;
+use drillsweep_scenario::Material;
 
 /// A pipe's cross-section with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw};
+
 use crate::linalg::Lane;
-use crate::scenario::{ActiveEffects, Adhesion, ContactLaw};
 
 /// A [`ContactLaw`] with its switches, ready to evaluate.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -64,9 +64,10 @@ pub fn sliding_tangent(
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{ActiveEffects, preset};
+
     use super::*;
     use crate::contact::{LateralMotion, dynamic_contact};
-    use crate::scenario::{ActiveEffects, preset};
 
     #[test]
     fn tangent_is_the_derivative_of_the_force() {

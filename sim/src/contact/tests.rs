@@ -1,8 +1,9 @@
 use std::f64::consts::{PI, TAU};
 
+use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
+
 use super::*;
 use crate::linalg::{Four, Lane};
-use crate::scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
 /// The law of the paper's 200 m base case (Table 5).
 const BASE: ContactLaw = ContactLaw {

@@ -1,8 +1,9 @@
 //! The wall of a hole as a string's nodes meet it.
 
+use drillsweep_scenario::{ActiveEffects, ContactLaw};
+
 use super::ContactNode;
 use super::law::ContactParameters;
-use crate::scenario::{ActiveEffects, ContactLaw};
 
 /// The contact law, and the nodes that can touch.
 ///

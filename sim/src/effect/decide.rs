@@ -1,10 +1,10 @@
 //! Which effects a scene calls for, and why.
 
+use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
 
 use super::room;
 use super::scene::{LateralWave, Scene};
-use crate::scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 
 /// Change of frequencies below which the aggressive rule leaves an effect out.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -23,68 +23,66 @@ pub struct EffectDecision {
     pub reason: String,
 }
 
-impl Scenario {
-    /// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
-    ///
-    /// `auto` leaves an effect out where the scene makes its term, or a motion, exactly zero, so that the
-    /// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
-    /// aggressive rule neglects what is small.
-    pub fn decide_effects(&self) -> Vec<EffectDecision> {
-        // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
-        let mut active = ActiveEffects::ALL;
-        let decide = |&effect: &Effect| {
-            let switch = self.effects.switch(effect);
-            let (is_active, reason) = match switch {
-                Switch::On => (true, "asked for".to_owned()),
-                Switch::Off => (false, "switched off".to_owned()),
-                Switch::Auto => {
-                    let call = (room(effect).called_for)(&Scene { scenario: self, active: &active });
-                    let change = self.frequency_change(effect);
-                    let neglects = self.effects.auto == AutoRule::Aggressive;
-                    if call.active && neglects && change < NEGLIGIBLE {
-                        (
-                            false,
-                            format!(
-                                "left out as small: it changes frequencies by about {change:.0e} of them"
-                            ),
-                        )
-                    } else {
-                        (call.active, call.reason.to_owned())
-                    }
+/// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
+///
+/// `auto` leaves an effect out where the scene makes its term, or a motion, exactly zero, so that the
+/// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
+/// aggressive rule neglects what is small.
+pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
+    // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
+    let mut active = ActiveEffects::ALL;
+    let decide = |&effect: &Effect| {
+        let switch = scenario.effects.switch(effect);
+        let (is_active, reason) = match switch {
+            Switch::On => (true, "asked for".to_owned()),
+            Switch::Off => (false, "switched off".to_owned()),
+            Switch::Auto => {
+                let call = (room(effect).called_for)(&Scene { scenario, active: &active });
+                let change = frequency_change(scenario, effect);
+                let neglects = scenario.effects.auto == AutoRule::Aggressive;
+                if call.active && neglects && change < NEGLIGIBLE {
+                    (
+                        false,
+                        format!("left out as small: it changes frequencies by about {change:.0e} of them"),
+                    )
+                } else {
+                    (call.active, call.reason.to_owned())
                 }
-            };
-            active.set(effect, is_active);
-            EffectDecision { effect, switch, active: is_active, reason }
+            }
         };
-        Effect::ALL.iter().map(decide).collect()
-    }
+        active.set(effect, is_active);
+        EffectDecision { effect, switch, active: is_active, reason }
+    };
+    Effect::ALL.iter().map(decide).collect()
+}
 
-    /// The effects that take part.
-    pub fn active_effects(&self) -> ActiveEffects {
-        let mut active = ActiveEffects::ALL;
-        for decision in self.decide_effects() {
-            active.set(decision.effect, decision.active);
-        }
-        active
+/// The effects that take part.
+pub fn active_effects(scenario: &Scenario) -> ActiveEffects {
+    let mut active = ActiveEffects::ALL;
+    for decision in decide_effects(scenario) {
+        active.set(decision.effect, decision.active);
     }
+    active
+}
 
-    /// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
-    /// largest of any section; infinite where no such estimate is made.
-    fn frequency_change(&self, effect: Effect) -> f64 {
-        let Some(frequency_change) = room(effect).frequency_change else { return f64::INFINITY };
-        let of_section = |section| {
-            let change = frequency_change(&LateralWave::along(section, self));
-            // Without rotation there is no such wave.
-            if change.is_nan() { f64::INFINITY } else { change }
-        };
-        self.string.sections.iter().map(of_section).fold(0.0, f64::max)
-    }
+/// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
+/// largest of any section; infinite where no such estimate is made.
+fn frequency_change(scenario: &Scenario, effect: Effect) -> f64 {
+    let Some(estimate) = room(effect).frequency_change else { return f64::INFINITY };
+    let of_section = |section| {
+        let change = estimate(&LateralWave::along(section, scenario));
+        // Without rotation there is no such wave.
+        if change.is_nan() { f64::INFINITY } else { change }
+    };
+    scenario.string.sections.iter().map(of_section).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Effects, SurveyStation, preset};
+
     use super::*;
-    use crate::scenario::{Effects, SurveyStation, preset};
+    use crate::canonical::canonical_bytes;
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
@@ -95,7 +93,7 @@ mod tests {
         let mut scenario = paper();
         scenario.effects = Effects::default();
         change(&mut scenario);
-        let left_out = scenario.decide_effects().into_iter().filter(|decision| !decision.active);
+        let left_out = decide_effects(&scenario).into_iter().filter(|decision| !decision.active);
         left_out.map(|decision| decision.effect.name()).collect()
     }
 
@@ -164,7 +162,7 @@ mod tests {
         scenario.effects.set(Effect::Friction, Switch::On);
         scenario.operation.rotation_speed_rpm = 0.0;
         scenario.effects.set(Effect::Gyroscopic, Switch::On);
-        let decisions = scenario.decide_effects();
+        let decisions = decide_effects(&scenario);
         let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
         assert_eq!(
             (of(Effect::Contact).active, of(Effect::Contact).reason.as_str()),
@@ -179,20 +177,20 @@ mod tests {
     #[test]
     fn small_effects_are_left_out_only_where_that_is_asked_for_and_with_an_estimate() {
         let mut scenario = paper();
-        assert!(scenario.decide_effects().iter().all(|decision| decision.active));
+        assert!(decide_effects(&scenario).iter().all(|decision| decision.active));
         scenario.effects.auto = AutoRule::Aggressive;
-        let decisions = scenario.decide_effects();
+        let decisions = decide_effects(&scenario);
         let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
         // Collars of 159 x 71 mm: rho I = 7900 * 3.01e-5 kg m, m = 261 kg/m with added mass, E I = 6.1e6 N m2, so that
         // rho I W / (m E I)^(1/2) = 0.238 * 12.57 / 4.0e4 = 7.5e-5.
-        let change = scenario.frequency_change(Effect::Gyroscopic);
+        let change = frequency_change(&scenario, Effect::Gyroscopic);
         assert!((change / 7.5e-5 - 1.0).abs() < 0.3, "{change:e}");
         assert!(!of(Effect::Gyroscopic).active);
         assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
         assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
         // Fast flow is felt.
         scenario.mud.as_mut().unwrap().flow_rate = 0.5;
-        let decisions = scenario.decide_effects();
+        let decisions = decide_effects(&scenario);
         let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
         assert!(of(Effect::FlowStiffness).active && of(Effect::FluidCoriolis).active);
     }
@@ -203,6 +201,6 @@ mod tests {
         for &effect in Effect::ALL {
             asked.effects.set(effect, Switch::On);
         }
-        assert_eq!(asked.canonical_bytes(), paper().canonical_bytes());
+        assert_eq!(canonical_bytes(&asked), canonical_bytes(&paper()));
     }
 }

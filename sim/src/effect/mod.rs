@@ -31,13 +31,13 @@ pub(crate) mod unbalance;
 mod well_bending;
 
 pub use account::{Account, Booked, NodalWork, Side};
-pub use decide::EffectDecision;
+pub use decide::{EffectDecision, active_effects, decide_effects};
 pub use gravity::GRAVITY;
 pub use scene::{Call, Scene};
 pub use terms::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
 pub use unbalance::UnbalanceForce;
 
-use crate::scenario::Effect;
+use drillsweep_scenario::Effect;
 use scene::LateralWave;
 
 /// The accounts of the energy ledger, in the order of its columns.

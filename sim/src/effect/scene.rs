@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use drillsweep_scenario::{ActiveEffects, Mud, Scenario, Section, SurveyStation};
+
 use crate::beam::BeamSection;
 use crate::mud::{FlowGeometry, FlowMomentum};
-use crate::scenario::{ActiveEffects, Mud, Scenario, Section, SurveyStation};
 
 /// A scenario, and what was decided of the effects so far.
 pub struct Scene<'a> {

@@ -1,11 +1,11 @@
 //! What effects add to an element.
 
+use drillsweep_scenario::{Mud, RayleighDamping};
 use nalgebra::Vector3;
 
 use super::{Account, DAMPING, place_of_damping};
 use crate::beam::{BeamElement, Chord, ElementMatrix, ElementVector};
 use crate::mud::{ElementFlow, FlowMomentum};
-use crate::scenario::{Mud, RayleighDamping};
 use crate::well::NodeFrame;
 
 /// An element as effects see it before anything is known of the equilibrium.

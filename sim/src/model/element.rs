@@ -1,11 +1,11 @@
 //! One element of the string, in the frames of its two nodes.
 
+use drillsweep_scenario::{ActiveEffects, Effect, Mud};
 use nalgebra::Vector3;
 
 use crate::beam::{BeamElement, BeamSection, Chord, ElementMatrix, ElementVector};
 use crate::effect::{ElementAtRest, RestTerms, gravity, room};
 use crate::mud::{FlowGeometry, FlowMomentum};
-use crate::scenario::{ActiveEffects, Effect, Mud};
 use crate::well::NodeFrame;
 
 /// The matrices and loads of one element that do not change during the search for the equilibrium.

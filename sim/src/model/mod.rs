@@ -10,11 +10,13 @@ pub use element::{ElementInput, StringElement};
 
 use std::f64::consts::PI;
 
+use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition};
+
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
 use crate::contact::Wall;
+use crate::effect::active_effects;
 use crate::freedom::{DOFS, THETA_Z, U, V, W};
 use crate::linalg::{Block, BlockTridiagonal};
-use crate::scenario::{ActiveEffects, Scenario, TopCondition};
 use crate::string::{MeshError, MeshNode, StringMesh};
 use crate::well::{NodeFrame, WellError, WellPath};
 
@@ -58,7 +60,7 @@ impl Model {
     /// When the survey has no path or the string no mesh; a validated scenario has both.
     pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
         let path = WellPath::new(&scenario.well)?;
-        let effects = scenario.active_effects();
+        let effects = active_effects(scenario);
         let mesh = StringMesh::new(scenario)?;
         let frames = path.frames(&mesh.depths());
         let wall = Self::wall(scenario, &effects, &mesh);

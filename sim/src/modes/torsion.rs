@@ -310,8 +310,9 @@ fn no_zero(pivot: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::preset;
+
     use super::*;
-    use crate::scenario::preset;
 
     /// A uniform shaft of 40 elements, clamped above.
     fn shaft(rubbing: f64, rayleigh: [f64; 2]) -> Chain {

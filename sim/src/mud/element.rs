@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
+use drillsweep_scenario::Mud;
+
 use super::damping::{added_mass_coefficient, rotation_damping};
 use super::eccentricity;
 use super::error::{MudError, check};
@@ -13,7 +15,6 @@ use super::rheology::Rheology;
 use super::rotation::rotation_factor;
 use super::slot::slot_flow;
 use crate::beam::BeamSection;
-use crate::scenario::Mud;
 
 /// All quantities of the flow at one cross-section, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]

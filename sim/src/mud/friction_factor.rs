@@ -2,8 +2,9 @@
 
 use std::f64::consts::LN_10;
 
+use drillsweep_scenario::RegimeChoice;
+
 use super::regime::{Regime, RegimeLimits};
-use crate::scenario::RegimeChoice;
 
 /// Fanning factor as a function of the Reynolds number, once continuously differentiable.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,9 @@
 //! What the two flows past a section carry along: mass, momentum, and the annulus' added mass.
 
+use drillsweep_scenario::Mud;
+
 use super::damping::added_mass_coefficient;
 use super::element::FlowGeometry;
-use crate::scenario::Mud;
 
 /// Masses and momentum fluxes of the two flows past one section.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,8 @@
 //! Pressures along the string.
 
+use drillsweep_scenario::Mud;
+
 use super::error::{MudError, check};
-use crate::scenario::Mud;
 
 /// What one element adds to the pressures.
 #[derive(Debug, Clone, Copy, PartialEq)]

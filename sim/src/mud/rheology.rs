@@ -1,7 +1,8 @@
 //! The constitutive law.
 
+use drillsweep_scenario::Mud;
+
 use super::error::{MudError, check};
-use crate::scenario::Mud;
 
 /// Yield-power-law fluid, tau = tau_y + K gamma^n.
 #[derive(Debug, Clone, Copy)]

@@ -2,13 +2,14 @@
 //!
 //! Either begins where an equilibrium is known: at rest on the centre line, or on the frictionless wall.
 
+use drillsweep_scenario::ContactLaw;
+
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
 use super::path::{self, Growth, Point, add};
 use crate::contact::Wall;
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::BlockTridiagonal;
 use crate::model::{Model, NodalVector};
-use crate::scenario::ContactLaw;
 
 /// Follows the equilibria from the unloaded string to `load`, and moves `displacement` to the one there; `None` where the path does not come
 /// there or the search loses hold of it.

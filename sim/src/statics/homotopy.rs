@@ -193,9 +193,10 @@ impl Growth for Scene<'_> {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Section, SectionKind, SurveyStation, preset};
+
     use super::*;
     use crate::model::GRAVITY;
-    use crate::scenario::{Section, SectionKind, SurveyStation, preset};
     use crate::statics::Equilibrium;
 
     #[test]

@@ -15,12 +15,13 @@ use hydraulics::{Sections, drag, node_pressures};
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 
+use drillsweep_scenario::ContactLaw;
+
 use crate::contact::{StaticContactForce, Wall, static_contact};
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::SingularBlock;
 use crate::model::{Model, NodalVector, element_values};
 use crate::mud::{ElementFlow, MudError, Pressures};
-use crate::scenario::ContactLaw;
 
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;

@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use drillsweep_scenario::TopCondition;
 use nalgebra::{SMatrix, SymmetricEigen, Vector3};
 
 use crate::freedom::{DOFS, THETA_X, THETA_Y};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
-use crate::scenario::TopCondition;
 
 /// Size up to which an eigenvalue of a pivot block, whose diagonal is scaled to 1, counts as zero.
 const ZERO: f64 = 1e-9;
@@ -189,8 +189,9 @@ fn negative_directions(model: &Model, mut stiffness: BlockTridiagonal) -> usize 
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Effect, Scenario, Section, SectionKind, SurveyStation, Switch, preset};
+
     use super::*;
-    use crate::scenario::{Effect, Scenario, Section, SectionKind, SurveyStation, Switch, preset};
 
     /// Horizontal drillpipe of 40 elements of 5 m, pushed from below.
     fn pushed(thrust: f64) -> Scenario {

@@ -28,8 +28,9 @@
 //! In the horizontal well `auto` is 5.1e-4 off at rest (592 elements of half the preset's lengths: 2.2e-3; 1183: 1.1e-3), in the building one 1.4e-4
 //! (7.1e-4; 1.6e-4). Its orbits there are within 0.3 and 2 % of those on 957 elements, the ones on 592 elements within 0.9 and 16 %.
 
+use drillsweep_scenario::{Scenario, Section};
+
 use crate::beam::BeamSection;
-use crate::scenario::{Scenario, Section};
 
 /// Elements of a tool joint.
 const JOINT_ELEMENTS: f64 = 8.0;

@@ -1,10 +1,11 @@
 //! Where the string must have nodes.
 
-use super::auto;
-use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
-use crate::scenario::{
+use drillsweep_scenario::{
     DrillString, ElementLengths, Material, Mesh, MeshName, ScaledMesh, Scenario, Section, SectionKind,
 };
+
+use super::auto;
+use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
 
 /// A stretch of one kind, one cross-section and one material, with nodes forced at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,9 @@
 //! Elements and nodes.
 
+use drillsweep_scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
+
 use super::boundaries;
 use crate::contact::ContactNode;
-use crate::scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
 
 /// A string of more elements than this is refused.
 pub const MAX_ELEMENTS: usize = 20_000;
@@ -303,8 +304,9 @@ fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Gauge, UnbalanceMass, preset};
+
     use super::*;
-    use crate::scenario::{Gauge, UnbalanceMass, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

@@ -244,8 +244,9 @@ impl fmt::Display for SpreadError {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::TimeWindow;
+
     use super::*;
-    use crate::scenario::TimeWindow;
     use crate::transient::ErrorEstimate;
 
     /// A run with orbits of 1 mm and an error of the history of 10 um.

@@ -5,12 +5,13 @@
 //! A third run distinguishes the two, with the steps of the first and a start a micrometre apart from it. Runs of one method share
 //! its bias, so agreement is no proof; what two methods of different kind reach is the subject of the [cost study](super::cost).
 
+use drillsweep_scenario::{
+    Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, Scenario, TimeStepping,
+};
+
 use super::cost::{Measure, Quantity};
 use crate::control::Control;
 use crate::model::Model;
-use crate::scenario::{
-    Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, Scenario, TimeStepping,
-};
 use crate::statics::Equilibrium;
 use crate::transient::{Outcome, SMALLEST_MOTION, Transient};
 
@@ -166,8 +167,9 @@ fn rest(quantity: Quantity, scenario: &Scenario) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Switch, preset};
+
     use super::*;
-    use crate::scenario::{Switch, preset};
 
     /// The verdict on a run of two seconds of a preset with a stepping.
     fn verdict(name: &str, stepping: TimeStepping, contact: Switch) -> Verdict {

@@ -1,9 +1,9 @@
 //! What a scenario takes of memory and storage, without running it.
 
+use drillsweep_scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use serde::Serialize;
 
 use crate::model::{Model, ModelError};
-use crate::scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use crate::signal::sample_range;
 use crate::transient::{
     BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,

@@ -5,11 +5,11 @@
 
 use std::fmt;
 
+use drillsweep_scenario::{NodeChoice, Scenario, WallLaw};
 use serde::{Deserialize, Serialize};
 
 use crate::freedom::{U, V};
 use crate::model::Model;
-use crate::scenario::{NodeChoice, Scenario, WallLaw};
 use crate::statics::Equilibrium;
 
 /// Strings of more elements are not refined: their equilibria take seconds.
@@ -177,8 +177,9 @@ impl Rest {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Effect, Switch, preset};
+
     use super::*;
-    use crate::scenario::{Effect, Switch, preset};
 
     #[test]
     fn error_of_a_smooth_value_is_its_distance_from_the_limit() {

@@ -1,15 +1,15 @@
 //! What a scenario will take, without running it: the effects in play and why, the size of the problem, steps and
 //! processor time at each accuracy.
 
+use drillsweep_scenario::{
+    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping,
+};
 use serde::{Deserialize, Serialize};
 
 use super::cost;
-use crate::effect::EffectDecision;
+use crate::effect::{EffectDecision, decide_effects};
 use crate::model::{Model, ModelError};
 use crate::modes::UndampedTorsion;
-use crate::scenario::{
-    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping,
-};
 use crate::statics::Equilibrium;
 use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
@@ -164,7 +164,7 @@ impl Plan {
         };
         let study = scenario.cost_study.as_ref().and_then(|_| PlannedStudy::new(scenario, speed));
         Ok(Self {
-            effects: scenario.decide_effects(),
+            effects: decide_effects(scenario),
             elements: model.elements.len(),
             shortest_element: lengths().fold(f64::INFINITY, f64::min),
             longest_element: lengths().fold(0.0, f64::max),
@@ -368,9 +368,11 @@ impl MachineSpeed {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{CostStudy, MethodSteps, preset};
+
     use super::*;
+    use crate::admission::validate;
     use crate::control::Control;
-    use crate::scenario::{CostStudy, MethodSteps, preset};
     use crate::statics::Equilibrium;
     use crate::transient::{Outcome, Transient};
 
@@ -471,7 +473,7 @@ mod tests {
     fn calibration_covers_every_method_with_every_number_of_degrees_of_freedom() {
         let mut times = Vec::new();
         for (i, run) in calibration_runs(&paper()).into_iter().enumerate() {
-            assert_eq!(run.scenario.validate(), Ok(vec![]));
+            assert_eq!(validate(&run.scenario), Ok(vec![]));
             let plan = Plan::new(&run.scenario, None).unwrap();
             assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
             assert_eq!(plan.nodes > 1400, run.is_large);

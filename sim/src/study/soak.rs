@@ -4,15 +4,17 @@
 //! or with a typed failure that says where, when and why. Of a result it can be asked besides [whether a finer step confirms
 //! it](crate::study::finer). Scene i of a seed is always the same one.
 
-use crate::control::Control;
-use crate::model::Model;
-use crate::modes::UndampedTorsion;
-use crate::scenario::{
+use drillsweep_scenario::{
     Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge,
     Integrator, Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording,
     RegimeChoice, Scenario, Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint,
     TopCondition, UnbalanceMass, WallLaw, Well,
 };
+
+use crate::admission::validate;
+use crate::control::Control;
+use crate::model::Model;
+use crate::modes::UndampedTorsion;
 use crate::statics::{Equilibrium, StaticsError};
 use crate::string::StringMesh;
 use crate::study::cost::Measure;
@@ -97,7 +99,7 @@ pub fn at_accuracy(scenario: Scenario, preset: AccuracyPreset) -> Scenario {
 
 fn simulate(scenario: &Scenario, control: &Control) -> Result<(Model, Equilibrium, Box<Records>), SceneEnd> {
     let failed = |cause, reason: String| SceneEnd::Failed { cause, reason };
-    scenario.validate().map_err(|problems| SceneEnd::Broken { reason: format!("refused: {problems}") })?;
+    validate(scenario).map_err(|problems| SceneEnd::Broken { reason: format!("refused: {problems}") })?;
     let model = Model::new(scenario).map_err(|error| failed("no model", error.to_string()))?;
     let equilibrium =
         Equilibrium::find(&model).map_err(|error| failed(statics_cause(&error), error.to_string()))?;

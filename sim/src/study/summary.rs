@@ -1,10 +1,10 @@
 //! One row of scalars about a point: what a sweep's table shows.
 
+use drillsweep_scenario::TimeWindow;
 use serde::Serialize;
 
 use crate::effect::contact;
 use crate::model::Model;
-use crate::scenario::TimeWindow;
 use crate::signal::{FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
 use crate::transient::{ErrorEstimate, Histories, Records, Series};

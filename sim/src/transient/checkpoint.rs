@@ -1,11 +1,12 @@
 //! A run's whole state as bytes.
 
+use drillsweep_scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 use super::TransientError;
 use super::run::{Progress, State};
 use crate::PHYSICS_VERSION;
-use crate::scenario::Scenario;
+use crate::canonical::canonical_bytes;
 
 /// Everything that a suspended run needs to go on to the same bits, but the samples that it has recorded: whoever keeps those keeps both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,7 +41,7 @@ impl Checkpoint {
     pub(super) fn new<const D: usize>(scenario: &Scenario, progress: &Progress<D>) -> Self {
         Self {
             physics_version: PHYSICS_VERSION,
-            scenario: scenario.canonical_bytes(),
+            scenario: canonical_bytes(scenario),
             progress: encoded(progress),
         }
     }
@@ -67,7 +68,7 @@ impl Checkpoint {
         if self.physics_version != PHYSICS_VERSION {
             return Err(CheckpointError::OtherPhysicsVersion { found: self.physics_version });
         }
-        if self.scenario != scenario.canonical_bytes() {
+        if self.scenario != canonical_bytes(scenario) {
             return Err(CheckpointError::OtherScenario);
         }
         let progress: Progress<D> = postcard::from_bytes(&self.progress)?;

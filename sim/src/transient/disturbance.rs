@@ -50,8 +50,9 @@ impl Random {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::preset;
+
     use super::*;
-    use crate::scenario::preset;
 
     #[test]
     fn members_start_apart_by_a_micrometre_and_the_first_not_at_all() {

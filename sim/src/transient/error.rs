@@ -1,10 +1,10 @@
 //! The error that time integration makes, estimated from what each step leaves.
 
+use drillsweep_scenario::Integrator;
 use serde::{Deserialize, Serialize};
 
 use crate::freedom::LATERAL;
 use crate::linalg::{Four, Lane, NodalField};
-use crate::scenario::Integrator;
 
 /// Estimated error of the run's lateral displacements.
 ///

@@ -38,16 +38,17 @@ pub use run::{Block, Keep};
 pub(crate) use snapshots::SNAPSHOT_BLOCK_BYTES;
 pub use snapshots::{SnapshotBlock, SnapshotSeries, SnapshotTimes};
 
+use drillsweep_scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
+use grid::Grid;
+use run::{Run, Start};
 use serde::{Deserialize, Serialize};
 
 use crate::control::Control;
+use crate::effect::active_effects;
 use crate::freedom::Freedoms;
 use crate::model::Model;
 use crate::modes::UndampedTorsion;
-use crate::scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
 use crate::statics::Equilibrium;
-use grid::Grid;
-use run::{Run, Start};
 
 /// A run under way.
 pub struct Transient<'m>(Solved<'m>);
@@ -354,7 +355,7 @@ pub fn step_problem(scenario: &Scenario) -> Option<Problem> {
     let stepping = scenario.accuracy.time_stepping();
     if stepping.integrator != Integrator::Rk4
         || stepping.tolerance.is_some()
-        || !scenario.active_effects().transient
+        || !active_effects(scenario).transient
     {
         return None;
     }

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use drillsweep_scenario::{Integrator, Scenario};
 use serde::{Deserialize, Serialize};
 
 use super::adaptive::{self, Tolerances};
 use super::checkpoint::{self, Checkpoint, CheckpointError};
 use super::contact_statistics::ContactStatistics;
-use super::dense;
 use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
 use super::esdirk::Esdirk;
@@ -19,13 +19,12 @@ use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
-use super::{Outcome, Records, TransientEffort, bit_beside, recorded_nodes, resolved_hz, stability};
+use super::{Outcome, Records, TransientEffort, bit_beside, dense, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::freedom::{DOFS, Freedoms, U, V};
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
-use crate::scenario::{Integrator, Scenario};
 use crate::signal::sample_range;
 
 /// How often the longest step of a run that adapts its steps can be halved. The 8 ms of `draft` end at 62 us, where the explicit method

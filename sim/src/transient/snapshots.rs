@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
+use drillsweep_scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 use super::forces::{ContactForces, Forces};
 use crate::freedom::{DOFS, Freedoms, THETA_Z, U, V, W};
 use crate::linalg::NodalField;
 use crate::model::{Model, NodalVector};
-use crate::scenario::Scenario;
 use crate::signal::sample_range;
 
 /// Bytes of snapshots that are handed over in one block.
@@ -227,8 +227,9 @@ fn snapshots_of_block(nodes: usize, series: usize) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{Snapshots, TimeWindow, preset};
+
     use super::*;
-    use crate::scenario::{Snapshots, TimeWindow, preset};
 
     fn times(rate_hz: f64, window: Option<(f64, f64)>) -> SnapshotTimes {
         let mut scenario = preset("paper-200m").unwrap();

@@ -1,5 +1,7 @@
 //! What limits a step before accuracy does.
 
+use drillsweep_scenario::{Integrator, TimeStepping};
+
 use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
@@ -9,7 +11,6 @@ use crate::freedom::{DOFS, LATERAL, THETA_Z, U, V};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::Model;
 use crate::motion::DynamicSystem;
-use crate::scenario::{Integrator, TimeStepping};
 use crate::statics::Equilibrium;
 use crate::string::MeshNode;
 

@@ -68,8 +68,9 @@ fn zero_direction(tangent: &Vector3<f64>) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{SurveyStation, Well};
+
     use super::*;
-    use crate::scenario::{SurveyStation, Well};
 
     fn path(stations: &[(f64, f64, f64)]) -> WellPath {
         let survey = stations

@@ -1,9 +1,9 @@
 //! The path through all stations.
 
+use drillsweep_scenario::{SurveyStation, Well};
 use nalgebra::Vector3;
 
 use super::arc::{Arc, Direction};
-use crate::scenario::{SurveyStation, Well};
 
 /// A survey that cannot be turned into a path. Stations are counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

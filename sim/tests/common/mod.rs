@@ -2,8 +2,8 @@
 
 #![allow(dead_code, unreachable_pub)]
 
+use drillsweep_scenario::Material;
 use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
-use drillsweep_sim::scenario::Material;
 use nalgebra::{Complex, DMatrix};
 
 pub const STEEL: Material = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };

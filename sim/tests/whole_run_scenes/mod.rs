@@ -4,13 +4,14 @@
 
 use std::ops::Range;
 
-use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::UndampedTorsion;
-use drillsweep_sim::scenario::{
+use drillsweep_scenario::{
     Accuracy, Adhesion, Integrator, NodeChoice, Scenario, Section, SectionKind, SurveyStation, TimeStepping,
     TimeWindow, preset,
 };
+use drillsweep_sim::admission::validate;
+use drillsweep_sim::control::Control;
+use drillsweep_sim::model::Model;
+use drillsweep_sim::modes::UndampedTorsion;
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::distances;
@@ -141,7 +142,7 @@ impl WholeRun {
     /// A member of the scenario's ensemble, 0 for the undisturbed run.
     pub fn of(scenario: &Scenario, accuracy: Accuracy, member: u32) -> Self {
         let scenario = Scenario { accuracy, ..scenario.clone() };
-        scenario.validate().expect("valid");
+        validate(&scenario).expect("valid");
         let model = Model::new(&scenario).expect("has a model");
         let equilibrium = Equilibrium::find(&model).expect("rests");
         let transient = Transient::member(&model, &equilibrium, member).expect("sets up");

@@ -1,12 +1,13 @@
 //! A line of a study against the reference: statistics with their intervals, spectral lines, histories.
 
+use drillsweep_scenario::StudyReference;
+
 use super::interval::contrast;
 use super::measure::Measure;
 use super::{
     Agreement, CostErrors, LineErrors, NamedLine, NodeAgreement, NodeStatistic, Quantity, SpuriousLine,
     StatisticError,
 };
-use crate::scenario::StudyReference;
 use crate::signal::{FullSpectrum, Peak, PeakSearch};
 use crate::study::ensemble::spread;
 use crate::transient::NodeHistory;

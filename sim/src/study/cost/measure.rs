@@ -1,9 +1,10 @@
 //! What is kept of a run: what users read of it, node by node.
 
+use drillsweep_scenario::{TimeStepping, TimeWindow};
+
 use super::Quantity;
 use crate::freedom::{U, V};
 use crate::model::Model;
-use crate::scenario::{TimeStepping, TimeWindow};
 use crate::signal::{FullSpectrum, Window, full_spectrum, orbit_statistics, sample_range};
 use crate::statics::Equilibrium;
 use crate::study::summary::energy_residual_ratio;

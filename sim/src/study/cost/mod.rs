@@ -23,10 +23,10 @@ pub use plan::{PlannedRow, RK4_STEP, Role, expected_cpu_time, plan};
 pub use report::report;
 pub use total::{MeshLimit, MeshPart, StoppedBy, TotalChoice, TotalCost};
 
+use drillsweep_scenario::{Effect, Integrator, TimeWindow};
 use serde::{Deserialize, Serialize};
 
 use crate::model::ModelError;
-use crate::scenario::{Effect, Integrator, TimeWindow};
 use crate::statics::StaticsError;
 use crate::transient::TransientError;
 

@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use super::StudyError;
-use crate::effect::EffectDecision;
-use crate::model::Model;
-use crate::scenario::{
+use drillsweep_scenario::{
     Accuracy, AccuracyPreset, CostStudy, Effect, Integrator, MethodSteps, NodeChoice, Outputs, Recording,
     Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
 };
+
+use super::StudyError;
+use crate::effect::{EffectDecision, decide_effects};
+use crate::model::Model;
 use crate::statics::Equilibrium;
 use crate::study::plan::{MachineSpeed, Plan};
 use crate::transient::{recorded_nodes, rk4_stability_limit};
@@ -126,7 +127,7 @@ pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usi
 
 /// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
 fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<PlannedRow> {
-    let decisions = scenario.decide_effects();
+    let decisions = decide_effects(scenario);
     for decision in &decisions {
         base.effects.set(decision.effect, if decision.active { Switch::On } else { Switch::Off });
     }
@@ -196,17 +197,19 @@ fn part_of(interval: f64, step: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::preset;
+
     use super::*;
-    use crate::scenario::preset;
+    use crate::admission::validate;
 
     fn planned(change: impl Fn(&mut Scenario)) -> Vec<PlannedRow> {
         let mut scenario = preset("paper-200m").unwrap();
         scenario.cost_study = Some(CostStudy::default());
         change(&mut scenario);
-        scenario.validate().unwrap();
+        validate(&scenario).unwrap();
         let rows = plan(&scenario).unwrap();
         for row in &rows {
-            row.scenario.validate().unwrap();
+            validate(&row.scenario).unwrap();
         }
         rows
     }

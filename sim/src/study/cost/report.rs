@@ -1,11 +1,12 @@
 //! The comparison of a study's runs.
 
+use drillsweep_scenario::{Integrator, Scenario};
+
 use super::compare::{Reference, agreements};
 use super::measure::Measure;
 use super::plan::{PlannedRow, RK4_STEP, Role};
 use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
-use crate::scenario::{Integrator, Scenario};
 use crate::study::ensemble::parting_time;
 
 /// Energy residual, relative to the contacts' net work, from which on a reference is doubted.

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use drillsweep_scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeStepping, WallLaw, preset};
+
 use super::measure::NodeMeasure;
 use super::*;
-use crate::scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeStepping, WallLaw, preset};
 use crate::transient::NodeHistory;
 
 const RATE_HZ: f64 = 200.0;

@@ -5,11 +5,12 @@
 //! Roy 2010, "Verification and validation in scientific computing"). That of each method is measured on the scenario's own mesh, against the
 //! reference. The two are taken to add up, and a method to be off by as much on another mesh.
 
+use drillsweep_scenario::{Integrator, Scenario, WallLaw};
 use serde::{Deserialize, Serialize};
 
 use super::report::{one_that_holds, rounded, stepping_words};
 use super::{CostReport, CostRow, NodeStatistic, Quantity};
-use crate::scenario::{Integrator, Scenario, WallLaw};
+use crate::effect::active_effects;
 
 /// Highest order that is believed. Interpolation between nodes is cubic, so that frequencies converge with the fourth power of the
 /// elements' length; what seems to converge faster does so by chance.
@@ -24,7 +25,7 @@ pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are a node
 
 /// Whether the wall that a string meets depends on its mesh, so that there is no limit to converge to.
 pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
-    scenario.active_effects().contact && scenario.contact.law == WallLaw::PerNode
+    active_effects(scenario).contact && scenario.contact.law == WallLaw::PerNode
 }
 
 /// The cheapest mesh, method and tolerance for a whole error of orbit size.

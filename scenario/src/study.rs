@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{AccuracyPreset, Effect, Integrator, TimeStepping};
+use crate::{AccuracyPreset, Effect, Integrator, TimeStepping};
 
 /// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
 /// different kind both reach.
@@ -47,7 +47,7 @@ pub struct CostStudy {
 }
 
 /// Fixed steps \[s\] that are compared where a study names none.
-pub(crate) const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
+pub const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
     [(Integrator::GeneralizedAlpha, [5e-4, 2.5e-4, 1.25e-4]), (Integrator::Esdirk4, [1e-3, 5e-4, 2.5e-4])];
 
 /// Factors on the mesh's target element lengths that are compared for a whole error where a study names none: two meshes would tell
@@ -112,7 +112,7 @@ impl MethodSteps {
 
 impl CostStudy {
     /// Lines of the study at most, those of the reference among them.
-    pub(crate) fn most_lines(&self) -> usize {
+    pub fn most_lines(&self) -> usize {
         let steps = match &self.methods {
             Some(methods) => methods.iter().map(|method| method.steps.len()).sum::<usize>(),
             None => USUAL_STEPS.iter().map(|(_, steps)| steps.len()).sum(),

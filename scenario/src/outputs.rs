@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{NodeChoice, TimeWindow};
+use crate::{NodeChoice, TimeWindow};
 
 /// What is kept of a point beside its row of scalars, which is always there: `"summary"`, `"spectra"`,
 /// `{"orbits": {...}}` or `"full"`. Each class has all that the one before it has, but for the spectra, which follow from histories.

@@ -1,13 +1,13 @@
 //! Scenarios as TOML and JSON.
 //!
 //! Every format is erased (`erased_serde`) before a scenario is read or written, so that the code for each of its types is compiled once, in
-//! this crate. Compiled for each format it would be a third of this crate's code, and a part of all crates whose types hold scenarios.
+//! this crate. Compiled for each format it would be a part of all crates whose types hold scenarios.
 
 use serde::de::{DeserializeOwned, Deserializer, Error as _, IgnoredAny};
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::strict::Strict;
-use super::{Problem, Scenario};
+use crate::strict::Strict;
+use crate::{Problem, Scenario};
 
 impl Scenario {
     /// The scenario as a tree. TOML's, because it has all doubles: JSON lacks those that are not finite.
@@ -127,7 +127,7 @@ fn without_place(message: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Accuracy, AccuracyPreset, Integrator, TimeStepping, preset};
+    use crate::{Accuracy, AccuracyPreset, Integrator, TimeStepping, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

@@ -16,7 +16,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
+    /// A problem at a path, with what was found there and what would be valid.
+    pub fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
         Self { path: path.into(), got: got.into(), message: message.into() }
     }
 

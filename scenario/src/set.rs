@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::format::from_value;
-use super::{Problem, Scenario};
+use crate::format::from_value;
+use crate::{Problem, Scenario};
 
 impl Scenario {
     /// The scenario with one field changed. `path` names it with dots and indices: `mud.flow_rate`,
@@ -144,7 +144,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::scenario::{Accuracy, Integrator, NodeChoice, Switch, TimeWindow, preset};
+    use crate::{Accuracy, Integrator, NodeChoice, Switch, TimeWindow, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

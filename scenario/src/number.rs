@@ -3,8 +3,8 @@
 //! [`Scenario::with`] changes anything but rewrites the whole scenario. A sweep of a hundred thousand points changes
 //! the same few numbers again and again; here they are found without leaving the struct.
 
-use super::set::{Step, parse};
-use super::{
+use crate::set::{Step, parse};
+use crate::{
     Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Material, Mesh,
     MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, ScaledMesh,
     Scenario, Section, Snapshots, StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint,
@@ -19,8 +19,38 @@ impl Scenario {
     }
 
     /// Calls `visit` with every floating-point number.
-    pub(crate) fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+    pub fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         self.each(visit);
+    }
+
+    /// Every floating-point number that is not finite, with its path.
+    pub fn numbers_not_finite(&self) -> Vec<(String, f64)> {
+        let mut found = Vec::new();
+        let mut all_finite = true;
+        self.clone().each_number(&mut |number| all_finite &= number.is_finite());
+        // Paths take far longer, and nearly all scenarios need none.
+        if !all_finite {
+            not_finite(&self.tree(), String::new(), &mut found);
+        }
+        found
+    }
+}
+
+fn not_finite(tree: &toml::Value, path: String, found: &mut Vec<(String, f64)>) {
+    match tree {
+        toml::Value::Float(number) if !number.is_finite() => found.push((path, *number)),
+        toml::Value::Array(entries) => {
+            for (i, entry) in entries.iter().enumerate() {
+                not_finite(entry, format!("{path}[{i}]"), found);
+            }
+        }
+        toml::Value::Table(fields) => {
+            for (field, value) in fields {
+                let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
+                not_finite(value, path, found);
+            }
+        }
+        _ => {}
     }
 }
 
@@ -195,7 +225,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::scenario::preset;
+    use crate::preset;
 
     /// A scenario in which everything optional is there.
     fn full() -> Scenario {

@@ -1,7 +1,7 @@
 //! A scenario: everything that decides the numbers of one run.
 //!
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
-//! refused. The types say what can be written down; [`Scenario::validate`](crate::admission) says what can be simulated.
+//! refused. The types say what can be written down; what can be simulated is told by `admission` of `drillsweep-sim`.
 
 mod accuracy;
 mod effects;
@@ -17,8 +17,7 @@ mod snapshots;
 mod strict;
 mod study;
 
-pub(crate) use accuracy::TOLERANCES;
-pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TimeStepping};
+pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh};
 pub use outputs::{OrbitOutputs, Outputs};
@@ -27,8 +26,7 @@ pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
 pub use snapshots::Snapshots;
 pub use strict::read_strictly;
-pub(crate) use study::USUAL_STEPS;
-pub use study::{CostStudy, MethodSteps, StudyReference};
+pub use study::{CostStudy, MethodSteps, StudyReference, USUAL_STEPS};
 
 use serde::{Deserialize, Serialize};
 
@@ -438,7 +436,7 @@ impl ContactLaw {
     }
 
     /// The law with what a length has by default written out.
-    pub(crate) fn written_out(self) -> Self {
+    pub fn written_out(self) -> Self {
         let by_length = self.law == WallLaw::PerLength;
         Self {
             stiffness_per_length: by_length.then(|| self.stiffness_of_a_metre()),
@@ -449,7 +447,7 @@ impl ContactLaw {
 
     /// The damping \[N s/m\] that nodes' shares of the law's damping are of: that of a node, or 1 N s/m where gauges have none and a length
     /// has.
-    pub(crate) fn unit_damping(&self) -> f64 {
+    pub fn unit_damping(&self) -> f64 {
         if self.law == WallLaw::PerLength && self.damping == 0.0 { 1.0 } else { self.damping }
     }
 }
@@ -560,11 +558,11 @@ pub struct TimeWindow {
 }
 
 /// Fewer samples than this have no spectrum or orbit to speak of.
-pub(crate) const FEWEST_SAMPLES: f64 = 8.0;
+pub const FEWEST_SAMPLES: f64 = 8.0;
 
 impl TimeWindow {
     /// The last `part` of a run of `duration` \[s\], from the sample nearest to its beginning.
-    pub(crate) fn last(part: f64, duration: f64, rate_hz: f64) -> Self {
+    pub fn last(part: f64, duration: f64, rate_hz: f64) -> Self {
         Self { from: (duration * (1.0 - part) * rate_hz).round() / rate_hz, to: duration }
     }
 }

@@ -35,7 +35,7 @@ pub enum AccuracyTarget {
 }
 
 /// Tolerances that can be asked for.
-pub(crate) const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
+pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 
 /// The tolerance that the longest step below belongs to.
 const LONGEST_STEP_TOLERANCE: f64 = 0.08;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Scenario, TimeWindow};
+use crate::{Scenario, TimeWindow};
 
 /// Snapshots of the whole string: of every node its displacements and the normal force of the wall, at a rate that is modest beside the
 /// recording rate, as the table `snapshots`.

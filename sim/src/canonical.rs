@@ -77,13 +77,14 @@ enum CanonicalMesh {
     Lengths(ElementLengths),
 }
 
-/// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for
-/// the same numbers, however they are written. They are the postcard encoding (little-endian IEEE doubles,
-/// fields in their order, no names) of the scenario without its `name`, with a named accuracy written out
-/// as integrator and step, with the material of every section and tool joint, with what a length of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every
-/// effect decided, and with -0.0 written as 0.0. Snapshots, which most scenarios do not ask for, stand behind all
-/// else where there are some, and leave no trace where there are none. Any other change of the scenario's fields changes
-/// the encoding, so keys of different versions of the program must not be compared.
+/// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for the same numbers, however they
+/// are written. They are the postcard encoding (little-endian IEEE doubles, fields in their order, no names) of the scenario without its
+/// `name`, with a named accuracy written out as integrator and step, with the material of every section and tool joint, with what a length
+/// of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every effect decided, and
+/// with -0.0 written as 0.0.
+///
+/// Snapshots, which most scenarios do not ask for, stand behind all else where there are some, and leave no trace where there are none. Any
+/// other change of the scenario's fields changes the encoding, so keys of different versions of the program must not be compared.
 pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
     let active = active_effects(scenario);
     // Taken apart in full, so that a new field cannot be forgotten.

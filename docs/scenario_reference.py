@@ -17,7 +17,7 @@ Schema = dict[str, Any]
 def reference() -> str:
     """The whole chapter."""
     schemas = json.loads((DOCS.parent / "api" / "openapi.json").read_text())["components"]["schemas"]
-    base = tomllib.loads((DOCS.parent / "sim" / "presets" / "paper-200m.toml").read_text())
+    base = tomllib.loads((DOCS.parent / "scenario" / "presets" / "paper-200m.toml").read_text())
     lines = [
         "# Scenario reference",
         "",

@@ -27,7 +27,7 @@ from test_page import GONE, Opens, browser, drag, drawn, named, opened, requeste
 
 __all__ = ["browser", "named", "opened", "troubles"]
 
-PRESETS = REPOSITORY / "sim" / "presets"
+PRESETS = REPOSITORY / "scenario" / "presets"
 AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}
 
 

@@ -42,6 +42,10 @@ const ahead = (() => {
   const preloaded = new Set();
   /** Answers that no view has asked for yet, by address. @type {Map<string, Promise<Response>>} */
   const answers = new Map();
+  /** Addresses that a view has asked for while answers are kept. @type {Set<string>} */
+  const taken = new Set();
+  /** Nothing is sent for any more. */
+  let isOver = false;
 
   /** @returns {import("./router.js").Route} what the link asks for */
   function route() {
@@ -114,21 +118,43 @@ const ahead = (() => {
   function sent(url) {
     const answer = answers.get(url);
     answers.delete(url);
+    if (!isOver) taken.add(url);
     return answer;
   }
 
   /** @param {string} url */
   function send(url) {
+    if (isOver || taken.has(url)) return;
     const answer = fetch(url, { headers: { Accept: "application/json" } });
     // Who asks for it hears of it.
     answer.catch(() => {});
     answers.set(url, answer);
   }
 
+  /** What was sent for, once it has come; nothing where there is none. @param {string} url */
+  async function received(url) {
+    const answer = await answers.get(url);
+    return answer?.ok ? answer.clone().json() : null;
+  }
+
   /** Sends for the table of a sweep that has been sent for, once it is known to be small. @param {string} sweep */
-  function sendTable(sweep) {
-    const size = answers.get(sweep)?.then(async (answer) => answer.ok && (await answer.clone().json()).counts.total <= WHOLE);
-    size?.then((isSmall) => isSmall && send(`${sweep}/table?format=json`)).catch(() => {});
+  async function sendTable(sweep) {
+    const answer = await received(sweep);
+    if (answer?.counts.total <= WHOLE) send(`${sweep}/table?format=json`);
+  }
+
+  /**
+   * Sends for what the motion at a point that has been sent for is shown from.
+   * @param {string} point
+   * @param {URLSearchParams} query of the link
+   */
+  async function sendMotion(point, query) {
+    /** @type {[any, typeof import("./motion-requests.js")]} */
+    const [answer, requests] = await Promise.all([received(point), import(new URL("motion-requests.js", folder).href)]);
+    if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
+    const { scenario } = answer;
+    const tables = [...requests.windowTables(scenario, query, requests.chosenWindow(scenario, query)), ...requests.nodeTables(scenario, query)];
+    for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
   }
 
   const first = route();
@@ -142,9 +168,15 @@ const ahead = (() => {
   }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
-  if (view === "sweep") sendTable(`/v1/sweeps/${id}`);
+  // What fails of these, the view finds out when it asks itself.
+  if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
+  if (view === "point" && first.query.get("view") === "motion") sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
   load("main.js");
   preload(first);
-  setTimeout(() => answers.clear(), KEPT_MS);
+  setTimeout(() => {
+    isOver = true;
+    answers.clear();
+    taken.clear();
+  }, KEPT_MS);
   return { WHOLE, address, firstPage, route, viewOf, preload, sent };
 })();

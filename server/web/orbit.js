@@ -6,27 +6,6 @@ import { shown, title, unit } from "./units.js";
 /** Lines of a spectrum that are named in its picture. */
 const NAMED = 6;
 
-/** Frequencies up to which full spectra are shown [Hz]. */
-const RANGES = ["5", "20", "50", "100"];
-
-/**
- * The frequencies up to which a spectrum can be shown: as far as samples at a rate have any.
- * @param {number} rate [Hz]
- */
-export function rangesOf(rate) {
-  return RANGES.filter((text) => Number(text) <= rate / 2);
-}
-
-/**
- * How far a spectrum is shown, as the link says [Hz].
- * @param {URLSearchParams} query
- * @param {number} rate of the samples [Hz]
- */
-export function spectrumRange(query, rate) {
-  const offered = rangesOf(rate);
-  return Number(offered.find((text) => text === query.get("range")) ?? (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)));
-}
-
 /**
  * Displacements across the hole and from the low side up, in served units.
  * Forward whirl, with the rotation of the string, goes clockwise.

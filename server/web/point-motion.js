@@ -4,15 +4,14 @@ import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { pythonNode } from "./lines.js";
+import { chosenWindow, nodeTables, rangesOf, rotationTable, selectedNode, spectrumRange, spectrumWeighting, windowTables } from "./motion-requests.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
-import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, rangesOf, seenDownhole, spectrumLayout, spectrumRange, spectrumTrace } from "./orbit.js";
+import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
-import { biasOver, FEWEST, spectrumWindow, STATISTICS, verifiedWindow } from "./statistics.js";
+import { biasOver, FEWEST, spectrumWindow, STATISTICS } from "./statistics.js";
 import { say, shown, unit } from "./units.js";
 
-/** Samples in a picture: two for each pixel of a wide screen. */
-const SHOWN = 4000;
 /** Modes are looked for up to this frequency at most [Hz]. */
 const HIGHEST_MODE_HZ = 50;
 /** How long a window that is dragged must rest before the service is asked for it. */
@@ -46,22 +45,14 @@ export function motion(context) {
   const beginNode = generations();
   const beginWindow = generations();
 
-  const selector = () => {
-    const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
-    return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
-  };
-  const span = () => {
-    const usual = verifiedWindow(point.scenario);
-    const from = Number(query.get("from") ?? usual.from);
-    const to = Number(query.get("to") ?? usual.to);
-    return from >= 0 && to > from ? { from, to: Math.min(to, duration) } : { from: usual.from, to: usual.to };
-  };
+  const selector = () => selectedNode(point.scenario, query);
+  const span = () => chosenWindow(point.scenario, query);
   const isZoomed = () => (query.get("zoom") ?? "motion") === "motion";
   const isLog = () => query.get("amplitude") === "log";
   const range = () => spectrumRange(query, recording.rate_hz);
   /** Modes are looked for as far as the spectrum goes, and the service does. */
   const modesUpTo = () => Math.min(range(), HIGHEST_MODE_HZ);
-  const weighting = () => (query.get("window") === "rectangular" ? "rectangular" : "hann");
+  const weighting = () => spectrumWeighting(query);
 
   /** @param {string} name @param {string} value */
   const set = (name, value) => context.keep({ [name]: value });
@@ -132,13 +123,13 @@ export function motion(context) {
     const isNewest = beginNode();
     // What the window shows of another node is not waited for any more.
     const isWindow = beginWindow();
-    const { from, to } = span();
-    const asked = ofWindow(from, to);
+    const asked = ofWindow(span());
+    const [equilibrium, orbit] = nodeTables(point.scenario, query);
     // Where it fails, the window says so once it is drawn.
     asked.catch(() => {});
     let found;
     try {
-      found = await Promise.all([statics ?? context.table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }), context.table("orbit", { ...selector(), max_points: SHOWN })]);
+      found = await Promise.all([statics ?? context.table(...equilibrium), context.table(...orbit)]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       if (isNewest()) refuse(error.message);
@@ -181,7 +172,7 @@ export function motion(context) {
 
   async function drawRotation() {
     const { node, depth } = place();
-    const table = await context.table("history", { ...selector(), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }).catch((error) => {
+    const table = await context.table(...rotationTable(point.scenario, query, node)).catch((error) => {
       if (!(error instanceof Problem)) throw error;
     });
     // Where torsion is not solved for there is none.
@@ -204,11 +195,10 @@ export function motion(context) {
   /** @param {ReturnType<typeof ofWindow>} [asked] where the service has been asked for the window already */
   async function drawWindow(asked) {
     const isNewest = beginWindow();
-    const { from, to } = span();
     wrong.textContent = "";
     void adjust(history, { shapes: [shade()] });
     try {
-      const [cut, lines, statistics] = await (asked ?? ofWindow(from, to));
+      const [cut, lines, statistics] = await (asked ?? ofWindow(span()));
       if (!isNewest()) return;
       windowed = { cut, lines, statistics };
       // What follows the mouse is shown until it is let go.
@@ -251,7 +241,7 @@ export function motion(context) {
   async function lookAt(range) {
     const [from, to] = range;
     if ((to - from) * recording.rate_hz < FEWEST) return;
-    const [cut, lines, statistics] = await ofWindow(from, to);
+    const [cut, lines, statistics] = await ofWindow({ from, to });
     if (dragged !== range) return;
     brush?.paintTrace(orbitTrace(cut, place().lowSide, { color: LINES[0] }));
     showStatistics(from, to, (name) => say(name, statistics.columns[name][0]), String(statistics.attributes.samples));
@@ -270,13 +260,9 @@ export function motion(context) {
     void drawSpectrum();
   }
 
-  /** @param {number} from @param {number} to */
-  function ofWindow(from, to) {
-    return Promise.all([
-      context.table("orbit", { ...selector(), from, to, max_points: 2 * SHOWN }),
-      context.table("spectrum", { ...selector(), from, to, window: weighting(), range_hz: range(), peaks: 10 }),
-      context.table("statistics", { ...selector(), from, to }),
-    ]);
+  /** @param {{from: number, to: number}} window [s] */
+  function ofWindow(window) {
+    return Promise.all(windowTables(point.scenario, query, window).map((asked) => context.table(...asked)));
   }
 
   async function drawOrbit() {

@@ -1,5 +1,7 @@
 // Statistics of a window of a node's motion, and what verifying a sweep says of them.
 
+import { verifiedWindow } from "./motion-requests.js";
+
 /** What the service calls them, and what the page does. @type {[string, string][]} */
 export const STATISTICS = [
   ["orbit_radius_rms", "Orbit size (rms about the mean)"],
@@ -13,15 +15,6 @@ export const STATISTICS = [
 ];
 /** Part of a run within which the ends of two windows count as the same: the link rounds them. */
 const SAME = 1e-4;
-
-/**
- * The window of a scenario's statistics, which verifying looks at: its own, or the last third of the run.
- * @param {any} scenario
- * @returns {{from: number, to: number}} [s]
- */
-export function verifiedWindow({ recording, duration }) {
-  return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
-}
 
 /** Samples that a spectrum needs. */
 export const FEWEST = 8;

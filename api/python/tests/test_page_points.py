@@ -470,6 +470,33 @@ def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -
     assert "range_hz=100" in lines["Python"]
 
 
+@pytest.mark.parametrize("choices", ["", "&node=1&from=0.2&to=0.4&range=50&window=rectangular"])
+def test_a_motion_is_asked_for_before_its_module_is_there_and_once(
+    opened: Opens, sweep: Sweep, choices: str
+) -> None:
+    page = opened("#/nowhere")
+    asked: list[str] = []
+    held: list[Route] = []
+    page.on("request", lambda request: asked.append(request.url.partition("/points/1/")[2]))
+    page.route("**/point-motion.js", lambda route: held.append(route))
+    address = page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion{choices}")
+    page.goto("about:blank")
+    page.goto(address, wait_until="commit")
+    names = ["orbit", "orbit", "spectrum", "statics", "statistics"]
+
+    def tables() -> list[str]:
+        return sorted(url for url in asked if url.partition("?")[0] in names)
+
+    until(page, lambda: [url.partition("?")[0] for url in tables()] == names)
+    ahead = tables()
+    assert [("range_hz=50" in url, "from=0.2" in url) for url in ahead if "spectrum" in url] == [(bool(choices),) * 2]
+    for route in held:
+        route.continue_()
+    drawn(page, "Orbit of node")
+    drawn(page, "Full spectrum of node")
+    assert tables() == ahead
+
+
 def test_a_mode_is_named_beside_a_line_only_where_that_says_something(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion")
     drawn(page, "Full spectrum of node")

@@ -1,0 +1,109 @@
+// What the service is asked for to show the motion of a recorded node. It imports nothing, so that this is known before the other modules
+// have run (`ahead.js`).
+
+/** Samples in a picture: two for each pixel of a wide screen. */
+const SHOWN = 4000;
+
+/** Frequencies up to which full spectra are shown [Hz]. */
+const RANGES = ["5", "20", "50", "100"];
+
+/**
+ * A table of a point, and what is asked of it.
+ * @typedef {[name: string, query: Record<string, any>]} Asked
+ */
+
+/**
+ * Equilibrium and the whole orbit of a node.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @returns {Asked[]}
+ */
+export function nodeTables(scenario, query) {
+  return [
+    ["statics", { fields: "node,measured_depth,low_side_angle,clearance" }],
+    ["orbit", { ...selectedNode(scenario, query), max_points: SHOWN }],
+  ];
+}
+
+/**
+ * Orbit, full spectrum and statistics of a window.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @param {{from: number, to: number}} window [s]
+ * @returns {Asked[]}
+ */
+export function windowTables(scenario, query, { from, to }) {
+  const node = selectedNode(scenario, query);
+  return [
+    ["orbit", { ...node, from, to, max_points: 2 * SHOWN }],
+    ["spectrum", { ...node, from, to, window: spectrumWeighting(query), range_hz: spectrumRange(query, scenario.recording.rate_hz), peaks: 10 }],
+    ["statistics", { ...node, from, to }],
+  ];
+}
+
+/**
+ * The history of rotation speed and torque of a node.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @param {number} node as the service numbers it
+ * @returns {Asked}
+ */
+export function rotationTable(scenario, query, node) {
+  return ["history", { ...selectedNode(scenario, query), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }];
+}
+
+/**
+ * The recorded node that a link names, or the first, as the service is asked for it.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @returns {{node: number} | {depth: number, nearest: true}}
+ */
+export function selectedNode({ recording: { nodes } }, query) {
+  const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
+  return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+}
+
+/**
+ * The window that a link names, or the scenario's own.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @returns {{from: number, to: number}} [s]
+ */
+export function chosenWindow(scenario, query) {
+  const usual = verifiedWindow(scenario);
+  const from = Number(query.get("from") ?? usual.from);
+  const to = Number(query.get("to") ?? usual.to);
+  return from >= 0 && to > from ? { from, to: Math.min(to, scenario.duration) } : { from: usual.from, to: usual.to };
+}
+
+/**
+ * The window of a scenario's statistics, which verifying looks at: its own, or the last third of the run.
+ * @param {any} scenario
+ * @returns {{from: number, to: number}} [s]
+ */
+export function verifiedWindow({ recording, duration }) {
+  return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
+}
+
+/** How the samples of a spectrum are weighted, as the link says. @param {URLSearchParams} query */
+export function spectrumWeighting(query) {
+  return query.get("window") === "rectangular" ? "rectangular" : "hann";
+}
+
+/**
+ * The frequencies up to which a spectrum can be shown: as far as samples at a rate have any.
+ * @param {number} rate [Hz]
+ */
+export function rangesOf(rate) {
+  return RANGES.filter((text) => Number(text) <= rate / 2);
+}
+
+/**
+ * How far a spectrum is shown, as the link says [Hz].
+ * @param {URLSearchParams} query
+ * @param {number} rate of the samples [Hz]
+ */
+export function spectrumRange(query, rate) {
+  const offered = rangesOf(rate);
+  return Number(offered.find((text) => text === query.get("range")) ?? (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)));
+}

@@ -471,9 +471,7 @@ def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -
 
 
 @pytest.mark.parametrize("choices", ["", "&node=1&from=0.2&to=0.4&range=50&window=rectangular"])
-def test_a_motion_is_asked_for_before_its_module_is_there_and_once(
-    opened: Opens, sweep: Sweep, choices: str
-) -> None:
+def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens, sweep: Sweep, choices: str) -> None:
     page = opened("#/nowhere")
     asked: list[str] = []
     held: list[Route] = []

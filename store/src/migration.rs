@@ -25,6 +25,7 @@ const POSTGRES: &[File] = &[
     (5, "references", include_str!("../../migrations/postgres/0005_references.sql")),
     (6, "finish and claim", include_str!("../../migrations/postgres/0006_finish_and_claim.sql")),
     (7, "looks", include_str!("../../migrations/postgres/0007_looks.sql")),
+    (8, "stages", include_str!("../../migrations/postgres/0008_stages.sql")),
 ];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A

@@ -12,7 +12,7 @@ ALTER TABLE work
 DROP TRIGGER work_has_changed ON work;
 DROP FUNCTION work_has_changed;
 
-CREATE FUNCTION set_stage() RETURNS trigger LANGUAGE plpgsql
+CREATE FUNCTION follow_state() RETURNS trigger LANGUAGE plpgsql
 SECURITY DEFINER SET search_path FROM CURRENT AS $$
 BEGIN
     -- As 0001_schema.sql says of the columns.
@@ -51,9 +51,9 @@ END
 $$;
 
 CREATE TRIGGER work_changes BEFORE UPDATE OF state, held, cancel_requested ON work
-FOR EACH ROW EXECUTE FUNCTION set_stage();
+FOR EACH ROW EXECUTE FUNCTION follow_state();
 
 -- What is submitted is queued, and has all this by default.
 CREATE TRIGGER work_begins BEFORE INSERT ON work FOR EACH ROW
 WHEN (NEW.state <> 'queued' OR NEW.cancel_requested OR NEW.stage <> 'queued' OR NOT NEW.is_open OR NEW.stage_of_cancelled <> 'cancelled')
-EXECUTE FUNCTION set_stage();
+EXECUTE FUNCTION follow_state();

@@ -1,10 +1,11 @@
 //! The discrete Fourier transform.
 //!
 //! A crate of its own for the time that it takes to build: `rustfft` is generic over the number type, so that its transforms of all
-//! sizes, for processors with and without vector instructions, are compiled where they are used. Here that is done once, and not with
-//! every change of the simulation.
+//! sizes are compiled where they are used. Here that is done once, and not with every change of the simulation.
 
-use rustfft::FftPlanner;
+use std::sync::Arc;
+
+use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
 /// Transforms N samples z in place to Z_k = sum over n of z_n exp(-2 pi i k n / N), k = 0 to N - 1. N is any number; no
@@ -13,8 +14,22 @@ use rustfft::num_complex::Complex;
 #[inline(never)]
 pub fn forward(samples: &mut [Complex<f64>]) {
     if !samples.is_empty() {
-        FftPlanner::new().plan_fft_forward(samples.len()).process(samples);
+        plan(samples.len()).process(samples);
     }
+}
+
+/// The transform of so many samples. The general planner chooses this one, too, where the processor has the instructions, but is compiled
+/// together with those for processors that the program does not run on.
+#[cfg(all(target_arch = "x86_64", target_feature = "avx", target_feature = "fma"))]
+fn plan(count: usize) -> Arc<dyn Fft<f64>> {
+    let mut planner = rustfft::FftPlannerAvx::new().expect("the program is compiled for AVX and FMA");
+    planner.plan_fft_forward(count)
+}
+
+/// The transform of so many samples.
+#[cfg(not(all(target_arch = "x86_64", target_feature = "avx", target_feature = "fma")))]
+fn plan(count: usize) -> Arc<dyn Fft<f64>> {
+    rustfft::FftPlanner::new().plan_fft_forward(count)
 }
 
 #[cfg(test)]

@@ -75,16 +75,22 @@ fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
         let pointer = if is_repeated { pointer(error.path()) } else { String::new() };
         return Err(malformed(pointer, error.inner()));
     }
-    let mut text = serde_json::Deserializer::from_slice(bytes);
-    if let (Ok(value), Ok(())) = (read_strictly(&mut text), text.end()) {
-        return Ok(value);
-    }
-    // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
-    let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
-    write_whole(&mut body);
-    let mut track = serde_path_to_error::Track::new();
-    read_strictly(serde_path_to_error::Deserializer::new(body, &mut track))
-        .map_err(|error| malformed(pointer(&track.path()), &error))
+    read(bytes).or_else(|_| {
+        // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
+        let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
+        write_whole(&mut body);
+        read(&serde_json::to_vec(&body).map_err(|error| Error::internal(&error))?)
+    })
+}
+
+/// A type out of a text. There is this one way only: each other would be compiled for every type of a body, too.
+fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
+    let (mut format, mut track) =
+        (serde_json::Deserializer::from_slice(text), serde_path_to_error::Track::new());
+    let value = read_strictly(serde_path_to_error::Deserializer::new(&mut format, &mut track))
+        .map_err(|error| malformed(pointer(&track.path()), &error))?;
+    format.end().map_err(|error| malformed(String::new(), &error))?;
+    Ok(value)
 }
 
 /// JSON in which no object has a member twice: maps would take the last, and the client could have meant the other.

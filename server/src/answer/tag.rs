@@ -1,11 +1,11 @@
 //! Entity tags of sweeps: what changes are made on condition of.
 
-use axum::Json;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemKind, Sweep};
 
 use crate::answer::error::{Error, Result};
+use crate::answer::json::Json;
 
 /// A sweep with its tag: its revision, and a hash of all that is told, which changes with every point.
 pub(crate) struct Tagged(pub(crate) Sweep);

@@ -208,8 +208,9 @@ impl Follower {
     }
 
     fn push(&mut self, name: &str, data: &impl serde::Serialize) -> Result<()> {
+        let json = serde_json::to_string(data).map_err(|error| Error::internal(&error))?;
         let event = Event::default().event(name).id(self.sequence.to_string()).retry(RETRY);
-        self.pending.push_back(event.json_data(data).map_err(|error| Error::internal(&error))?);
+        self.pending.push_back(event.data(json));
         Ok(())
     }
 }

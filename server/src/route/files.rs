@@ -1,6 +1,5 @@
 //! The files of a point's result as they are stored: whole or in ranges, and not again to those who have them.
 
-use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -11,6 +10,7 @@ use serde::Deserialize;
 use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
+use crate::answer::json::Json;
 use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::app::App;

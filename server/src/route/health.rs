@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use axum::Json;
 use axum::extract::State;
 use drillsweep_api::{Health, ProblemKind};
 use tokio::time::{Instant, timeout};
 
 use crate::answer::error::{Error, Result};
+use crate::answer::json::Json;
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;

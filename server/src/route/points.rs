@@ -1,6 +1,5 @@
 //! The points of a sweep.
 
-use axum::Json;
 use axum::extract::State;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{
@@ -12,6 +11,7 @@ use serde_json::{Map, Value};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
+use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]

@@ -1,12 +1,12 @@
 //! Preset scenarios, and scenario files.
 
-use axum::Json;
 use drillsweep_api::{
     ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
 };
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path};
+use crate::answer::json::Json;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 

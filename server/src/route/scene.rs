@@ -1,7 +1,6 @@
 //! What follows from a point's scenario alone: its plan and its modes. Both search an equilibrium, as dry runs do, and take their turn
 //! with these.
 
-use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
@@ -12,6 +11,7 @@ use serde::{Deserialize, Deserializer};
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{Format, Tag};
+use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]

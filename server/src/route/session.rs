@@ -1,6 +1,5 @@
 //! Sessions: how a browser logs in. It sends a token once, and keeps a cookie that its scripts cannot read.
 
-use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::IntoResponse;
@@ -10,6 +9,7 @@ use headers::{Cookie, HeaderMapExt};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract;
+use crate::answer::json::Json;
 use crate::answer::records::timestamp;
 use crate::app::App;
 #[cfg(feature = "openapi")]

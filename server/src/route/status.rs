@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use axum::Json;
 use axum::extract::State;
 use drillsweep_api::{Collection, LIMITS, Limits, Queue, Retention, Worker, WorkerList};
 use drillsweep_store::WorkerRecord;
 use drillsweep_table::quantity::tables::HISTORY;
 
 use crate::answer::error::Result;
+use crate::answer::json::Json;
 use crate::answer::records::{read, timestamp};
 use crate::app::App;
 use crate::app::retain::Retaining;

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use axum::Extension;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use axum::{Extension, Json};
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{
     AppendRequest, ColumnList, DryRun, Expansion, FieldProblem, LIMITS, PHYSICS_VERSION, PointKeys,
@@ -30,6 +30,7 @@ use crate::answer::blocking::{blocking, to_the_end};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::json::Json;
 use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};

@@ -1,4 +1,4 @@
-//! Compresses the files of the web page, so that the program holds them as they are sent.
+//! Compresses what the program holds: the files of the web page, as they are sent, and the OpenAPI document.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -11,8 +11,11 @@ use flate2::write::GzEncoder;
 /// What is served; the rest of the folder is for those who work on it.
 const SERVED: [&str; 4] = ["html", "css", "js", "svg"];
 
+const OPENAPI: &str = "../api/openapi.json";
+
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=web");
+    println!("cargo::rerun-if-changed={OPENAPI}");
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?);
     let mut paths = Vec::new();
     collect(Path::new("web"), &mut paths)?;
@@ -20,10 +23,8 @@ fn main() -> io::Result<()> {
     let mut list = String::from("&[\n");
     for (number, path) in paths.iter().enumerate() {
         let bytes = fs::read(path)?;
-        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-        encoder.write_all(&bytes)?;
         let compressed = out.join(format!("{number}.gz"));
-        fs::write(&compressed, encoder.finish()?)?;
+        fs::write(&compressed, compress(&bytes)?)?;
         let name = path.strip_prefix("web").map_err(io::Error::other)?;
         let hash = blake3::hash(&bytes).to_hex();
         let imported =
@@ -37,7 +38,14 @@ fn main() -> io::Result<()> {
         .map_err(io::Error::other)?;
     }
     list.push_str("]\n");
-    fs::write(out.join("web.rs"), list)
+    fs::write(out.join("web.rs"), list)?;
+    fs::write(out.join("openapi.json.gz"), compress(&fs::read(OPENAPI)?)?)
+}
+
+fn compress(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(bytes)?;
+    encoder.finish()
 }
 
 /// The modules beside it that a module needs before it runs.

@@ -199,7 +199,7 @@ fn run() -> anyhow::Result<()> {
         Command::Migrate(arguments) => migrate::migrate(&arguments),
         Command::Health(arguments) => health::health(&arguments),
         Command::Openapi => {
-            print(drillsweep_server::OPENAPI_JSON);
+            print(&drillsweep_server::OPENAPI_JSON);
             Ok(())
         }
         Command::Completions { shell } => {

@@ -38,7 +38,7 @@ async fn the_service_serves_the_document_as_it_is_committed() {
 
 #[test]
 fn every_reference_leads_somewhere_and_every_operation_is_described() {
-    let document: Value = serde_json::from_str(OPENAPI_JSON).unwrap();
+    let document: Value = serde_json::from_str(&OPENAPI_JSON).unwrap();
     let mut references = Vec::new();
     collect_references(&document, &mut references);
     assert!(!references.is_empty());
@@ -95,7 +95,7 @@ fn numeric_fields(document: &Value, schema: &Value, path: &str, fields: &mut Vec
 
 #[test]
 fn every_number_of_a_scenario_is_in_the_vocabulary_with_the_unit_that_its_description_names() {
-    let document: Value = serde_json::from_str(OPENAPI_JSON).unwrap();
+    let document: Value = serde_json::from_str(&OPENAPI_JSON).unwrap();
     let mut fields = Vec::new();
     numeric_fields(&document, &document["components"]["schemas"]["Scenario"], "", &mut fields);
     assert!(fields.len() > 60, "{}", fields.len());
@@ -111,7 +111,7 @@ fn every_number_of_a_scenario_is_in_the_vocabulary_with_the_unit_that_its_descri
 
 #[test]
 fn the_columns_of_every_table_are_described() {
-    let document: Value = serde_json::from_str(OPENAPI_JSON).unwrap();
+    let document: Value = serde_json::from_str(&OPENAPI_JSON).unwrap();
     for layout in tables::ALL.iter().filter(|layout| layout.name != "spectra") {
         let path = format!("/paths/~1v1~1sweeps~1{{id}}~1points~1{{n}}~1{}/get/description", layout.name);
         let description = document.pointer(&path).and_then(Value::as_str).unwrap();

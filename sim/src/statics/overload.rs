@@ -179,7 +179,8 @@ fn negative_directions(model: &Model, mut stiffness: BlockTridiagonal) -> usize 
         let scale = pivot.diagonal().map(|value| 1.0 / value.abs().sqrt().max(f64::MIN_POSITIVE));
         let scaled = SMatrix::<f64, DOFS, DOFS>::from_fn(|i, j| scale[i] * pivot[(i, j)] * scale[j]);
         negative += SymmetricEigen::new(scaled).eigenvalues.iter().filter(|value| **value < -ZERO).count();
-        above = pivot.try_inverse();
+        // Not `try_inverse`, which does the same and is compiled together with formulas for matrices of up to four rows.
+        above = pivot.lu().try_inverse();
         if above.is_none() {
             return negative;
         }

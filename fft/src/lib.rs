@@ -18,8 +18,8 @@ pub fn forward(samples: &mut [Complex<f64>]) {
     }
 }
 
-/// The transform of so many samples. The general planner chooses this one, too, where the processor has the instructions, but is compiled
-/// together with those for processors that the program does not run on.
+/// The transform of so many samples, by AVX. The general planner would choose the same, but it is compiled together with the transforms for
+/// processors without AVX, on which the program does not run.
 #[cfg(all(target_arch = "x86_64", target_feature = "avx", target_feature = "fma"))]
 fn plan(count: usize) -> Arc<dyn Fft<f64>> {
     let mut planner = rustfft::FftPlannerAvx::new().expect("the program is compiled for AVX and FMA");

@@ -83,7 +83,7 @@ fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     })
 }
 
-/// A type out of a text. There is this one way only: each other would be compiled for every type of a body, too.
+/// A type out of JSON, with the place of what is wrong. All bodies are read here: a second reader would be compiled for each of their types.
 fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
     let (mut format, mut track) =
         (serde_json::Deserializer::from_slice(text), serde_path_to_error::Track::new());

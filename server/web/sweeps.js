@@ -10,8 +10,9 @@ import { duration, moment } from "./units.js";
 
 /** How often the list is asked for while no stream tells of changes. */
 const POLL_MS = 4000;
-/** The least time between two looks at the queue, the workers and the failures while sweeps change, and the longest while none does. */
+/** The least time between two looks at the queue, the workers and the failures while sweeps change. */
 const SERVICE_MS = 4000;
+/** The longest time between two looks at anything: a sweep that is there for less than a second, no stream tells to be gone. */
 const QUIET_MS = 30_000;
 /** How long sweeps that are new to the page are collected before the list is asked which of them pass its filters. */
 const COLLECT_MS = 300;
@@ -179,14 +180,18 @@ export async function show(main, route, signal) {
     sayEnd();
   }
 
-  /** Numbers the looks at the first page, so that an older one is dropped. */
+  /** Numbers the looks at the first page, so that an answer that a later one has overtaken is dropped. */
   let looks = 0;
+  let answered = 0;
+  let listAt = Date.now();
   /** Reads the first page of the list again. */
   async function poll() {
     const mine = generation;
     const look = ++looks;
+    listAt = Date.now();
     const page = await get("/v1/sweeps", firstPage(), signal);
-    if (mine !== generation || look !== looks) return;
+    if (mine !== generation || look < answered) return;
+    answered = look;
     // Identifiers grow with time: what that page would have and has not does not pass the filters any more.
     const [listed, last] = [new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)), page.next ? page.sweeps.at(-1).id : ""];
     for (const id of [...known.keys()]) if (id > last && !listed.has(id)) forget(id);
@@ -249,7 +254,7 @@ export async function show(main, route, signal) {
   signal.addEventListener("abort", () => observer.disconnect());
   const timer = setInterval(() => {
     if (document.hidden) return;
-    if (!isStreaming) void poll().catch(() => {});
+    if (!isStreaming || Date.now() - listAt >= QUIET_MS) void poll().catch(() => {});
     if (!isStreaming || Date.now() - serviceAt >= QUIET_MS) serviceChanged();
   }, POLL_MS);
   signal.addEventListener("abort", () => {

@@ -1,5 +1,6 @@
 //! What has changed among all sweeps, found once and told to every event stream.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use tokio::sync::{Mutex, MutexGuard, broadcast};
@@ -31,7 +32,14 @@ pub(crate) struct Told {
 
 /// Where news come in and go out; nobody looks for any before a stream is open.
 #[derive(Debug, Default)]
-pub(crate) struct Feed(Mutex<Option<broadcast::Sender<Arc<News>>>>);
+pub(crate) struct Feed(Mutex<Option<Watched>>);
+
+#[derive(Debug)]
+struct Watched {
+    sender: broadcast::Sender<Arc<News>>,
+    /// Sweeps that were there when streams joined, and at which nobody has looked since.
+    listed: HashSet<String>,
+}
 
 impl Feed {
     /// The place of who looks for news; it is held while that begins or ends.
@@ -41,18 +49,33 @@ impl Feed {
 }
 
 /// The place of who looks for news.
-pub(crate) struct Place<'a>(MutexGuard<'a, Option<broadcast::Sender<Arc<News>>>>);
+pub(crate) struct Place<'a>(MutexGuard<'a, Option<Watched>>);
 
 impl Place<'_> {
-    /// The news from now on, if somebody looks for them.
-    pub(crate) fn join(&self) -> Option<broadcast::Receiver<Arc<News>>> {
-        self.0.as_ref().map(broadcast::Sender::subscribe)
+    /// Whether somebody looks for news.
+    pub(crate) fn is_taken(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// The news from now on, if somebody looks for them, of the sweeps that are there now (`listed`) among others.
+    pub(crate) fn join(
+        &mut self,
+        listed: impl IntoIterator<Item = String>,
+    ) -> Option<broadcast::Receiver<Arc<News>>> {
+        let watched = self.0.as_mut()?;
+        watched.listed.extend(listed);
+        Some(watched.sender.subscribe())
+    }
+
+    /// The sweeps that were there when streams joined since the last time that this was asked.
+    pub(crate) fn take_listed(&mut self) -> HashSet<String> {
+        self.0.as_mut().map(|watched| std::mem::take(&mut watched.listed)).unwrap_or_default()
     }
 
     /// Begins: where news go in, and where the first stream gets them.
     pub(crate) fn begin(&mut self) -> (broadcast::Sender<Arc<News>>, broadcast::Receiver<Arc<News>>) {
         let (sender, receiver) = broadcast::channel(BACKLOG);
-        *self.0 = Some(sender.clone());
+        *self.0 = Some(Watched { sender: sender.clone(), listed: HashSet::new() });
         (sender, receiver)
     }
 

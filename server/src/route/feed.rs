@@ -24,8 +24,12 @@ pub(crate) const PAGE: usize = 100;
 /// What is told of all sweeps from now on: every change after this returns, and perhaps some before it.
 pub(crate) async fn join(app: &App) -> Result<broadcast::Receiver<Arc<News>>> {
     let mut place = app.feed.place().await;
-    if let Some(receiver) = place.join() {
-        return Ok(receiver);
+    if place.is_taken() {
+        // The client may show what came since the last look, and is to hear that it is gone even if that is before the next one.
+        let marks = app.store.sweep_marks().await?;
+        if let Some(receiver) = place.join(marks.into_iter().map(|mark| mark.id)) {
+            return Ok(receiver);
+        }
     }
     let mut watch = Watch { app: app.clone(), known: HashMap::new(), progress_read: Instant::now() };
     watch.begin().await?;
@@ -41,6 +45,9 @@ struct Watch {
     known: HashMap<String, Known>,
     progress_read: Instant,
 }
+
+/// A version that no sweep has: what is known as this is told at the next look.
+const UNTOLD: i64 = i64::MIN;
 
 /// How far a sweep had come, and, while it was not final, as what it was told: its progress changes without its version.
 struct Known {
@@ -101,6 +108,9 @@ impl Watch {
     /// What has changed since the last look.
     async fn look(&mut self) -> Result<News> {
         let at = self.app.store.now_ms().await?;
+        for id in self.app.feed.place().await.take_listed() {
+            self.known.entry(id).or_insert(Known { version: UNTOLD, told: None });
+        }
         let marks = self.app.store.sweep_marks().await?;
         let is_progress_due = self.progress_read.elapsed() >= PROGRESS_INTERVAL;
         if is_progress_due {

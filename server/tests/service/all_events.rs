@@ -8,7 +8,7 @@ use axum::http::{Request, StatusCode, header};
 use futures::StreamExt;
 use serde_json::{Value, json};
 use tokio::sync::watch;
-use tokio::time::timeout;
+use tokio::time::timeout_at;
 use tower::ServiceExt;
 
 use crate::bench::Bench;
@@ -35,6 +35,8 @@ impl Listening {
 
     /// The next event; none once the stream has ended.
     async fn next(&mut self) -> Option<Event> {
+        // A silent stream is kept open by comments.
+        let latest = tokio::time::Instant::now() + SOON;
         loop {
             while let Some((block, rest)) = self.text.split_once("\n\n") {
                 let event = parse(block);
@@ -43,7 +45,7 @@ impl Listening {
                     return event;
                 }
             }
-            let piece = timeout(SOON, self.body.next()).await.expect("something comes")?;
+            let piece = timeout_at(latest, self.body.next()).await.expect("something comes")?;
             self.text.push_str(std::str::from_utf8(&piece.unwrap()).unwrap());
         }
     }
@@ -116,6 +118,20 @@ async fn whatever_happens_to_any_sweep_is_told_to_those_who_ask_for_it() {
     for mut stream in [all, of_ann, tagged] {
         while stream.next().await.is_some() {}
     }
+}
+
+#[tokio::test]
+async fn a_sweep_that_comes_and_goes_between_two_looks_is_told_to_be_gone_to_who_may_show_it() {
+    let bench = Bench::new().await;
+    // Whose stream has the service look for changes, a second later for the first time.
+    let _first = Listening::to(&bench, "").await;
+    let sweep = bench.submit(points(1, &json!({}))).await;
+    bench.succeed().await;
+    let mut second = Listening::to(&bench, "").await;
+    let deletion = Request::delete(format!("/v1/sweeps/{sweep}")).body(Body::empty()).unwrap();
+    assert_eq!(bench.send(deletion).await.status, StatusCode::OK);
+    let events = second.until(|(name, ..)| name == "deleted").await;
+    assert_eq!(events[events.len() - 1].2, json!({"id": sweep}));
 }
 
 #[tokio::test]

@@ -93,6 +93,20 @@ async fn a_dry_run_tells_the_points_and_stores_nothing() {
 }
 
 #[tokio::test]
+async fn listed_points_keep_the_order_of_their_columns_however_numbers_are_written() {
+    let bench = Bench::new().await;
+    for priority in ["2", "2.0"] {
+        let body = format!(
+            r#"{{"preset": "paper-200m", "priority": {priority}, "design": "list", "points": [{{"mud_density": 1200.0, "flow_rate": 0.02}}]}}"#
+        );
+        let answer = bench.send(json_request(Method::POST, "/v1/sweeps?dry_run=true", body)).await;
+        assert_eq!(answer.status, StatusCode::OK);
+        let columns = r#""parameters":{"mud_density":1200.0,"flow_rate":0.02}"#;
+        assert!(answer.text().contains(columns), "{}", answer.text());
+    }
+}
+
+#[tokio::test]
 async fn a_point_that_is_known_is_not_computed_again() {
     let bench = Bench::new().await;
     bench.submit(json!({"preset": "paper-200m"})).await;

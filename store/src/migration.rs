@@ -26,6 +26,7 @@ const POSTGRES: &[File] = &[
     (6, "finish and claim", include_str!("../../migrations/postgres/0006_finish_and_claim.sql")),
     (7, "looks", include_str!("../../migrations/postgres/0007_looks.sql")),
     (8, "stages", include_str!("../../migrations/postgres/0008_stages.sql")),
+    (9, "longer batches", include_str!("../../migrations/postgres/0009_longer_batches.sql")),
 ];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A

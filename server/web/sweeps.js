@@ -12,7 +12,7 @@ import { duration, moment } from "./units.js";
 const POLL_MS = 4000;
 /** The least time between two looks at the queue, the workers and the failures while sweeps change. */
 const SERVICE_MS = 4000;
-/** The longest time between two looks at anything: a sweep that is there for less than a second, no stream tells to be gone. */
+/** The longest time between two looks at the list and at the service: the stream does not tell that a sweep is deleted that existed for less than a second. */
 const QUIET_MS = 30_000;
 /** How long sweeps that are new to the page are collected before the list is asked which of them pass its filters. */
 const COLLECT_MS = 300;

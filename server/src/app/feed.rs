@@ -52,22 +52,19 @@ impl Feed {
 pub(crate) struct Place<'a>(MutexGuard<'a, Option<Watched>>);
 
 impl Place<'_> {
-    /// Whether somebody looks for news.
-    pub(crate) fn is_taken(&self) -> bool {
-        self.0.is_some()
+    /// The news from now on, if somebody looks for them.
+    pub(crate) fn join(&self) -> Option<broadcast::Receiver<Arc<News>>> {
+        self.0.as_ref().map(|watched| watched.sender.subscribe())
     }
 
-    /// The news from now on, if somebody looks for them, of the sweeps that are there now (`listed`) among others.
-    pub(crate) fn join(
-        &mut self,
-        listed: impl IntoIterator<Item = String>,
-    ) -> Option<broadcast::Receiver<Arc<News>>> {
-        let watched = self.0.as_mut()?;
-        watched.listed.extend(listed);
-        Some(watched.sender.subscribe())
+    /// Has the next look tell also of these sweeps, though they may be gone by then.
+    pub(crate) fn list(&mut self, sweeps: impl IntoIterator<Item = String>) {
+        if let Some(watched) = self.0.as_mut() {
+            watched.listed.extend(sweeps);
+        }
     }
 
-    /// The sweeps that were there when streams joined since the last time that this was asked.
+    /// What was listed since this was taken last.
     pub(crate) fn take_listed(&mut self) -> HashSet<String> {
         self.0.as_mut().map(|watched| std::mem::take(&mut watched.listed)).unwrap_or_default()
     }

@@ -24,12 +24,11 @@ pub(crate) const PAGE: usize = 100;
 /// What is told of all sweeps from now on: every change after this returns, and perhaps some before it.
 pub(crate) async fn join(app: &App) -> Result<broadcast::Receiver<Arc<News>>> {
     let mut place = app.feed.place().await;
-    if place.is_taken() {
+    if let Some(receiver) = place.join() {
         // The client may show what came since the last look, and is to hear that it is gone even if that is before the next one.
         let marks = app.store.sweep_marks().await?;
-        if let Some(receiver) = place.join(marks.into_iter().map(|mark| mark.id)) {
-            return Ok(receiver);
-        }
+        place.list(marks.into_iter().map(|mark| mark.id));
+        return Ok(receiver);
     }
     let mut watch = Watch { app: app.clone(), known: HashMap::new(), progress_read: Instant::now() };
     watch.begin().await?;

@@ -69,13 +69,12 @@ impl StoredObject {
     }
 }
 
-/// A file whose content has been read once.
-pub(crate) struct NamedFile {
+/// A file whose content has been read once, and is known by its name.
+#[derive(Debug)]
+pub struct NamedFile {
     file: Arc<File>,
-    pub(crate) id: BlobId,
+    id: BlobId,
     bytes: u64,
-    /// The content of a file of one part.
-    whole: Option<Vec<u8>>,
 }
 
 impl BlobStore {
@@ -118,23 +117,29 @@ impl BlobStore {
     /// # Errors
     /// When the file cannot be read or the object store fails.
     pub async fn put_file(&self, file: &File) -> Result<(BlobId, u64)> {
-        self.put_named(NamedFile::read(file).await?).await
+        let file = NamedFile::read(file).await?;
+        self.put_named(&file).await?;
+        Ok((file.id, file.bytes))
     }
 
-    /// The same of a file that has been read once.
-    pub(crate) async fn put_named(&self, file: NamedFile) -> Result<(BlobId, u64)> {
-        let NamedFile { file, id, bytes, whole } = file;
-        if let Some(whole) = whole {
-            self.put_as(id, PutPayload::from(whole)).await?;
-            return Ok((id, bytes));
+    /// The same of a file whose name is known.
+    ///
+    /// # Errors
+    /// When the file cannot be read or has changed, or the object store fails.
+    pub async fn put_named(&self, NamedFile { file, id, bytes }: &NamedFile) -> Result<()> {
+        if *bytes < PART as u64 {
+            let whole = read_part(file, 0).await?;
+            if BlobId::of(&whole) != *id {
+                return Err(StoreError::LocalFile(std::io::Error::other("the file has changed")));
+            }
+            return self.put_as(*id, PutPayload::from(whole)).await;
         }
-        if !self.is_to_be_written(id).await? {
-            return Ok((id, bytes));
+        if !self.is_to_be_written(*id).await? {
+            return Ok(());
         }
         let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
-        let sent = send_file(upload.as_mut(), &file, bytes).await;
-        self.end_upload(id, upload, sent).await?;
-        Ok((id, bytes))
+        let sent = send_file(upload.as_mut(), file, *bytes).await;
+        self.end_upload(*id, upload, sent).await
     }
 
     /// Completes an upload whose parts have all been sent, and takes any other one back.
@@ -392,24 +397,33 @@ impl BlobStore {
 }
 
 impl NamedFile {
-    /// Reads a file once, whatever its own position is.
+    /// Reads a file once, whatever its own position is; a large one is never in memory as a whole.
     ///
     /// # Errors
     /// When it cannot be read.
-    pub(crate) async fn read(file: &File) -> Result<Self> {
+    pub async fn read(file: &File) -> Result<Self> {
         let file = Arc::new(file.try_clone().map_err(StoreError::LocalFile)?);
-        let first = read_part(&file, 0).await?;
-        if first.len() < PART {
-            let (id, bytes) = (BlobId::of(&first), first.len() as u64);
-            return Ok(Self { file, id, bytes, whole: Some(first) });
-        }
         let mut hasher = blake3::Hasher::new();
-        let mut part = first;
-        while !part.is_empty() {
+        loop {
+            let part = read_part(&file, hasher.count()).await?;
             hasher.update(&part);
-            part = read_part(&file, hasher.count()).await?;
+            if part.len() < PART {
+                break;
+            }
         }
-        Ok(Self { file, id: BlobId(hasher.finalize()), bytes: hasher.count(), whole: None })
+        Ok(Self { file, id: BlobId(hasher.finalize()), bytes: hasher.count() })
+    }
+
+    /// The name of the blob that it becomes.
+    #[must_use]
+    pub fn id(&self) -> BlobId {
+        self.id
+    }
+
+    /// Its size.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 }
 
@@ -457,7 +471,8 @@ fn cut(bytes: &Bytes, range: Range<u64>) -> Bytes {
 
 impl BlobId {
     /// The name of a content.
-    pub(crate) fn of(bytes: &[u8]) -> Self {
+    #[must_use]
+    pub fn of(bytes: &[u8]) -> Self {
         BlobId(blake3::hash(bytes))
     }
 

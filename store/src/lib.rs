@@ -34,7 +34,7 @@ mod upload;
 mod verification;
 mod worker;
 
-pub use blob::{BlobId, BlobStore, LocationError, ObjectsLocation};
+pub use blob::{BlobId, BlobStore, LocationError, NamedFile, ObjectsLocation};
 pub use census::Census;
 pub use check::CheckReport;
 pub use connection::{Role, Store, StoreConfig};

@@ -27,6 +27,7 @@ const POSTGRES: &[File] = &[
     (7, "looks", include_str!("../../migrations/postgres/0007_looks.sql")),
     (8, "stages", include_str!("../../migrations/postgres/0008_stages.sql")),
     (9, "longer batches", include_str!("../../migrations/postgres/0009_longer_batches.sql")),
+    (10, "reservations", include_str!("../../migrations/postgres/0010_reservations.sql")),
 ];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A

@@ -83,6 +83,29 @@ pub enum Renewal {
     Lost,
 }
 
+impl Lease {
+    /// The statement that extends it: gives whether a cancellation is asked for; nothing if it is lost.
+    pub(crate) fn renewing(&self, lease_ms: i64, progress: f64) -> Query {
+        query(sql::queue::RENEW)
+            .bind(self.key.as_slice())
+            .bind(self.fencing_token)
+            .bind(&self.worker)
+            .bind(progress)
+            .bind(lease_ms)
+    }
+}
+
+impl Renewal {
+    /// By whether a cancellation is asked for; that is not known of a lost lease.
+    pub(crate) fn of(cancel_requested: Option<bool>) -> Self {
+        match cancel_requested {
+            None => Renewal::Lost,
+            Some(false) => Renewal::Held,
+            Some(true) => Renewal::CancelRequested,
+        }
+    }
+}
+
 /// An artifact of a result, its blob already written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewArtifact {
@@ -200,19 +223,7 @@ impl Store {
     /// # Errors
     /// When the database fails.
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
-        let cancel_requested: Vec<bool> = query(sql::queue::RENEW)
-            .bind(lease.key.as_slice())
-            .bind(lease.fencing_token)
-            .bind(&lease.worker)
-            .bind(progress)
-            .bind(lease_ms)
-            .scalars(&self.database)
-            .await?;
-        Ok(match cancel_requested.first() {
-            None => Renewal::Lost,
-            Some(false) => Renewal::Held,
-            Some(true) => Renewal::CancelRequested,
-        })
+        Ok(Renewal::of(lease.renewing(lease_ms, progress).first_scalar(&self.database).await?))
     }
 
     /// Stores a result. False if the lease was lost: then nothing is written.

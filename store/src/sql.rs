@@ -231,6 +231,7 @@ statements! {
     }
     upload {
         RESERVE = "reserve",
+        RESERVE_AT_ONCE = "reserve_at_once",
         UNRESERVED = "unreserved",
     }
     verification {

@@ -4,16 +4,18 @@
 //! for it. Instead the blob is reserved, for an hour. The collector deletes what no row names and nobody has reserved, and notes that it
 //! is about to; whoever wants to reserve such a blob waits until it is gone, and writes it again.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::time::Duration;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::blob::{BlobId, NamedFile};
 use crate::connection::Store;
 use crate::database::Transaction;
 use crate::error::{Result, StoreError};
 use crate::query::query;
+use crate::queue::{Lease, Renewal};
 use crate::sql;
 
 /// How long a reservation holds \[ms\]: from before a blob is written until the row that names it is stored.
@@ -23,13 +25,55 @@ const RESERVED_MS: i64 = 3_600_000;
 const POLL: Duration = Duration::from_millis(50);
 
 impl Store {
-    /// Writes a blob for a result or a checkpoint that is about to be stored, as [`BlobStore::put`](crate::BlobStore::put) does. It is
-    /// kept for an hour, and from then on as long as a row names it.
+    /// Reserves all blobs of a result that is computed, before they are written ([`BlobStore::put`](crate::BlobStore::put)): for an hour, and
+    /// from then on as long as a row names them. The lease is extended with them, as by [`renew`](Self::renew): who has lost it need not
+    /// write them.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn reserve(&self, lease: &Lease, lease_ms: i64, blobs: &[BlobId]) -> Result<Renewal> {
+        let names: BTreeSet<String> = blobs.iter().map(BlobId::to_string).collect();
+        let wanted = json!(names).to_string();
+        loop {
+            let at_once = query(sql::upload::RESERVE_AT_ONCE)
+                .bind(lease.key.as_slice())
+                .bind(lease.fencing_token)
+                .bind(&lease.worker)
+                .bind(lease_ms)
+                .bind(&wanted)
+                .bind(RESERVED_MS);
+            let (reserved, renewal) = match at_once.first::<(i64, Option<bool>)>(&self.database).await? {
+                Some((reserved, cancel_requested)) => (reserved, Renewal::of(cancel_requested)),
+                None => self.reserve_by_steps(lease, lease_ms, &wanted).await?,
+            };
+            if renewal == Renewal::Lost || reserved == names.len() as i64 {
+                return Ok(renewal);
+            }
+            // Until the note of it runs out, if whoever was deleting one has died.
+            tokio::time::sleep(POLL).await;
+        }
+    }
+
+    /// The same once, where statements are no messages. Tells how many blobs are reserved.
+    async fn reserve_by_steps(&self, lease: &Lease, lease_ms: i64, wanted: &str) -> Result<(i64, Renewal)> {
+        let mut tx = self.write_one().await?;
+        let renewal = Renewal::of(lease.renewing(lease_ms, 1.0).first_scalar(&mut tx).await?);
+        let mut reserved = 0;
+        if renewal != Renewal::Lost {
+            let reserve = query(sql::upload::RESERVE).bind(wanted).bind(RESERVED_MS);
+            reserved = reserve.scalars::<String>(&mut tx).await?.len() as i64;
+        }
+        tx.commit().await?;
+        Ok((reserved, renewal))
+    }
+
+    /// Writes a blob that is about to be named by a row, as [`BlobStore::put`](crate::BlobStore::put) does. It is kept for an hour, and from
+    /// then on as long as a row names it.
     ///
     /// # Errors
     /// When the database or the object store fails.
     pub async fn put_blob(&self, bytes: Vec<u8>) -> Result<BlobId> {
-        self.reserve(BlobId::of(&bytes)).await?;
+        self.reserve_one(BlobId::of(&bytes)).await?;
         self.blobs().put(bytes).await
     }
 
@@ -39,15 +83,16 @@ impl Store {
     /// When the file cannot be read, or the database or the object store fails.
     pub async fn put_blob_file(&self, file: &File) -> Result<(BlobId, u64)> {
         let file = NamedFile::read(file).await?;
-        self.reserve(file.id).await?;
-        self.blobs().put_named(file).await
+        self.reserve_one(file.id()).await?;
+        self.blobs().put_named(&file).await?;
+        Ok((file.id(), file.bytes()))
     }
 
     /// Reserves a blob, once nobody is deleting it.
-    async fn reserve(&self, blob: BlobId) -> Result<()> {
-        let name = blob.to_string();
+    async fn reserve_one(&self, blob: BlobId) -> Result<()> {
+        let wanted = json!([blob.to_string()]).to_string();
         loop {
-            let reserve = query(sql::upload::RESERVE).bind(&name).bind(RESERVED_MS);
+            let reserve = query(sql::upload::RESERVE).bind(&wanted).bind(RESERVED_MS);
             if !reserve.rows::<(String,)>(&self.database).await?.is_empty() {
                 return Ok(());
             }

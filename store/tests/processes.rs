@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use drillsweep_store::{
-    CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Renewal, Role, Store,
+    BlobId, CachePolicy, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Renewal, Role, Store,
     StoreConfig, SubmitOutcome, WorkState,
 };
 
@@ -81,17 +81,18 @@ async fn work(directory: &Path, clock: i64, name: &str) {
             hang_until_killed();
         }
         let content = claim.scenario.changes_json.as_bytes().to_vec();
+        let reserved = store.reserve(&claim.lease, LEASE_MS, &[BlobId::of(&content)]).await.unwrap();
+        assert_eq!(reserved, Renewal::Held);
         let artifact = NewArtifact {
             name: "history".to_owned(),
             media_type: "application/octet-stream".to_owned(),
             bytes: content.len() as i64,
             row_count: 1,
-            blob: store.put_blob(content).await.unwrap(),
+            blob: store.blobs().put(content).await.unwrap(),
         };
         if hang == "stored" && count == hang_at {
             hang_until_killed();
         }
-        assert_eq!(store.renew(&claim.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
         let artifacts = &[artifact];
         let result = NewResult { summary_json: "{}", provenance_json: "{}", artifacts, is_repeatable: true };
         assert!(store.finish_done(&claim.lease, &result).await.unwrap());

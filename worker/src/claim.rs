@@ -11,8 +11,8 @@ use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
-    BlobId, Claim, Finished, Lease, NewArtifact, NewResult, Role, Store, StoreConfig, StoreError,
-    WorkerRecord, patiently,
+    BlobId, Claim, Finished, Lease, NamedFile, NewArtifact, NewResult, Renewal, Role, Store, StoreConfig,
+    StoreError, WorkerRecord, patiently,
 };
 use jiff::Timestamp;
 use serde_json::{Value, json};
@@ -358,8 +358,9 @@ impl Worker<'_> {
         let Self { store, record, .. } = self;
         let is_stored = match ended {
             Ended::Computed(Ok(Computation::Finished(computed))) => {
-                match upload(store, &computed.artifacts).await {
-                    Ok(artifacts) => {
+                match self.upload(lease, &computed.artifacts).await {
+                    Ok(None) => Ok(false),
+                    Ok(Some(artifacts)) => {
                         let summary = Value::Object(computed.summary_row()).to_string();
                         let provenance = json!(computed.provenance).to_string();
                         let result = NewResult {
@@ -403,6 +404,34 @@ impl Worker<'_> {
             }
         };
         Ok(Finished { is_stored: is_stored?, next: None })
+    }
+
+    /// Writes the tables as blobs, before any row refers to them; none if the lease is lost.
+    async fn upload(
+        &self,
+        lease: &Lease,
+        artifacts: &[EncodedArtifact],
+    ) -> Result<Option<Vec<NewArtifact>>, StoreError> {
+        let mut files = Vec::new();
+        for artifact in artifacts {
+            files.push(NamedFile::read(&artifact.file).await?);
+        }
+        let blobs: Vec<BlobId> = files.iter().map(NamedFile::id).collect();
+        if self.store.reserve(lease, self.lease_ms(), &blobs).await? == Renewal::Lost {
+            return Ok(None);
+        }
+        let mut stored = Vec::new();
+        for (EncodedArtifact { name, media_type, row_count, .. }, file) in artifacts.iter().zip(&files) {
+            self.store.blobs().put_named(file).await?;
+            stored.push(NewArtifact {
+                name: (*name).to_owned(),
+                media_type: (*media_type).to_owned(),
+                blob: file.id(),
+                bytes: file.bytes() as i64,
+                row_count: *row_count as i64,
+            });
+        }
+        Ok(Some(stored))
     }
 }
 
@@ -501,22 +530,6 @@ enum KeepError {
     /// By the store.
     #[error(transparent)]
     Store(#[from] StoreError),
-}
-
-/// Writes the tables as blobs, before any row refers to them.
-async fn upload(store: &Store, artifacts: &[EncodedArtifact]) -> Result<Vec<NewArtifact>, StoreError> {
-    let mut stored = Vec::new();
-    for EncodedArtifact { name, media_type, row_count, file } in artifacts {
-        let (blob, bytes) = store.put_blob_file(file).await?;
-        stored.push(NewArtifact {
-            name: (*name).to_owned(),
-            media_type: (*media_type).to_owned(),
-            blob,
-            bytes: bytes as i64,
-            row_count: *row_count as i64,
-        });
-    }
-    Ok(stored)
 }
 
 fn panic_text(error: tokio::task::JoinError) -> String {

@@ -21,6 +21,7 @@ pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_ren
     assert_eq!(record.finished, None);
 
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::CancelRequested);
+    assert_eq!(store.reserve(&running.lease, LEASE_MS, &[]).await.unwrap(), Renewal::CancelRequested);
     assert!(store.finish_cancelled(&running.lease, CANCELLED).await.unwrap());
     let record = sweep_record(&store, "s").await;
     assert_eq!(record.counts, StateCounts { total: 3, done: 1, cancelled: 2, ..StateCounts::default() });

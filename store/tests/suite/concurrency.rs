@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use drillsweep_store::{
-    Claim, DeleteOutcome, NewArtifact, NewResult, Renewal, RetentionPolicy, Role, Store, StoreConfig,
+    BlobId, Claim, DeleteOutcome, NewArtifact, NewResult, Renewal, RetentionPolicy, Role, Store, StoreConfig,
     SubmitOutcome, WorkKey,
 };
 
@@ -247,14 +247,17 @@ async fn write_beside_collectors(store: &Store, name: &str) {
             let half = store.blobs().get(checkpoint).await.unwrap();
             assert_eq!(half, format!("half of {point}").into_bytes());
         }
+        let contents = contents(point);
+        let blobs = [BlobId::of(&contents[0]), BlobId::of(&contents[1])];
+        assert_eq!(store.reserve(&lease, LEASE_MS, &blobs).await.unwrap(), Renewal::Held);
         let mut artifacts = Vec::new();
-        for (name, content) in ["history", "profile"].into_iter().zip(contents(point)) {
+        for (name, content) in ["history", "profile"].into_iter().zip(contents) {
             artifacts.push(NewArtifact {
                 name: name.to_owned(),
                 media_type: "application/vnd.apache.parquet".to_owned(),
                 bytes: content.len() as i64,
                 row_count: 1,
-                blob: store.put_blob(content).await.unwrap(),
+                blob: store.blobs().put(content).await.unwrap(),
             });
         }
         let result = NewResult {

@@ -1,7 +1,8 @@
 //! Leases: who holds a point, until when, and what becomes of it when its worker falls silent.
 
 use drillsweep_store::{
-    CachePolicy, Finished, NewArtifact, NewSweep, Renewal, StateCounts, StoreError, WorkState, WorkerRecord,
+    BlobId, CachePolicy, Finished, NewArtifact, NewSweep, Renewal, StateCounts, StoreError, WorkState,
+    WorkerRecord,
 };
 
 use crate::bench::{
@@ -69,6 +70,8 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
     let refuses_the_late_one = async || {
         let version = store.sweep_version("s").await.unwrap();
         assert_eq!(store.renew(&late.lease, LEASE_MS, 0.9).await.unwrap(), Renewal::Lost);
+        let blobs = [BlobId::of(b"late")];
+        assert_eq!(store.reserve(&late.lease, LEASE_MS, &blobs).await.unwrap(), Renewal::Lost);
         assert!(!finish(&store, &late).await);
         assert!(!store.finish_failed(&late.lease, "{}").await.unwrap());
         assert!(!store.finish_cancelled(&late.lease, "{}").await.unwrap());
@@ -92,6 +95,25 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"prompt"}"#));
     // The result is stored once, even by the one that holds the lease.
     assert!(!finish(&later, &prompt).await);
+}
+
+pub(crate) async fn who_reserves_the_blobs_of_a_result_keeps_its_lease<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    let first = claim(&store, "first").await;
+    // Two tables of a result may have the same content, and a result may have none.
+    let blobs = [BlobId::of(b"history"), BlobId::of(b"profile"), BlobId::of(b"history")];
+    assert_eq!(store.reserve(&first.lease, LEASE_MS, &blobs).await.unwrap(), Renewal::Held);
+    let halfway = engine.after(LEASE_MS / 2).await;
+    assert_eq!(halfway.reserve(&first.lease, LEASE_MS, &[]).await.unwrap(), Renewal::Held);
+    let point = point_record(&store, "s", 1).await;
+    assert_eq!((point.state, point.progress), (WorkState::Leased, 1.0));
+
+    let shortly_before = engine.after(LEASE_MS / 2 + LEASE_MS - 5_000).await;
+    assert_eq!(claim_or_none(&shortly_before, "second").await, None);
+    let later = engine.after(LEASE_MS / 2 + LEASE_MS + 1).await;
+    assert_eq!(claim(&later, "second").await.lease.fencing_token, 2);
 }
 
 pub(crate) async fn a_result_brings_its_worker_the_next_point<E: Engine>() {

@@ -75,6 +75,7 @@ macro_rules! conformance {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
                 a_buried_workers_points_are_free_at_once_and_nobody_elses,
                 a_late_writer_changes_nothing,
+                who_reserves_the_blobs_of_a_result_keeps_its_lease,
                 a_result_brings_its_worker_the_next_point,
                 a_result_that_is_refused_brings_no_point,
                 the_same_worker_cannot_write_under_its_earlier_claim,
@@ -109,6 +110,7 @@ macro_rules! conformance {
             retention {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
+                blobs_that_are_reserved_together_all_stay_for_an_hour,
                 what_a_killed_upload_left_goes_too_and_strange_files_stay,
                 an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
                 a_sweep_goes_at_its_time_and_leaves_what_others_have,
@@ -188,6 +190,7 @@ macro_rules! with_objects {
             retention {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
+                blobs_that_are_reserved_together_all_stay_for_an_hour,
                 an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
                 a_sweep_goes_at_its_time_and_leaves_what_others_have,
                 a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinished,

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use drillsweep_store::{
-    ChangeOutcome, DeleteOutcome, Garbage, NewResult, NewSweep, RetentionPolicy, Store, StoreError,
-    SweepChanges,
+    BlobId, ChangeOutcome, DeleteOutcome, Garbage, NewResult, NewSweep, Renewal, RetentionPolicy, Store,
+    StoreError, SweepChanges,
 };
 
 use crate::bench::{Engine, claim, finish, key, point_record, submit, sweep, sweep_record};
@@ -63,6 +63,25 @@ pub(crate) async fn a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour<
     // What has been deleted can be written again.
     let blob = later.put_blob(vec![7; 1_000]).await.unwrap();
     assert_eq!(later.blobs().get(blob).await.unwrap().len(), 1_000);
+}
+
+pub(crate) async fn blobs_that_are_reserved_together_all_stay_for_an_hour<E: Engine>() {
+    const HOUR_MS: i64 = 3_600_000;
+    let engine = E::new();
+    let contents = [vec![7; 1_000], vec![8; 500]];
+    let blobs = [BlobId::of(&contents[0]), BlobId::of(&contents[1])];
+    // Long since garbage, and found there by who has the same to store.
+    let store = engine.open().await;
+    for content in contents {
+        store.blobs().put(content).await.unwrap();
+    }
+    let later = engine.after(2 * DAY_MS).await;
+    submit(&later, &sweep("s", [1])).await;
+    let lease = claim(&later, "w").await.lease;
+    assert_eq!(later.reserve(&lease, 60_000, &blobs).await.unwrap(), Renewal::Held);
+    assert_eq!(collect(&engine.after(2 * DAY_MS + HOUR_MS - 60_000).await).await, Garbage::default());
+    let found = collect(&engine.after(2 * DAY_MS + HOUR_MS + 60_000).await).await;
+    assert_eq!(found, Garbage { blobs: 2, blob_bytes: 1_500, ..Garbage::default() });
 }
 
 pub(crate) async fn what_a_killed_upload_left_goes_too_and_strange_files_stay<E: Engine>() {

@@ -1,5 +1,5 @@
-//! How large the queue may grow: a sweep of many points, and many workers that claim, renew, write a small blob and finish, and compute
-//! nothing, while others submit and look.
+//! How large the queue may grow: a sweep of many points, and many workers that claim, renew their lease as they reserve a small blob, write
+//! it and finish, and compute nothing, while others submit and look.
 //!
 //! `cargo bench -p drillsweep-store --bench growth -- --engine postgres --points 1000000 --workers 200 --seconds 120`
 //!
@@ -13,8 +13,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use drillsweep_store::{
-    CachePolicy, DatabaseLocation, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification, Role, Store,
-    StoreConfig, SweepFilter,
+    BlobId, CachePolicy, DatabaseLocation, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification,
+    Renewal, Role, Store, StoreConfig, SweepFilter,
 };
 
 #[path = "../tests/servers/mod.rs"]
@@ -27,9 +27,9 @@ const SETTINGS: &[&str] =
 
 const SWEEP: &str = "0190";
 
-/// How long the workers have worked before it is measured: with its first points each of their connections reads the schema and plans its
-/// statements, which takes the server much longer than the points.
-const WARM_UP: Duration = Duration::from_secs(10);
+/// How long the workers have worked before it is measured. With its first points each of their connections reads the schema, plans its
+/// statements and maps the server's memory, and what was submitted is vacuumed and analyzed for the first time, after which all plan anew.
+const WARM_UP: Duration = Duration::from_secs(60);
 
 /// What is measured.
 struct Plan {
@@ -255,8 +255,11 @@ async fn work(
         if !compute.is_zero() {
             tokio::time::sleep(compute).await;
         }
-        store.renew(&claim.lease, 60_000, 0.5).await.expect("renewed");
-        let blob = store.put_blob(claim.lease.key.to_vec()).await.expect("written");
+        let content = claim.lease.key.to_vec();
+        let blob = BlobId::of(&content);
+        let renewal = store.reserve(&claim.lease, 60_000, &[blob]).await.expect("renewed");
+        assert_eq!(renewal, Renewal::Held, "nobody else has it");
+        store.blobs().put(content).await.expect("written");
         let artifact = NewArtifact {
             name: "history".to_owned(),
             media_type: "application/vnd.apache.parquet".to_owned(),

@@ -130,7 +130,7 @@ impl BlobStore {
         if *bytes < PART as u64 {
             let whole = read_part(file, 0).await?;
             if BlobId::of(&whole) != *id {
-                return Err(StoreError::LocalFile(std::io::Error::other("the file has changed")));
+                return Err(changed());
             }
             return self.put_as(*id, PutPayload::from(whole)).await;
         }
@@ -138,7 +138,7 @@ impl BlobStore {
             return Ok(());
         }
         let mut upload = self.backend.uploads.put_multipart(&id.path()).await?;
-        let sent = send_file(upload.as_mut(), file, *bytes).await;
+        let sent = send_file(upload.as_mut(), file, *bytes, *id).await;
         self.end_upload(*id, upload, sent).await
     }
 
@@ -427,18 +427,26 @@ impl NamedFile {
     }
 }
 
-/// Sends a file of so many bytes to an upload, part by part.
-async fn send_file(upload: &mut dyn MultipartUpload, file: &Arc<File>, bytes: u64) -> Result<()> {
-    let mut written = 0;
-    while written < bytes {
-        let part = read_part(file, written).await?;
+/// Sends a file of so many bytes to an upload, part by part, and fails at its end if it is not what its name says.
+async fn send_file(upload: &mut dyn MultipartUpload, file: &Arc<File>, bytes: u64, id: BlobId) -> Result<()> {
+    let mut hasher = blake3::Hasher::new();
+    while hasher.count() < bytes {
+        let part = read_part(file, hasher.count()).await?;
         if part.is_empty() {
-            return Err(StoreError::LocalFile(std::io::Error::other("the file became shorter")));
+            return Err(changed());
         }
-        written += part.len() as u64;
+        hasher.update(&part);
         upload.put_part(PutPayload::from(part)).await?;
     }
+    if hasher.finalize() != id.0 {
+        return Err(changed());
+    }
     Ok(())
+}
+
+/// A file is not any more what it was named by.
+fn changed() -> StoreError {
+    StoreError::LocalFile(std::io::Error::other("the file has changed while it was being stored"))
 }
 
 /// A part of a file, shorter at its end.

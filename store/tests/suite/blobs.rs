@@ -2,7 +2,7 @@
 
 use std::io::{Read as _, Seek as _, Write as _};
 
-use drillsweep_store::{BlobId, StoreError};
+use drillsweep_store::{BlobId, NamedFile, StoreError};
 
 use crate::place::{Bucket, Directory, Place, object_name};
 
@@ -107,6 +107,23 @@ async fn no_range_of_a_damaged_blob_is_handed_out<P: Place>() {
     assert!(blobs.get_range(id, 999_990..1_000_000).await.unwrap_err().is_damage());
 }
 
+async fn a_file_that_changes_before_it_is_written_is_no_blob<P: Place>() {
+    let place = P::new();
+    let blobs = place.open();
+    // In one part and in several.
+    for length in [1_000, 20 << 20] {
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&vec![1; length]).unwrap();
+        let named = NamedFile::read(&file).await.unwrap();
+        file.rewind().unwrap();
+        file.write_all(&[2]).unwrap();
+        assert!(matches!(blobs.put_named(&named).await.unwrap_err(), StoreError::LocalFile(_)));
+        file.set_len(length as u64 / 2).unwrap();
+        assert!(matches!(blobs.put_named(&named).await.unwrap_err(), StoreError::LocalFile(_)));
+    }
+    assert!(place.objects().is_empty());
+}
+
 async fn a_file_is_the_blob_of_its_bytes<P: Place>() {
     let place = P::new();
     let blobs = place.open();
@@ -157,5 +174,6 @@ in_every_place! {
     a_range_is_cut_from_the_content,
     what_is_damaged_is_replaced_when_it_is_written_again,
     a_file_is_the_blob_of_its_bytes,
+    a_file_that_changes_before_it_is_written_is_no_blob,
     no_range_of_a_damaged_blob_is_handed_out,
 }

@@ -390,8 +390,7 @@ pub struct ContactLaw {
     /// steps as stiffness does.
     pub damping: f64,
     /// Largest stiffness of a metre of string \[N/m2\], above 0, with the law `per_length` only; absent means 2e7, the paper's 1e7
-    /// N/m on collar nodes 0.5 m apart. Usual 2e6 to 2e8. Under a load of w N/m the string sinks in by w over this; stiffer walls
-    /// ask for shorter elements, by its fourth root.
+    /// N/m on collar nodes 0.5 m apart. Usual 2e6 to 2e8. Under a load of w N/m the string sinks in by w over this.
     #[serde(default)]
     pub stiffness_per_length: Option<f64>,
     /// Largest damping of a metre of string \[N s/m2\], 0 or more, with the law `per_length` only; absent means 2e4, the paper's
@@ -453,8 +452,8 @@ impl ContactLaw {
 }
 
 /// What stiffness and damping of the wall belong to: with `per_node`, the paper's law, to every node, so that a finer mesh meets a
-/// stiffer wall; with `per_length` to the length of string that touches through a node, so that every mesh meets the same wall, and
-/// to gauges as they are.
+/// stiffer wall; with `per_length` to the length of string in contact, so that every mesh meets the same wall, and to gauges as they
+/// are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -462,9 +461,9 @@ pub enum WallLaw {
     /// The paper's: every node has `stiffness` and `damping`, so a finer mesh meets a stiffer wall.
     #[default]
     PerNode,
-    /// A node has `stiffness_per_length` and `damping_per_length` times the length of string that touches the wall through it, half
-    /// of each adjoining element of the node's contact diameter, so every mesh meets the same wall: under a uniform load w the string penetrates it by
-    /// w / `stiffness_per_length`. Gauges, which act at a point, have `stiffness` and `damping`.
+    /// The law acts along the elements, with `stiffness_per_length` and `damping_per_length` on the part of each that is in the wall,
+    /// so every mesh meets the same wall: under a uniform load w the string penetrates it by w / `stiffness_per_length`. Gauges,
+    /// which act at a point, have `stiffness` and `damping`.
     PerLength,
 }
 

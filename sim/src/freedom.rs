@@ -58,10 +58,9 @@ impl<const D: usize> Freedoms<D> {
         (self.0[D - 1] == THETA_Z).then_some(D - 1)
     }
 
-    /// Whether contact can ask for what stands at a place, in any system of D: for lateral motion, and for the twist.
-    #[inline(always)]
-    pub const fn concerns_contact(place: usize) -> bool {
-        place < LATERAL || place == D - 1
+    /// The place of a degree of freedom, if it is among them.
+    pub fn place(&self, dof: usize) -> Option<usize> {
+        self.0.iter().position(|&own| own == dof)
     }
 
     /// Those of a row or column of all six that the system has.

@@ -5,7 +5,6 @@ use drillsweep_scenario::{
     TimeWindow, UnbalanceMass, WallLaw, preset,
 };
 use drillsweep_sim::admission::validate;
-use drillsweep_sim::contact::Wall;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{GRAVITY, Model};
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
@@ -170,38 +169,30 @@ fn pipe_on_an_elastic_wall_has_its_known_solutions() {
 }
 
 #[test]
-fn pipe_on_a_wall_by_length_converges_with_the_square_of_the_elements() {
+fn pipe_on_a_wall_by_length_converges_with_the_fourth_power_of_the_elements() {
     let (beam, shear_flexibility) = Beam::of_the_pipe();
     let (limit, _) = Resting::on_an_elastic_wall(&beam, 2e5, shear_flexibility);
     let on_a_mesh = |law, elements| Resting::of(&pipe_on_the_low_side(law, 2e5, elements));
-    // What meshes of 30, 60, 120 and 240 elements are known to give, to the digits told.
-    let printed = [1.997e-3, 2.033e-3, 2.061e-3, 2.063e-3];
-    for (elements, deepest) in [30, 60, 120, 240].into_iter().zip(printed) {
-        let found = on_a_mesh(WallLaw::PerLength, elements).deepest;
-        assert!((found - deepest).abs() < 1e-6, "{elements} elements: {found} m");
-    }
-    // A node's wall is a rule of quadrature of second order, and the deepest node is up to half an element beside the deepest place.
     // Single meshes are off by more or less as the touchdown falls into an element, so each octave is judged by the worst of sixteen
-    // meshes: errors times the square of the elements, which stay the same for second order and would go by two to the third for first or third
+    // meshes: errors times the fourth power of the elements, which stay the same for fourth order and would go by two to the second for third or fifth
     // order from the first octave to the last.
-    let coefficients = [30, 60, 120, 240].map(|fewest| {
+    let coefficients = [30, 60, 120].map(|fewest| {
         let meshes = (0..16).map(|i| fewest + fewest * i / 16);
-        meshes.fold([0.0_f64; 3], |most, elements| {
+        meshes.fold([0.0_f64; 2], |most, elements| {
             let found = on_a_mesh(WallLaw::PerLength, elements);
-            let parts = [
-                found.clamp_moment / limit.clamp_moment,
-                found.normal_force / limit.normal_force,
-                found.deepest / limit.deepest,
-            ];
-            std::array::from_fn(|i| most[i].max((parts[i] - 1.0).abs() * f64::from(elements).powi(2)))
+            let parts = [found.clamp_moment / limit.clamp_moment, found.normal_force / limit.normal_force];
+            std::array::from_fn(|i| most[i].max((parts[i] - 1.0).abs() * f64::from(elements).powi(4)))
         })
     });
-    for quantity in 0..3 {
+    for quantity in 0..2 {
         let of_octaves = coefficients.map(|of_octave| of_octave[quantity]);
         let (least, most) =
             of_octaves.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &c| (a.min(c), b.max(c)));
-        assert!(most < 2.0 * least, "{quantity}: {of_octaves:?}");
+        assert!(most < 2.5 * least, "{quantity}: {of_octaves:?}");
     }
+    // 2 m of pipe to an element leave a twenty-thousandth of the clamp's moment.
+    let coarse = on_a_mesh(WallLaw::PerLength, 30);
+    assert!((coarse.clamp_moment / limit.clamp_moment - 1.0).abs() < 5e-5, "{coarse:?} of {limit:?}");
     // The wall of the law by node hardens with the mesh: 240 elements leave a third of the penetration.
     let by_node = [3.756e-3, 2.033e-3, 1.153e-3, 0.652e-3];
     for (elements, deepest) in [30, 60, 120, 240].into_iter().zip(by_node) {
@@ -242,67 +233,39 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
 }
 
 #[test]
-fn orbits_converge_with_the_square_of_the_elements() {
-    // As at rest: single meshes are off by more or less as the touchdown falls into an element, so octaves are judged by their worst, by
-    // its error times the square of the elements. Mass and recorded depths are nodes of all these meshes.
-    let limit = orbits_of_a_turning_pipe(960);
-    let coefficients = |meshes: &[u32]| {
-        meshes.iter().fold([0.0_f64; 3], |most, &elements| {
-            let found = orbits_of_a_turning_pipe(elements);
-            std::array::from_fn(|i| {
-                most[i].max((found[i] / limit[i] - 1.0).abs() * f64::from(elements).powi(2))
-            })
-        })
-    };
-    let [coarse, middle, fine] =
-        [&[60, 90][..], &[120, 150, 180, 210], &[240, 300, 360, 420]].map(coefficients);
+fn orbits_converge_at_second_order_or_faster() {
+    // Mass and recorded depths are nodes of all these meshes.
+    let limit = orbits_of_a_turning_pipe(240);
+    let errors = [30, 120].map(|elements| {
+        let found = orbits_of_a_turning_pipe(elements);
+        [0, 1, 2].map(|place| (found[place] / limit[place] - 1.0).abs())
+    });
     for place in 0..3 {
-        // From octave to octave this would go by two for first or third order: within the root of that, the order is 1.5 to 2.5.
-        let order = std::f64::consts::SQRT_2;
-        let change = fine[place] / middle[place];
-        assert!((1.0 / order..order).contains(&change), "{place}: {middle:?} {fine:?}");
-        // So it is from coarse meshes on, where one of two may be off by less.
-        assert!(coarse[place] < order * middle[place], "{place}: {coarse:?} {middle:?}");
+        let [coarse, fine] = errors.map(|errors| errors[place]);
+        // Two octaves of second order are a sixteenth. Contact at the nodes leaves some 1e-2 on 30 elements, and second order at best.
+        assert!(coarse < 1e-4 && fine < coarse / 16.0, "{place}: {errors:?}");
     }
 }
 
 /// Static radius \[m\] of the base case at node 49 of the paper, on a drillpipe body between two tool joints, with elements `factor` times as
-/// long; with `ends_reach` half of the body's element beside a tool joint's end counts as touching too.
-fn radius_of_the_base_case(factor: f64, ends_reach: bool) -> f64 {
+/// long.
+fn radius_of_the_base_case(factor: f64) -> f64 {
     let mut scenario = preset("paper-200m").expect("shipped preset");
     scenario.contact.law = WallLaw::PerLength;
     scenario.mesh = scenario.mesh.scaled(factor);
-    let mut model = Model::new(&scenario).expect("has a model");
-    if ends_reach {
-        let lengths: Vec<f64> = model.mesh.elements.iter().map(|element| element.length).collect();
-        for (i, node) in model.mesh.nodes.iter_mut().enumerate().filter(|(_, node)| !node.is_gauge) {
-            let above = i.checked_sub(1).map_or(0.0, |above| lengths[above]);
-            node.stiffness_share = 0.5 * (above + lengths.get(i).copied().unwrap_or(0.0)) / 0.5;
-        }
-        let sites = model.mesh.nodes.iter().enumerate().map(|(i, node)| (i > 0).then(|| node.site()));
-        model.wall = Wall::new(&scenario.contact, &model.effects, sites);
-    }
+    let model = Model::new(&scenario).expect("has a model");
     let [u, v, ..] = rest(&model).displacement[model.mesh.nearest_node(57.73)];
     u.hypot(v)
 }
 
 #[test]
-fn radius_between_tool_joints_converges_with_the_mesh() {
-    // Joints carry the pipe there. Where their ends count with a part of the bodies beside them, which do not touch, the wall under a
-    // joint softens with the mesh: 37.15, 37.26, 37.37, 37.46 mm on the way to 37.60 mm, ever slower.
-    let radii =
-        |ends_reach| [1.0, 0.5, 0.25, 0.125].map(|factor| radius_of_the_base_case(factor, ends_reach));
-    let (found, reaching) = (radii(false), radii(true));
+fn radius_between_tool_joints_is_that_of_a_fine_mesh_on_one_element_a_joint() {
+    // Joints carry the pipe there, and roll on the wall with its sag: contact at their nodes alone, which is too stiff against that, leaves 1e-3.
+    let found = [1.0, 0.5, 0.25, 0.125].map(radius_of_the_base_case);
     let limit = found[3];
-    for (radius, factor) in found.iter().zip([1.0, 0.5, 0.25]) {
-        assert!(
-            (radius / limit - 1.0).abs() < 1e-3,
-            "{radius} m against {limit} m, elements {factor} times as long"
-        );
+    for (radius, most) in found.iter().zip([2e-5, 5e-6, 2e-6]) {
+        assert!((radius / limit - 1.0).abs() < most, "{found:?}");
     }
-    // A rule of quadrature of second order: with a quarter of the length a sixteenth of that is left.
-    assert!((found[2] / limit - 1.0).abs() < 1e-4, "{found:?}");
-    assert!(reaching[0] / limit - 1.0 < -1e-2 && reaching[3] / reaching[2] - 1.0 > 2e-3, "{reaching:?}");
 }
 
 #[test]
@@ -322,10 +285,14 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     // Nodes of the mesh are nodes of the one with an eighth of its lengths.
     let (fine_model, fine) = scaled(0.125);
     let radius = |x: &[f64; 6]| x[0].hypot(x[1]);
-    let at = |depth: f64| fine.displacement[fine_model.mesh.nearest_node(depth)];
     let (mut worst, mut recorded) = (0.0_f64, 0.0_f64);
     for (i, (node, x)) in model.mesh.nodes.iter().zip(&equilibrium.displacement).enumerate() {
-        let y = at(node.measured_depth);
+        let nearest = fine_model.mesh.nearest_node(node.measured_depth);
+        // The stretch above the first joint is cut into parts of other lengths.
+        if (fine_model.mesh.nodes[nearest].measured_depth - node.measured_depth).abs() > 1e-9 {
+            continue;
+        }
+        let y = fine.displacement[nearest];
         worst = worst.max((x[0] - y[0]).hypot(x[1] - y[1]) / 0.10795);
         if [9, 48, 281].contains(&i) {
             recorded = recorded.max((radius(x) / radius(&y) - 1.0).abs());
@@ -367,7 +334,7 @@ fn base_case_in(stations: &[[f64; 3]]) -> Scenario {
 }
 
 #[test]
-fn automatic_mesh_rests_better_than_uniform_ones_of_more_elements() {
+fn automatic_mesh_rests_where_a_fine_one_does() {
     for (name, stations) in [
         ("base case", &[][..]),
         ("horizontal", &[[0.0, 85.0, 0.0], [80.0, 90.0, 0.0], [200.0, 88.0, 0.0]]),
@@ -400,17 +367,7 @@ fn automatic_mesh_rests_better_than_uniform_ones_of_more_elements() {
             });
             off.fold(0.0, f64::max) / (0.5 * given.well.hole_diameter)
         };
-        let auto = on(Mesh::AUTO);
-        let auto_error = error(&auto);
-        assert!(auto_error < 6e-4, "{name}: {auto_error} of the hole's radius");
-        for factor in [0.5, 0.4, 0.35] {
-            let uniform = on(given.mesh.scaled(factor));
-            let (uniform_error, more) =
-                (error(&uniform), uniform.0.elements.len() as f64 / auto.0.elements.len() as f64);
-            assert!(
-                more > 1.1 && uniform_error > auto_error,
-                "{name}: {uniform_error} with {more} of the elements"
-            );
-        }
+        let auto_error = error(&on(Mesh::AUTO));
+        assert!(auto_error < 1e-4, "{name}: {auto_error} of the hole's radius");
     }
 }

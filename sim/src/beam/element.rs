@@ -55,6 +55,11 @@ impl BeamElement {
         self.length
     }
 
+    /// Shear parameter a of (6).
+    pub fn shear_parameter(&self) -> f64 {
+        self.shear_parameter
+    }
+
     /// Elastic stiffness, equation (5) with the shear term of (6).
     pub fn stiffness(&self) -> ElementMatrix {
         let s = &self.section;

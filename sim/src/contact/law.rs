@@ -141,6 +141,52 @@ impl<L: Lane> ContactParameters<L> {
         L::select(unopposed.less_than(zero), -speed, speed)
     }
 
+    /// The sliding speeds s_i \[m/s\] at which `s_i + sum_j response_ij mu(s_j) = unopposed_i`: the same of two points that move with each other's
+    /// friction, `response` \[m/s\] being the change of the sliding speeds (rows) by friction coefficients of one (columns).
+    ///
+    /// Newton's method from rest, as for one point, with bounds that hold where the curve falls: each step's matrix is kept regular, and no speed exceeds
+    /// the sum of the unopposed ones.
+    #[inline(always)]
+    pub(super) fn opposed_sliding_speeds(&self, unopposed: [L; 2], response: [[L; 2]; 2]) -> [L; 2] {
+        let (one, zero, smallest) = (L::splat(1.0), L::splat(0.0), L::splat(SMALLEST_RISE));
+        let most = unopposed[0].abs() + unopposed[1].abs();
+        let mut speeds = [zero; 2];
+        for _ in 0..OPPOSED_PAIR_ITERATIONS {
+            let [(first, first_slope), (second, second_slope)] =
+                speeds.map(|speed| self.friction_with_slope(speed));
+            let excess = [0, 1].map(|i| {
+                let opposed = response[i][0].mul_add(first, response[i][1].mul_add(second, speeds[i]));
+                opposed - unopposed[i]
+            });
+            let rise = [
+                response[0][0].mul_add(first_slope, one).max(smallest),
+                response[1][1].mul_add(second_slope, one).max(smallest),
+            ];
+            let coupling = [response[0][1] * second_slope, response[1][0] * first_slope];
+            let determinant = (rise[0] * rise[1] - coupling[0] * coupling[1]).max(smallest);
+            let per_determinant = one / determinant;
+            let step = [
+                (rise[1] * excess[0] - coupling[0] * excess[1]) * per_determinant,
+                (rise[0] * excess[1] - coupling[1] * excess[0]) * per_determinant,
+            ];
+            speeds = [0, 1].map(|i| (speeds[i] - step[i]).max(-most).min(most));
+        }
+        speeds
+    }
+
+    /// [Coefficient](Self::friction_coefficient) and [slope](Self::friction_slope) of friction at a sliding speed \[m/s\], by one division.
+    #[inline(always)]
+    fn friction_with_slope(&self, sliding_speed: L) -> (L, L) {
+        let one = L::splat(1.0);
+        let run = self.decay * sliding_speed.abs();
+        let fade = one / (run + one);
+        let (twice, rest) = ((one + self.xi) * fade, one - self.xi);
+        let shape = twice + rest;
+        let friction = sliding_speed * self.half_slope * shape * fade;
+        let slope = self.half_slope * fade * (shape - run * fade * (twice + shape));
+        (friction, slope)
+    }
+
     /// Static friction coefficient mu_s.
     pub fn static_friction(&self) -> L {
         self.static_friction
@@ -229,6 +275,9 @@ const FAST_SLIDING: f64 = 16.0;
 
 /// Newton iterations for an opposed sliding speed: they leave less than 1e-9 m/s of its equation, whichever of the tested laws it is.
 const OPPOSED_ITERATIONS: usize = 6;
+
+/// Newton iterations for two such speeds: they leave less than 1e-5 m/s of the equations of the tested laws.
+const OPPOSED_PAIR_ITERATIONS: usize = 5;
 
 /// Where friction falls faster than the sliding speed gives way, no iteration goes further than this allows: ten times as far as one without
 /// friction.

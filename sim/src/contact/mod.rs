@@ -4,19 +4,31 @@
 //! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
 //! force in motion is [`dynamic_contact`], inside an implicit solve [`implicit_contact`], at rest [`static_contact`]; its
 //! linearisation about steady sliding is [`sliding_tangent`].
+//!
+//! If stiffness belongs to a length, the same law acts along the elements: [`dynamic_segment`], [`implicit_segment`],
+//! [`static_segment`] and [`sliding_segment`] integrate it over the stretch of a [`ContactSegment`] that is in the wall. Gauges remain points.
 
+mod element;
 mod law;
 mod motion;
 mod rest;
+mod segment;
 mod sliding;
 mod wall;
 
 #[cfg(test)]
 mod tests;
 
+pub use element::{
+    SlidingSegmentTangent, SmoothSegmentForce, StaticSegmentForce, planes, sliding_segment,
+    smooth_static_segment, static_segment, whole_segment,
+};
 pub use law::ContactParameters;
-pub use motion::{ContactForce, LateralMotion, Yielding, dynamic_contact, implicit_contact};
+pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
 pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
+pub use segment::{
+    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dynamic_segment, implicit_segment,
+};
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;
 

@@ -179,22 +179,13 @@ fn contact_force<L: Lane>(
     normal_force: impl FnOnce(L, L) -> L,
     friction_speed: impl FnOnce(L, L) -> L,
 ) -> ContactForce<L> {
-    let LateralMotion { u, v, u_rate, v_rate, theta_z_rate } = *motion;
     let zero = L::splat(0.0);
     // Squares first: most nodes need no square root.
-    let radius_squared = u.mul_add(u, v * v);
-    let outside = radius_squared.greater_than(node.clearance * node.clearance);
-    if !outside.any() {
+    if !is_outside(node, motion).any() {
         return ContactForce::none();
     }
-    let radius = L::select(outside, radius_squared, L::splat(1.0)).sqrt();
-    let penetration = radius - node.clearance;
-    let touches = outside & penetration.greater_than(zero);
-    let per_radius = L::splat(1.0) / radius;
-    let (normal_u, normal_v) = (u * per_radius, v * per_radius);
-    let penetration_rate = normal_u.mul_add(u_rate, normal_v * v_rate);
-    let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));
-    let sliding_speed = (rotation_speed + theta_z_rate).mul_add(node.contact_radius, whirl_speed);
+    let Surface { touches, normal: [normal_u, normal_v], penetration, penetration_rate, sliding_speed } =
+        Surface::of(node, motion, rotation_speed);
 
     let elastic = law.stiffness(penetration) * penetration * node.stiffness_share;
     let damping = law.damping(penetration) * node.damping_share;
@@ -219,6 +210,50 @@ fn contact_force<L: Lane>(
         sliding_speed: where_touching(sliding_speed),
         penetration: where_touching(penetration),
         penetration_rate: where_touching(penetration_rate),
+    }
+}
+
+/// Nodes farther from the axis than their clearance.
+#[inline(always)]
+fn is_outside<L: Lane>(node: &ContactNode<L>, motion: &LateralMotion<L>) -> L::Mask {
+    let LateralMotion { u, v, .. } = *motion;
+    u.mul_add(u, v * v).greater_than(node.clearance * node.clearance)
+}
+
+/// Motion of the string's surface along and into the wall.
+#[derive(Debug, Clone, Copy)]
+pub struct Surface<L: Lane> {
+    /// Lanes in the wall. The other values mean nothing in the others.
+    pub touches: L::Mask,
+    /// Unit vector (u, v) from the axis.
+    pub normal: [L; 2],
+    /// Penetration P \[m\].
+    pub penetration: L,
+    /// dP/dt \[m/s\].
+    pub penetration_rate: L,
+    /// Sliding speed v_g \[m/s\], (12).
+    pub sliding_speed: L,
+}
+
+impl<L: Lane> Surface<L> {
+    /// The surface at a node, or at a point of an element, at rotation speed Omega \[rad/s\].
+    #[inline(always)]
+    pub fn of(node: &ContactNode<L>, motion: &LateralMotion<L>, rotation_speed: L) -> Self {
+        let LateralMotion { u, v, u_rate, v_rate, theta_z_rate } = *motion;
+        let outside = is_outside(node, motion);
+        let radius = L::select(outside, u.mul_add(u, v * v), L::splat(1.0)).sqrt();
+        let penetration = radius - node.clearance;
+        let touches = outside & penetration.greater_than(L::splat(0.0));
+        let per_radius = L::splat(1.0) / radius;
+        let [normal_u, normal_v] = [u * per_radius, v * per_radius];
+        let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));
+        Self {
+            touches,
+            normal: [normal_u, normal_v],
+            penetration,
+            penetration_rate: normal_u.mul_add(u_rate, normal_v * v_rate),
+            sliding_speed: (rotation_speed + theta_z_rate).mul_add(node.contact_radius, whirl_speed),
+        }
     }
 }
 

@@ -3,6 +3,8 @@ use std::f64::consts::{PI, TAU};
 use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
 
 use super::*;
+use crate::beam::{ElementVector, Shape};
+use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 use crate::linalg::{Four, Lane};
 
 /// The law of the paper's 200 m base case (Table 5).
@@ -594,5 +596,306 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
         let left = (exact.force_u - swept[5][0]).hypot(exact.force_v - swept[5][1]) / size;
         assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {swept:?}");
         assert!(off(swept[1]) < 0.1, "two sweeps: {swept:?}");
+    }
+}
+
+/// A joint of 0.3 m in a hole that leaves it 27 mm.
+const SEGMENT: ContactSegment<f64> = ContactSegment {
+    length: 0.3,
+    shear_share: 0.4,
+    wall: ContactNode { clearance: 0.027, contact_radius: 0.081, stiffness_share: 0.6, damping_share: 0.6 },
+};
+
+/// Nodal values of a straight element in the plane of u, from its deflections at both ends \[m\].
+fn rigid(upper: f64, lower: f64) -> ElementVector {
+    let mut values = ElementVector::zeros();
+    let slope = (lower - upper) / SEGMENT.length;
+    (values[U], values[DOFS + U]) = (upper, lower);
+    (values[THETA_Y], values[DOFS + THETA_Y]) = (slope, slope);
+    values
+}
+
+fn motion_of(values: &ElementVector, rates: &ElementVector) -> SegmentMotion<f64> {
+    SegmentMotion {
+        planes: planes(values),
+        rates: planes(rates),
+        twist_rates: [rates[THETA_Z], rates[DOFS + THETA_Z]],
+    }
+}
+
+#[test]
+fn an_element_deflects_on_the_wall_as_its_beam_does() {
+    for a in [0.0, 0.3, 40.0] {
+        let segment = ContactSegment { shear_share: a / (1.0 + a), ..SEGMENT };
+        for at in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let wanted = Shape::at(at, segment.length, a).deflection;
+            let found = segment.place(at).shape;
+            assert!(
+                found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-15),
+                "{a} {at}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
+    // A wall so sharp that its stiffness is whole: with the gap g(x) linear the force is k int g dx and its moment k int g x dx over g > 0.
+    let law = parameters(&ContactLaw { stiffness_sharpness: 1e14, ..FRICTIONLESS });
+    let stiffness = 1e7 * SEGMENT.wall.stiffness_share / SEGMENT.length;
+    let clearance = SEGMENT.wall.clearance;
+    for (upper, lower) in [(1e-4, 3e-4), (-1e-4, 2e-4), (5e-4, -3e-4), (-1e-6, 1e-3)] {
+        let values = rigid(clearance + upper, clearance + lower);
+        let contact = static_segment(&law, &SEGMENT, &values, 1.0).unwrap();
+        // The stretch from the zero of the gap to the end that is in.
+        let slope = (lower - upper) / SEGMENT.length;
+        let zero = (-upper / slope).clamp(0.0, SEGMENT.length);
+        let (from, to) = if lower > upper { (zero, SEGMENT.length) } else { (0.0, zero) };
+        let (from, to) = if upper > 0.0 && lower > 0.0 { (0.0, SEGMENT.length) } else { (from, to) };
+        let integral = |power: i32| {
+            let of = |x: f64| {
+                let p = f64::from(power);
+                upper * x.powi(power + 1) / (p + 1.0) + slope * x.powi(power + 2) / (p + 2.0)
+            };
+            stiffness * (of(to) - of(from))
+        };
+        let (force, moment) = (integral(0), integral(1));
+        let [at_upper, at_lower] = contact.ends;
+        assert_close(at_upper + at_lower, force, 1e-9);
+        assert_close(at_lower * SEGMENT.length, moment, 1e-9);
+        // The loads do the same work on rigid motions.
+        let work = |motion: &ElementVector| contact.force.dot(motion);
+        assert_close(work(&rigid(1.0, 1.0)), -force, 1e-9);
+        assert_close(work(&rigid(0.0, 1.0)), -moment / SEGMENT.length, 1e-9);
+        // It stores what has been done against it: k g^2 / 2 along the stretch, of which the force is the derivative.
+        let energy = |by: f64| {
+            let values = rigid(clearance + upper + by, clearance + lower + by);
+            SEGMENT.potential_energy(&law, &planes(&values))
+        };
+        let step = 1e-9;
+        assert_close((energy(step) - energy(-step)) / (2.0 * step), force, 1e-5);
+    }
+    assert!(static_segment(&law, &SEGMENT, &rigid(0.02, 0.0269), 1.0).is_none());
+}
+
+#[test]
+fn contact_of_an_element_grows_from_zero_wherever_it_begins() {
+    let law = parameters(&FRICTIONLESS);
+    let clearance = SEGMENT.wall.clearance;
+    // Bulging between its ends, and rolling over one end.
+    let bulge = |by: f64| {
+        let mut values = rigid(clearance - 2e-5 + by, clearance - 2e-5 + by);
+        (values[THETA_Y], values[DOFS + THETA_Y]) = (2e-4, -3e-4);
+        values
+    };
+    let roll = |by: f64| rigid(clearance + by, clearance - 1e-4 + by);
+    let loads = |values: &ElementVector| {
+        static_segment(&law, &SEGMENT, values, 1.0).map_or(ElementVector::zeros(), |contact| contact.force)
+    };
+    for motion in [&bulge as &dyn Fn(f64) -> ElementVector, &roll] {
+        // From off the wall to whole contact: no step of the loads is larger than the whole stiffness allows.
+        let (step, most) = (1e-8, 1.1 * 1e7 * SEGMENT.wall.stiffness_share);
+        let mut before = loads(&motion(-1.2e-4));
+        let mut touched = 0;
+        for k in 1..24_000 {
+            let now = loads(&motion(-1.2e-4 + f64::from(k) * step));
+            let jump = (now - before).abs().max();
+            assert!(jump <= most * step, "{jump} N at {k}");
+            touched += u32::from(now != ElementVector::zeros() && before == ElementVector::zeros());
+            before = now;
+        }
+        assert_eq!(touched, 1);
+    }
+}
+
+#[test]
+fn tangents_along_an_element_are_derivatives_of_its_loads() {
+    let soft = ContactLaw { stiffness_sharpness: 3e3, damping_sharpness: 2e3, ..BASE };
+    let law = parameters(&soft);
+    let clearance = SEGMENT.wall.clearance;
+    let mut values = rigid(clearance + 3e-4, clearance + 5e-4);
+    (values[V], values[DOFS + V], values[THETA_X]) = (4e-3, 3e-3, 1e-3);
+    let zero = ElementVector::zeros();
+    let static_force = |values: &ElementVector| static_segment(&law, &SEGMENT, values, 1.0).unwrap();
+    let moving = |values: &ElementVector, rates: &ElementVector| {
+        let mut force = SegmentForce::none();
+        assert!(dynamic_segment(&law, &SEGMENT, &motion_of(values, rates), 12.0, &mut force));
+        let mut loads = ElementVector::zeros();
+        let (in_u, in_v) = (force.load(0), force.load(1));
+        for (end, node) in [(0, 0), (2, DOFS)] {
+            (loads[node + U], loads[node + THETA_Y]) = (in_u[end], in_u[end + 1]);
+            (loads[node + V], loads[node + THETA_X]) = (in_v[end], -in_v[end + 1]);
+        }
+        [loads[THETA_Z], loads[DOFS + THETA_Z]] = force.torque;
+        loads
+    };
+    let sliding = sliding_segment(&law, &SEGMENT, &values, 12.0).unwrap();
+    for dof in 0..2 * DOFS {
+        let unit = ElementVector::from_fn(|i, _| if i == dof { 1e-7 } else { 0.0 });
+        let by_place = (static_force(&(values + unit)).force - static_force(&(values - unit)).force) / 2e-7;
+        let found = static_force(&values).tangent.column(dof).into_owned();
+        assert!((by_place - found).norm() < 1e-5 * static_force(&values).tangent.norm(), "{dof}");
+        let by_place = (moving(&(values - unit), &zero) - moving(&(values + unit), &zero)) / 2e-7;
+        assert!((by_place - sliding.stiffness.column(dof)).norm() < 1e-5 * sliding.stiffness.norm(), "{dof}");
+        let by_rate = (moving(&values, &(-unit)) - moving(&values, &unit)) / 2e-7;
+        assert!((by_rate - sliding.damping.column(dof)).norm() < 1e-4 * sliding.damping.norm(), "{dof}");
+    }
+}
+
+/// Pseudo-random numbers in \[-1, 1).
+fn numbers() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A compliance like that of a stage: positive definite, nearly the same for both ends.
+fn compliance() -> SegmentCompliance<f64> {
+    SegmentCompliance {
+        lateral: [6e-9, -2e-9, 3e-9, 4e-9, 5e-8, -4e-9, -1e-8, 6e-9, 2e-9, 5e-8],
+        twist: [4e-6, 3.6e-6, 4e-6],
+    }
+}
+
+#[test]
+fn a_lane_has_the_bits_of_an_element_alone() {
+    let laws =
+        [BASE, SOFT].map(|law| (parameters(&law), ContactParameters::<Four>::new(&law, &ActiveEffects::ALL)));
+    let mut next = numbers();
+    let four = |values: [f64; 4]| Four::new(values);
+    let wide = |value: fn(&ContactSegment<f64>) -> f64| Four::splat(value(&SEGMENT));
+    let segment = ContactSegment {
+        length: wide(|segment| segment.length),
+        shear_share: wide(|segment| segment.shear_share),
+        wall: ContactNode {
+            clearance: wide(|segment| segment.wall.clearance),
+            contact_radius: wide(|segment| segment.wall.contact_radius),
+            stiffness_share: wide(|segment| segment.wall.stiffness_share),
+            damping_share: wide(|segment| segment.wall.damping_share),
+        },
+    };
+    let single = compliance();
+    let wide_compliance =
+        SegmentCompliance { lateral: single.lateral.map(Four::splat), twist: single.twist.map(Four::splat) };
+    let mut touched = 0;
+    for round in 0..400 {
+        let size = if round % 2 == 0 { 3e-4 } else { 3e-3 };
+        let motions: [SegmentMotion<f64>; 4] = std::array::from_fn(|_| {
+            let mut values = rigid(0.027 + size * next(), 0.027 + size * next());
+            for dof in [THETA_X, THETA_Y, DOFS + THETA_X, DOFS + THETA_Y] {
+                values[dof] += 10.0 * size * next();
+            }
+            motion_of(&values, &ElementVector::from_fn(|_, _| next()))
+        });
+        let lanes = |of: &dyn Fn(&SegmentMotion<f64>) -> f64| four(motions.each_ref().map(of));
+        let plane = |p: usize| -> [[Four; 4]; 2] {
+            let of = |k: usize| [lanes(&|motion| motion.planes[p][k]), lanes(&|motion| motion.rates[p][k])];
+            let pairs = [of(0), of(1), of(2), of(3)];
+            [pairs.map(|[x, _]| x), pairs.map(|[_, rate]| rate)]
+        };
+        let ([x_u, r_u], [x_v, r_v]) = (plane(0).into(), plane(1).into());
+        let motion = SegmentMotion {
+            planes: [x_u, x_v],
+            rates: [r_u, r_v],
+            twist_rates: [0, 1].map(|end| lanes(&|motion| motion.twist_rates[end])),
+        };
+        for (law, wide_law) in &laws {
+            let mut forces = SegmentForce::none();
+            dynamic_segment(wide_law, &segment, &motion, Four::splat(0.3), &mut forces);
+            let before = forces;
+            let yielding = (&wide_compliance, Four::splat(1e3));
+            implicit_segment(wide_law, &segment, &motion, Four::splat(0.3), yielding, &mut forces);
+            for (lane, motion) in motions.iter().enumerate() {
+                let mut force = SegmentForce::none();
+                touched += u32::from(dynamic_segment(law, &SEGMENT, motion, 0.3, &mut force));
+                assert_eq!(force, lane_of(&before, lane));
+                implicit_segment(law, &SEGMENT, motion, 0.3, (&single, 1e3), &mut force);
+                assert_eq!(force, lane_of(&forces, lane));
+            }
+        }
+    }
+    assert!((800..2800).contains(&touched), "{touched}");
+}
+
+fn lane_of(force: &SegmentForce<Four>, lane: usize) -> SegmentForce<f64> {
+    let of = |value: Four| value.lane(lane);
+    SegmentForce {
+        normal: force.normal.map(|plane| plane.map(of)),
+        friction: force.friction.map(|plane| plane.map(of)),
+        torque: force.torque.map(of),
+        ends: force.ends.map(of),
+        middle: of(force.middle),
+    }
+}
+
+#[test]
+fn implicit_loads_agree_with_the_motion_that_they_lead_to() {
+    // x = x_free + G load: the element alone, pressed into the wall and rubbed along it, fast, slowly, and held by friction.
+    let (law, compliance, speed) = (parameters(&BASE), compliance(), 1e3);
+    let [aa, ab, ac, ad, bb, bc, bd, cc, cd, dd] = compliance.lateral;
+    let lateral = [[aa, ab, ac, ad], [ab, bb, bc, bd], [ac, bc, cc, cd], [ad, bd, cd, dd]];
+    for rotation_speed in [12.0, 0.5, 0.02] {
+        let free = rigid(0.027 + 2e-5, 0.027 + 5e-5);
+        let mut force = SegmentForce::none();
+        let moved = |force: &SegmentForce<f64>| {
+            let mut motion = motion_of(&free, &ElementVector::zeros());
+            for plane in 0..2 {
+                let load = force.load(plane);
+                for k in 0..4 {
+                    let by_load: f64 = (0..4).map(|j| lateral[k][j] * load[j]).sum();
+                    motion.planes[plane][k] += by_load;
+                    motion.rates[plane][k] += speed * by_load;
+                }
+            }
+            let [own, between, _] = compliance.twist;
+            let [upper, lower] = force.torque;
+            motion.twist_rates =
+                [speed * (own * upper + between * lower), speed * (between * upper + own * lower)];
+            motion
+        };
+        let mut iterations = 0;
+        let mut change = f64::INFINITY;
+        while change > 1e-6 {
+            let before = force.ends[0] + force.ends[1] + force.torque[0];
+            let yielding = (&compliance, speed);
+            assert!(implicit_segment(&law, &SEGMENT, &moved(&force), rotation_speed, yielding, &mut force));
+            change = (force.ends[0] + force.ends[1] + force.torque[0] - before).abs();
+            iterations += 1;
+            assert!(iterations <= 8, "{rotation_speed} rad/s: {change} N");
+        }
+        // They are those of the law itself on the motion that they lead to.
+        let mut own = SegmentForce::none();
+        assert!(dynamic_segment(&law, &SEGMENT, &moved(&force), rotation_speed, &mut own));
+        assert_close(own.ends[0] + own.ends[1], force.ends[0] + force.ends[1], 1e-6);
+        assert_close(own.torque[0] + own.torque[1], force.torque[0] + force.torque[1], 1e-4);
+    }
+}
+
+#[test]
+fn two_sliding_speeds_that_give_way_solve_their_equations() {
+    let law = parameters(&BASE);
+    // Points of one element that move alike, and such that do not.
+    for (unopposed, shares) in [
+        ([1e-3, 2e-3], [0.5, 0.9, 0.99]),
+        ([0.05, 0.04], [0.5, 0.9, 0.99]),
+        ([-0.4, -0.45], [0.5, 0.9, 0.99]),
+        ([1.5, 1.4], [0.5, 0.9, 0.99]),
+        ([0.2, -0.01], [0.0, 0.2, 0.5]),
+        ([0.6, 0.3], [0.0, 0.2, 0.5]),
+    ] {
+        for response in [1e-3, 0.03, 0.3, 3.0, 30.0] {
+            for share in shares {
+                let matrix = [[response, share * response], [share * response, 1.1 * response]];
+                let speeds = law.opposed_sliding_speeds(unopposed, matrix);
+                let friction = speeds.map(|speed| law.friction_coefficient(speed));
+                for i in 0..2 {
+                    let opposed = speeds[i] + matrix[i][0] * friction[0] + matrix[i][1] * friction[1];
+                    let left = (opposed - unopposed[i]).abs();
+                    assert!(left < 1e-5, "{unopposed:?} {matrix:?}: {left} m/s");
+                }
+            }
+        }
     }
 }

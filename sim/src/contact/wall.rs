@@ -1,30 +1,33 @@
-//! The wall of a hole as a string's nodes meet it.
+//! The wall of a hole as a string's nodes and elements meet it.
 
 use drillsweep_scenario::{ActiveEffects, ContactLaw};
 
-use super::ContactNode;
 use super::law::ContactParameters;
+use super::{ContactNode, ContactSegment};
 
-/// The contact law, and the nodes that can touch.
+/// The contact law, and the nodes and elements that can touch.
 ///
 /// Built once, with the model; statics, modes, sweep stability and the run in time take both from here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
     law: ContactParameters<f64>,
     sites: Vec<Option<ContactNode<f64>>>,
+    segments: Vec<ContactSegment<f64>>,
 }
 
 impl Wall {
     /// That of a law, with what contact needs to know of every node, or nothing where a node is no contact site: a held one.
-    /// Without contact no node is one.
+    /// Without contact no node is one. `segments` are all elements from the top if stiffness belongs to a length, and none otherwise.
     pub fn new(
         law: &ContactLaw,
         effects: &ActiveEffects,
         sites: impl Iterator<Item = Option<ContactNode<f64>>>,
+        segments: impl Iterator<Item = ContactSegment<f64>>,
     ) -> Self {
         Self {
             law: ContactParameters::new(law, effects),
             sites: sites.map(|site| site.filter(|_| effects.contact)).collect(),
+            segments: segments.filter(|_| effects.contact).collect(),
         }
     }
 
@@ -38,6 +41,11 @@ impl Wall {
         &self.sites
     }
 
+    /// The elements as they meet the wall, from the top; empty if the nodes alone do.
+    pub fn segments(&self) -> &[ContactSegment<f64>] {
+        &self.segments
+    }
+
     /// The contact sites, with their nodes.
     pub fn touchable(&self) -> impl Iterator<Item = (usize, &ContactNode<f64>)> {
         self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
@@ -45,6 +53,6 @@ impl Wall {
 
     /// The same contact sites with another law.
     pub fn with_law(&self, law: &ContactLaw, effects: &ActiveEffects) -> Self {
-        Self { law: ContactParameters::new(law, effects), sites: self.sites.clone() }
+        Self { law: ContactParameters::new(law, effects), ..self.clone() }
     }
 }

@@ -124,6 +124,15 @@ impl<const D: usize> NodalField<D> {
         self.groups.array_windows()
     }
 
+    /// A group; zeros after the last one.
+    ///
+    /// # Panics
+    /// More than one place after the last group.
+    #[inline(always)]
+    pub fn padded(&self, group: usize) -> &[Four; D] {
+        &self.groups[1 + group]
+    }
+
     /// A group with those before and after it.
     #[inline(always)]
     pub fn neighbourhood(&self, group: usize) -> Neighbourhood<'_, D> {
@@ -171,7 +180,13 @@ pub(super) fn before<const D: usize>([previous, own, _]: Neighbourhood<'_, D>, d
 /// One degree of freedom of the nodes after each of a group.
 #[inline(always)]
 pub fn after<const D: usize>([_, own, next]: Neighbourhood<'_, D>, dof: usize) -> Four {
-    let ([_, b, c, d], [first, ..]) = (own[dof].to_array(), next[dof].to_array());
+    next_lane(own[dof], next[dof])
+}
+
+/// Values of the node after each of four, of which `next` are the following four.
+#[inline(always)]
+pub fn next_lane(own: Four, next: Four) -> Four {
+    let ([_, b, c, d], [first, ..]) = (own.to_array(), next.to_array());
     Four::new([b, c, d, first])
 }
 

@@ -71,10 +71,27 @@ pub trait Lane:
         Self::select(other.less_than(self), self, other)
     }
 
-    /// Arctangent \[rad\] without branches: the rational approximation of Moshier's Cephes library
-    /// (`atan.c`), whose relative error is below 3e-16.
+    /// Arctangent \[rad\]: beyond 8 the asymptotic series pi/2 - 1/x + 1/(3 x^3) - ..., else the rational approximation of Moshier's Cephes library
+    /// (`atan.c`). The relative error is below 3e-16.
     #[inline(always)]
     fn atan(self) -> Self {
+        let one = Self::splat(1.0);
+        let magnitude = self.abs();
+        let far = magnitude.greater_than(Self::splat(FAR));
+        let inverse = one / Self::select(far, magnitude, one);
+        let square = inverse * inverse;
+        let series = ATAN_SERIES.iter().fold(Self::splat(0.0), |sum, c| sum.mul_add(square, Self::splat(*c)));
+        let far_angle = Self::splat(std::f64::consts::FRAC_PI_2)
+            - (inverse * series.mul_add(square, one) - Self::splat(PI_HALF_TAIL));
+        if !(!far).any() {
+            return far_angle.copysign(self);
+        }
+        Self::select(far, far_angle, self.near_atan()).copysign(self)
+    }
+
+    /// Arctangent \[rad\] of the magnitude, by the rational approximation.
+    #[inline(always)]
+    fn near_atan(self) -> Self {
         let one = Self::splat(1.0);
         let magnitude = self.abs();
         let steep = magnitude.greater_than(Self::splat(TANGENT_OF_THREE_EIGHTHS_PI));
@@ -103,8 +120,7 @@ pub trait Lane:
         let p = horner(&ATAN_P[1..], Self::splat(ATAN_P[0]));
         let q = horner(&ATAN_Q, one);
         let correction = square * p / q;
-        let angle = offset + (reduced.mul_add(correction, reduced) + offset_tail);
-        angle.copysign(self)
+        offset + (reduced.mul_add(correction, reduced) + offset_tail)
     }
 }
 
@@ -119,6 +135,22 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     /// The truth value of one lane.
     fn lane(self, lane: usize) -> bool;
 }
+
+/// From here on the series is summed; what nine terms leave out is below x^-20 / 21.
+const FAR: f64 = 8.0;
+
+/// Coefficients of x^-18 to x^-2 in x (pi/2 - atan x), less its leading one.
+const ATAN_SERIES: [f64; 9] = [
+    -1.0 / 19.0,
+    1.0 / 17.0,
+    -1.0 / 15.0,
+    1.0 / 13.0,
+    -1.0 / 11.0,
+    1.0 / 9.0,
+    -1.0 / 7.0,
+    1.0 / 5.0,
+    -1.0 / 3.0,
+];
 
 const TANGENT_OF_THREE_EIGHTHS_PI: f64 = 2.414_213_562_373_095;
 /// pi/2 less its nearest `f64`.

@@ -36,12 +36,12 @@ mod tests;
 pub use crate::freedom::DOFS;
 pub use block::Block;
 pub use factor::{Factor, SingularBlock};
-pub use field::{Neighbourhood, NodalField, after};
+pub use field::{Neighbourhood, NodalField, after, next_lane};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
 pub use pair::{General, MatrixPair, Storage, Symmetric};
 pub use skew::{SkewPart, WeightedPair};
-pub use tridiagonal::{BlockTridiagonal, can_couple};
+pub use tridiagonal::{BlockTridiagonal, InverseBands, can_couple};
 
 /// One row of values for every node.
 pub type BlockVector<const D: usize = DOFS> = Vec<[f64; D]>;

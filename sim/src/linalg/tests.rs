@@ -235,18 +235,20 @@ fn field_solution<const D: usize>(factor: &Factor<D>, b: &[[f64; D]]) -> BlockVe
 }
 
 #[test]
-fn diagonal_blocks_of_an_inverse_equal_the_dense_ones() {
+fn blocks_of_an_inverse_equal_the_dense_ones() {
     let mut numbers = Numbers(17);
     for rows in ROW_COUNTS {
         let matrix = numbers.matrix(rows, 20.0);
-        let blocks = matrix.inverse_diagonal().expect("diagonally dominant");
+        let blocks = matrix.inverse_bands().expect("diagonally dominant");
         let inverse = dense(&matrix).try_inverse().expect("diagonally dominant");
-        assert_eq!(blocks.len(), rows);
-        for (row, block) in blocks.iter().enumerate() {
+        assert_eq!([blocks.diagonal.len(), blocks.upper.len()], [rows; 2]);
+        let places = (0..rows).flat_map(|row| [(row, row), (row, row + 1)]);
+        for (row, column) in places.filter(|&(_, column)| column < rows) {
+            let block = if row == column { &blocks.diagonal[row] } else { &blocks.upper[row] };
             for i in 0..DOFS {
                 for j in 0..DOFS {
-                    let wanted = inverse[(DOFS * row + i, DOFS * row + j)];
-                    assert!((block[(i, j)] - wanted).abs() < 1e-14, "row {row} of {rows}");
+                    let wanted = inverse[(DOFS * row + i, DOFS * column + j)];
+                    assert!((block[(i, j)] - wanted).abs() < 1e-14, "({row}, {column}) of {rows}");
                 }
             }
         }
@@ -254,7 +256,7 @@ fn diagonal_blocks_of_an_inverse_equal_the_dense_ones() {
     let mut singular = numbers.matrix(3, 20.0);
     singular.diagonal[1] = Block::zero();
     (singular.lower[1], singular.upper[1]) = (Block::zero(), Block::zero());
-    assert_eq!(singular.inverse_diagonal().expect_err("a row of zeros").row, 1);
+    assert_eq!(singular.inverse_bands().expect_err("a row of zeros").row, 1);
 }
 
 /// Blocks of four, five and six rows are kept in different ways.

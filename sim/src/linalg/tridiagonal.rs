@@ -17,6 +17,15 @@ pub struct BlockTridiagonal<const D: usize = DOFS> {
     pub upper: Vec<Block<D>>,
 }
 
+/// Blocks of the inverse of a [`BlockTridiagonal`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct InverseBands<const D: usize = DOFS> {
+    /// `diagonal[i]` stands at (i, i).
+    pub diagonal: Vec<Block<D>>,
+    /// `upper[i]` stands at (i, i + 1); the last one takes no part.
+    pub upper: Vec<Block<D>>,
+}
+
 impl<const D: usize> BlockTridiagonal<D> {
     /// The zero matrix of `rows` block rows.
     pub fn zeros(rows: usize) -> Self {
@@ -96,23 +105,26 @@ impl<const D: usize> BlockTridiagonal<D> {
         sum.total()
     }
 
-    /// The blocks on the diagonal of the inverse.
+    /// The blocks on the diagonal of the inverse, and those above it: row i's stands at (i, i + 1), the last one takes no part.
     ///
     /// Eliminating all rows above and below row i leaves the pivot `S_i + T_i - A_ii` there, S being the pivots of an elimination from
-    /// the top and T those of one from the bottom; its inverse is the block.
+    /// the top and T those of one from the bottom; its inverse is the block on the diagonal. The one above the next row's is `-S_i^-1 A_i,i+1` times
+    /// that row's.
     ///
     /// # Errors
     /// When a pivot block is singular.
-    pub fn inverse_diagonal(&self) -> Result<Vec<Block<D>>, SingularBlock> {
+    pub fn inverse_bands(&self) -> Result<InverseBands<D>, SingularBlock> {
         let rows = self.rows();
         let inverse = |pivot: &Block<D>, row: usize| {
             let (inverse, smallest) = pivot.inverse();
             if smallest > 0.0 && inverse.is_finite() { Ok(inverse) } else { Err(SingularBlock { row }) }
         };
         let mut pivots = self.diagonal.clone();
+        let mut upper = vec![Block::zero(); rows];
         for row in 1..rows {
             let above = inverse(&pivots[row - 1], row - 1)?.negated().multiply_block(&self.upper[row - 1]);
             self.lower[row].multiply_block_add(&above, &mut pivots[row]);
+            upper[row - 1] = above;
         }
         let mut from_below = Block::zero();
         for row in (0..rows).rev() {
@@ -123,7 +135,10 @@ impl<const D: usize> BlockTridiagonal<D> {
             pivots[row] = inverse(&pivots[row], row)?;
             from_below = inverse(&below, row)?.negated().multiply_block(&self.lower[row]);
         }
-        Ok(pivots)
+        for row in 1..rows {
+            upper[row - 1] = upper[row - 1].multiply_block(&pivots[row]);
+        }
+        Ok(InverseBands { diagonal: pivots, upper })
     }
 
     /// Whether the last degree of freedom couples with others than the two before it.

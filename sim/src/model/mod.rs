@@ -10,14 +10,14 @@ pub use element::{ElementInput, StringElement};
 
 use std::f64::consts::PI;
 
-use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition};
+use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition, WallLaw};
 
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
-use crate::contact::Wall;
+use crate::contact::{ContactNode, ContactSegment, Wall};
 use crate::effect::active_effects;
 use crate::freedom::{DOFS, THETA_Z, U, V, W};
 use crate::linalg::{Block, BlockTridiagonal};
-use crate::string::{MeshError, MeshNode, StringMesh};
+use crate::string::{MeshElement, MeshError, MeshNode, StringMesh};
 use crate::well::{NodeFrame, WellError, WellPath};
 
 /// Nodal values from the top: (u, v, w, theta_x, theta_y, theta_z) of every node, or those of them that a run solves for.
@@ -32,7 +32,7 @@ pub struct Model {
     pub effects: ActiveEffects,
     /// Nodes and elements of the string.
     pub mesh: StringMesh,
-    /// The contact law, and the nodes that can touch: all but the held one at the top.
+    /// The contact law, and the nodes and elements that can touch: all but the held node at the top.
     pub wall: Wall,
     /// Frame of every node.
     pub frames: Vec<NodeFrame>,
@@ -63,9 +63,8 @@ impl Model {
         let effects = active_effects(scenario);
         let mesh = StringMesh::new(scenario)?;
         let frames = path.frames(&mesh.depths());
-        let wall = Self::wall(scenario, &effects, &mesh);
         let last = mesh.elements.len().saturating_sub(1);
-        let elements = mesh
+        let elements: Vec<StringElement> = mesh
             .elements
             .iter()
             .enumerate()
@@ -88,7 +87,7 @@ impl Model {
         Ok(Self {
             scenario: scenario.clone(),
             effects,
-            wall,
+            wall: Self::wall(scenario, &effects, &mesh, &elements),
             mesh,
             frames,
             elements,
@@ -96,9 +95,30 @@ impl Model {
         })
     }
 
-    fn wall(scenario: &Scenario, effects: &ActiveEffects, mesh: &StringMesh) -> Wall {
+    fn wall(
+        scenario: &Scenario,
+        effects: &ActiveEffects,
+        mesh: &StringMesh,
+        elements: &[StringElement],
+    ) -> Wall {
+        let contact = &scenario.contact;
         let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| data.site());
-        Wall::new(&scenario.contact, effects, mesh.nodes.iter().enumerate().map(site))
+        let segment = |(data, element): (&MeshElement, &StringElement)| {
+            let (length, shear) = (element.beam.length(), element.beam.shear_parameter());
+            ContactSegment {
+                length,
+                shear_share: shear / (1.0 + shear),
+                wall: ContactNode {
+                    clearance: 0.5 * (scenario.well.hole_diameter - data.outer_diameter),
+                    contact_radius: 0.5 * data.outer_diameter,
+                    stiffness_share: length * contact.stiffness_of_a_metre() / contact.stiffness,
+                    damping_share: length * contact.damping_of_a_metre() / contact.unit_damping(),
+                },
+            }
+        };
+        let by_length = contact.law == WallLaw::PerLength;
+        let segments = mesh.elements.iter().zip(elements).filter(|_| by_length).map(segment);
+        Wall::new(contact, effects, mesh.nodes.iter().enumerate().map(site), segments)
     }
 
     /// Number of nodes.

@@ -2,9 +2,9 @@
 
 use nalgebra::Complex;
 
-use crate::contact::sliding_tangent;
+use crate::contact::{sliding_segment, sliding_tangent};
 use crate::linalg::{BlockTridiagonal, DOFS};
-use crate::model::{Model, NodalVector, clear_held};
+use crate::model::{Model, NodalVector, add_element_matrix, clear_held, element_values};
 use crate::statics::Equilibrium;
 
 /// Small motions about a state: `M a + C v + K x = 0`.
@@ -73,6 +73,13 @@ pub(super) fn add_contact(
                 stiffness.diagonal[node][(row, column)] += tangent.stiffness[i][j];
                 damping.diagonal[node][(row, column)] += tangent.damping[i][j];
             }
+        }
+    }
+    for (e, segment) in model.wall.segments().iter().enumerate() {
+        let values = element_values(&equilibrium.displacement, e);
+        if let Some(tangent) = sliding_segment(model.wall.law(), segment, &values, model.rotation_speed) {
+            add_element_matrix(stiffness, e, &tangent.stiffness);
+            add_element_matrix(damping, e, &tangent.damping);
         }
     }
 }

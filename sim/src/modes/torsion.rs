@@ -11,8 +11,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::sliding_tangent;
-use crate::model::Model;
+use crate::contact::{sliding_segment, sliding_tangent};
+use crate::model::{Model, element_values};
 use crate::statics::Equilibrium;
 
 /// Chains of more nodes are not solved mode by mode: the time grows with the square of their number.
@@ -170,6 +170,15 @@ impl Chain {
                 // The chain leaves out the held node at the top.
                 chain.rubbing[node - 1] = tangent.damping[2][2];
             }
+        }
+        for (e, segment) in model.wall.segments().iter().enumerate() {
+            let values = element_values(&equilibrium.displacement, e);
+            let tangent = sliding_segment(model.wall.law(), segment, &values, model.rotation_speed);
+            let [upper, lower] = tangent.map_or([0.0; 2], |tangent| tangent.rubbing);
+            if let Some(above) = e.checked_sub(1) {
+                chain.rubbing[above] += upper;
+            }
+            chain.rubbing[e] += lower;
         }
         Some(chain)
     }

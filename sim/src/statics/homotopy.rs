@@ -5,13 +5,16 @@
 //! smooth, the path of equilibria that begins there neither ends nor branches (but by coincidence: Chow, Mallet-Paret and Yorke 1978): it comes back, goes to infinity, or leads to an equilibrium of
 //! the scene. A wall stiff enough to hold the string shuts out the first two. The drag of the mud is that of where the string lies all along.
 
-use super::contact_at;
 use super::hydraulics::Sections;
 use super::newton::{
-    LAST_ITERATIONS, NewtonOutcome, NodeContact, largest, last_step, linearise_with, tributary_lengths,
+    Contacts, ElementContact, LAST_ITERATIONS, NewtonOutcome, NodeContact, WallAtRest, largest, last_step,
+    linearise_with, tributary_lengths,
 };
 use super::path::{self, Growth, Point, add};
-use crate::contact::{SmoothContactForce, smooth_static_contact};
+use crate::contact::{
+    ContactNode, ContactSegment, SmoothContactForce, SmoothSegmentForce, smooth_static_contact,
+    smooth_static_segment,
+};
 use crate::freedom::{DOFS, THETA_Z, U, V};
 use crate::linalg::{Block, BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, clear_held, element_values};
@@ -39,6 +42,8 @@ struct Scene<'a> {
     springs: Vec<f64>,
     /// Width of the wall at every node \[m\], to begin with.
     widths: Vec<f64>,
+    /// The same along every element, if the wall acts there.
+    widths_along: Vec<f64>,
     held: Vec<[bool; DOFS]>,
 }
 
@@ -46,16 +51,23 @@ impl<'a> Scene<'a> {
     fn new(model: &'a Model, sections: &'a Sections, spring: f64) -> Self {
         let springs: Vec<f64> = tributary_lengths(model).iter().map(|length| spring * length).collect();
         // The wall pushes as far from it as its clearance with K_c width^2 / (4 j0): about as much as the spring there.
-        let widths = model.wall.sites().iter().zip(&springs).map(|(site, spring)| {
-            let Some(site) = site else { return 0.0 };
-            let stiffness = model.wall.law().stiffness(site.clearance) * site.stiffness_share;
-            site.clearance * (2.0 * (spring / stiffness).sqrt()).min(1.0)
+        let width = |wall: &ContactNode<f64>, spring: f64| {
+            let stiffness = model.wall.law().stiffness(wall.clearance) * wall.stiffness_share;
+            wall.clearance * (2.0 * (spring / stiffness).sqrt()).min(1.0)
+        };
+        let widths = model.wall.sites().iter().zip(&springs).map(|(site, &nodal)| match site {
+            // A node without a share of the wall has no width either: its force is zero whatever that is.
+            Some(site) if site.stiffness_share > 0.0 => width(site, nodal),
+            _ => 0.0,
         });
+        let segments = model.wall.segments().iter();
+        let widths_along = segments.map(|segment| width(&segment.wall, spring * segment.length));
         Self {
             model,
             sections,
             load: model.constant_load(&[]),
             widths: widths.collect(),
+            widths_along: widths_along.collect(),
             springs,
             held: (0..model.node_count()).map(|node| model.held_by_top(node)).collect(),
         }
@@ -67,7 +79,7 @@ impl<'a> Scene<'a> {
         &self,
         displacement: &[[f64; DOFS]],
         share: f64,
-        contact_of: impl Fn(usize) -> Option<NodeContact>,
+        contacts: &impl Contacts,
     ) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
         let mut whole = self.load.clone();
         let mut by_displacement = BlockTridiagonal::zeros(self.model.node_count());
@@ -83,7 +95,7 @@ impl<'a> Scene<'a> {
             }
         }
         let carried: NodalVector = whole.iter().map(|load| load.map(|value| share * value)).collect();
-        let (residual, mut tangent) = linearise_with(self.model, &carried, displacement, contact_of);
+        let (residual, mut tangent) = linearise_with(self.model, &carried, displacement, contacts);
         self.add_to(&mut tangent, by_displacement);
         Some((residual, tangent, whole))
     }
@@ -112,23 +124,8 @@ impl<'a> Scene<'a> {
 impl Growth for Scene<'_> {
     fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
         let (model, share) = (self.model, at.share);
-        let contacts: Vec<Option<SmoothContactForce>> = (0..model.node_count())
-            .map(|node| {
-                let [u, v, ..] = at.displacement[node];
-                let width = self.widths[node] * (1.0 - share);
-                let site = model.wall.sites()[node].as_ref()?;
-                Some(smooth_static_contact(
-                    model.wall.law(),
-                    site,
-                    [u, v],
-                    model.rotation_speed,
-                    width,
-                    share,
-                ))
-            })
-            .collect();
-        let contact_of = |node: usize| contacts[node].map(|contact| (contact.force, contact.tangent));
-        let (mut residual, mut tangent, mut slope) = self.loaded(&at.displacement, share, contact_of)?;
+        let contacts = SmoothWall::new(self, at);
+        let (mut residual, mut tangent, mut slope) = self.loaded(&at.displacement, share, &contacts)?;
 
         // The tangent has the whole momentum of the flows.
         let mut missing = BlockTridiagonal::zeros(model.node_count());
@@ -141,8 +138,11 @@ impl Growth for Scene<'_> {
         }
         self.add_to(&mut tangent, missing);
         self.hold(&mut tangent, 1.0 - share);
+        for (e, (contact, width)) in contacts.elements.iter().zip(&self.widths_along).enumerate() {
+            add_element_vector(&mut slope, e, &(contact.by_friction - contact.by_width * *width));
+        }
         for node in 0..model.node_count() {
-            if let Some(contact) = &contacts[node] {
+            if let Some(contact) = &contacts.nodes[node] {
                 for (row, dof) in [U, V, THETA_Z].into_iter().enumerate() {
                     slope[node][dof] += contact.by_friction[row] - self.widths[node] * contact.by_width[row];
                 }
@@ -163,11 +163,8 @@ impl Growth for Scene<'_> {
     /// path led.
     fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
         let at_rest = |displacement: &[[f64; DOFS]]| {
-            self.loaded(displacement, 1.0, |node| {
-                let contact =
-                    contact_at(&self.model.wall, node, &displacement[node], self.model.rotation_speed)?;
-                Some(([contact.force_u, contact.force_v, contact.torque_z], contact.tangent))
-            })
+            let contacts = WallAtRest { model: self.model, wall: &self.model.wall, displacement };
+            self.loaded(displacement, 1.0, &contacts)
         };
         let (mut residual, mut tangent, _) = at_rest(displacement)?;
         for iteration in 1..=LAST_ITERATIONS {
@@ -191,13 +188,48 @@ impl Growth for Scene<'_> {
     }
 }
 
+/// The smooth wall at a point of the path.
+struct SmoothWall {
+    nodes: Vec<Option<SmoothContactForce>>,
+    elements: Vec<SmoothSegmentForce>,
+}
+
+impl SmoothWall {
+    fn new(scene: &Scene<'_>, at: &Point) -> Self {
+        let Scene { model, widths, widths_along, .. } = scene;
+        let (law, rotation_speed, share) = (model.wall.law(), model.rotation_speed, at.share);
+        let node = |((site, [u, v, ..]), width): ((&Option<ContactNode<f64>>, &[f64; DOFS]), &f64)| {
+            let width = width * (1.0 - share);
+            Some(smooth_static_contact(law, site.as_ref()?, [*u, *v], rotation_speed, width, share))
+        };
+        let element = |(e, (segment, width)): (usize, (&ContactSegment<f64>, &f64))| {
+            let values = element_values(&at.displacement, e);
+            smooth_static_segment(law, segment, &values, rotation_speed, width * (1.0 - share), share)
+        };
+        Self {
+            nodes: model.wall.sites().iter().zip(&at.displacement).zip(widths).map(node).collect(),
+            elements: model.wall.segments().iter().zip(widths_along).enumerate().map(element).collect(),
+        }
+    }
+}
+
+impl Contacts for SmoothWall {
+    fn of_node(&self, node: usize) -> Option<NodeContact> {
+        self.nodes[node].map(|contact| (contact.force, contact.tangent))
+    }
+
+    fn of_element(&self, element: usize) -> Option<ElementContact> {
+        self.elements.get(element).map(|contact| (contact.force, contact.tangent))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::{Section, SectionKind, SurveyStation, preset};
 
     use super::*;
     use crate::model::GRAVITY;
-    use crate::statics::Equilibrium;
+    use crate::statics::{Equilibrium, contact_at};
 
     #[test]
     fn path_leads_to_where_friction_holds_a_horizontal_string() {

@@ -17,7 +17,7 @@ pub use overload::Overload;
 
 use drillsweep_scenario::ContactLaw;
 
-use crate::contact::{StaticContactForce, Wall, static_contact};
+use crate::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
 use crate::freedom::{DOFS, U, V};
 use crate::linalg::SingularBlock;
 use crate::model::{Model, NodalVector, element_values};
@@ -53,7 +53,7 @@ pub struct Equilibrium {
     pub tension: Vec<f64>,
     /// Torque of every element \[N m\].
     pub torque: Vec<f64>,
-    /// Normal contact force of every node \[N\].
+    /// Normal contact force of every node \[N\]; of contact along an element, the share of each node by its nearness.
     pub normal_force: Vec<f64>,
     /// Flow past every element; empty without mud.
     pub flows: Vec<ElementFlow>,
@@ -244,12 +244,18 @@ impl Equilibrium {
         };
         let tension = rows(|element| &element.tension_row);
         let torque = rows(|element| &element.torque_row);
-        let normal_force = (0..model.node_count())
+        let mut normal_force: Vec<f64> = (0..model.node_count())
             .map(|node| {
                 contact_at(&model.wall, node, &displacement[node], model.rotation_speed)
                     .map_or(0.0, |contact| contact.normal)
             })
             .collect();
+        for element in 0..model.elements.len() {
+            let contact = contact_along(&model.wall, element, &displacement, model.rotation_speed);
+            let [upper, lower] = contact.map_or([0.0; 2], |contact| contact.ends);
+            normal_force[element] += upper;
+            normal_force[element + 1] += lower;
+        }
         let pressures = model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose();
         // Pressures add up along the whole string: they are largest at its end.
         let pressures = pressures.map_err(|error| StaticsError::Mud { node: model.node_count(), error })?;
@@ -364,4 +370,15 @@ fn contact_at(
     let site = wall.sites()[node].as_ref()?;
     let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
     (contact.penetration > 0.0).then_some(contact)
+}
+
+/// The quasi-static contact along an element, where it touches.
+fn contact_along(
+    wall: &Wall,
+    element: usize,
+    displacement: &[[f64; DOFS]],
+    rotation_speed: f64,
+) -> Option<StaticSegmentForce> {
+    let segment = wall.segments().get(element)?;
+    static_segment(wall.law(), segment, &element_values(displacement, element), rotation_speed)
 }

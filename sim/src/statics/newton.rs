@@ -1,6 +1,6 @@
 //! Newton's method with a pseudo-transient shift for the nonlinear equilibrium.
 
-use super::{StaticsError, contact_at};
+use super::{StaticsError, contact_along, contact_at};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::contact::Wall;
 use crate::freedom::{DOFS, THETA_Z, U, V};
@@ -143,21 +143,49 @@ pub(super) fn linearise(
     load: &[[f64; DOFS]],
     displacement: &[[f64; DOFS]],
 ) -> (NodalVector, BlockTridiagonal) {
-    linearise_with(model, load, displacement, |node| {
-        let contact = contact_at(wall, node, &displacement[node], model.rotation_speed)?;
+    linearise_with(model, load, displacement, &WallAtRest { model, wall, displacement })
+}
+
+/// Contacts of a string as the equations of its equilibrium take them.
+pub(super) trait Contacts {
+    /// Forces and tangent of a node, if it touches.
+    fn of_node(&self, node: usize) -> Option<NodeContact>;
+
+    /// Loads and tangent of the wall along an element, if it touches.
+    fn of_element(&self, element: usize) -> Option<ElementContact>;
+}
+
+/// The wall at given displacements.
+pub(super) struct WallAtRest<'a> {
+    pub(super) model: &'a Model,
+    pub(super) wall: &'a Wall,
+    pub(super) displacement: &'a [[f64; DOFS]],
+}
+
+impl Contacts for WallAtRest<'_> {
+    fn of_node(&self, node: usize) -> Option<NodeContact> {
+        let contact = contact_at(self.wall, node, &self.displacement[node], self.model.rotation_speed)?;
         Some(([contact.force_u, contact.force_v, contact.torque_z], contact.tangent))
-    })
+    }
+
+    fn of_element(&self, element: usize) -> Option<ElementContact> {
+        let contact = contact_along(self.wall, element, self.displacement, self.model.rotation_speed)?;
+        Some((contact.force, contact.tangent))
+    }
 }
 
 /// Forces of a node's contact along u and v and the torque about e3, with their derivatives by u and v.
 pub(super) type NodeContact = ([f64; 3], [[f64; 2]; 3]);
+
+/// Consistent nodal loads of the wall along an element, with their derivatives by the nodal values.
+pub(super) type ElementContact = (ElementVector, ElementMatrix);
 
 /// [`linearise`] with the contacts given.
 pub(super) fn linearise_with(
     model: &Model,
     load: &[[f64; DOFS]],
     displacement: &[[f64; DOFS]],
-    contact_of: impl Fn(usize) -> Option<NodeContact>,
+    contacts: &impl Contacts,
 ) -> (NodalVector, BlockTridiagonal) {
     let n = model.node_count();
     let mut residual = load.to_vec();
@@ -178,10 +206,14 @@ pub(super) fn linearise_with(
                 stiffness += change;
             }
         }
+        if let Some((forces, gradients)) = contacts.of_element(e) {
+            add_element_vector(&mut residual, e, &forces);
+            stiffness -= gradients;
+        }
         add_element_matrix(&mut tangent, e, &stiffness);
     }
     for (node, (residual, diagonal)) in residual.iter_mut().zip(&mut tangent.diagonal).enumerate() {
-        let Some((forces, gradients)) = contact_of(node) else { continue };
+        let Some((forces, gradients)) = contacts.of_node(node) else { continue };
         for (row, (force, gradient)) in [U, V, THETA_Z].into_iter().zip(forces.into_iter().zip(&gradients)) {
             residual[row] += force;
             diagonal[(row, U)] -= gradient[0];

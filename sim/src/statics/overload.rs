@@ -28,7 +28,7 @@ pub struct Overload {
     pub held_by_wall: bool,
     /// Measured depth \[m\] of the upper end of the stretch that is loaded most.
     pub measured_depth: f64,
-    /// Its length \[m\]: an element, since the wall holds nodes only; the whole string where there is no wall.
+    /// Its length \[m\]: an element, since the wall holds its nodes; the whole string where there is no wall.
     pub length: f64,
     /// Compression \[N\], with the flow's momentum.
     pub compression: f64,
@@ -73,7 +73,8 @@ pub(super) fn verdict(overload: Option<&Overload>) -> String {
 ///
 /// Compression follows from the balance along the string and does not depend on where it lies: it is summed up from the bit along the buoyed
 /// weight, without the mud's drag; torque is the bit's. Contact acts on the lateral displacements of nodes, so that it holds the string at
-/// most as bearings there do, which leave rotations free. Without a wall, what follows the end of the string (torque, flow) is left out, so that the
+/// most as bearings there do, which leave rotations free; a wall along the elements resists their deflection between the nodes too, with its
+/// stiffness at most. Without a wall, what follows the end of the string (torque, flow) is left out, so that the
 /// stiffness is symmetric. If the stiffness of the string is negative in some direction with all these
 /// displacements held, it is so at every equilibrium. A shaft with pinned ends under thrust P and torque T buckles where P / (EI) + (T / 2EI)^2 =
 /// (pi / l)^2 (Greenhill 1883).
@@ -100,7 +101,12 @@ pub(super) fn find(model: &Model) -> Option<Overload> {
             element.momentum.filter(|_| model.effects.flow_stiffness).map_or(0.0, |flow| flow.lateral_flux());
         let by_tension =
             element.tension_unit.map_or(element.elastic, |unit| element.elastic + unit * tension);
-        let own = if held_by_wall { element.stiffness(tension, torque) } else { by_tension };
+        let mut own = if held_by_wall { element.stiffness(tension, torque) } else { by_tension };
+        // A wall along the element resists its deflection between the nodes with no more than its whole stiffness everywhere.
+        if !model.wall.segments().is_empty() {
+            let bedding = model.scenario.contact.stiffness_of_a_metre();
+            own += element.chord.matrix_to_nodes(&element.beam.lateral_mass()) * bedding;
+        }
         add_element_matrix(&mut stiffness, e, &own);
         let thrust = if model.effects.axial_stiffening { -tension } else { 0.0 };
         tension += 0.5 * element.axial_weight;

@@ -33,10 +33,10 @@ use drillsweep_scenario::{Scenario, Section};
 use crate::beam::BeamSection;
 
 /// Elements of a tool joint.
-const JOINT_ELEMENTS: f64 = 8.0;
+const JOINT_ELEMENTS: f64 = 1.0;
 
 /// Elements of a body between two tool joints.
-const BODY_ELEMENTS: f64 = 16.0;
+const BODY_ELEMENTS: f64 = 12.0;
 
 /// Elements along the length over which a wall spreads a bent pipe's force.
 const ELEMENTS_A_SPREAD: f64 = 2.0;

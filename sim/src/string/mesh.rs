@@ -102,11 +102,10 @@ pub struct MeshNode {
     pub clearance: f64,
     /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
-    /// The node's largest contact stiffness over that of the law, `contact.stiffness`: 1 where stiffness is a node's or the node is a
-    /// gauge, which acts at a point and not along a length; else that of the length that touches the wall through the node, half of each adjoining
-    /// element of its contact diameter.
+    /// The node's largest contact stiffness over that of the law, `contact.stiffness`: 1 if stiffness is a node's or the node is a
+    /// gauge, which acts at a point and not along a length; 0 if the wall acts along the elements.
     pub stiffness_share: f64,
-    /// The same of the damping, `contact.damping`; over 1 N s/m where that is zero and a length's need not be.
+    /// The same of the damping, `contact.damping`; over 1 N s/m if that is zero and a length's need not be.
     pub damping_share: f64,
     /// Whether the clearance is a gauge's.
     pub is_gauge: bool,
@@ -178,30 +177,13 @@ impl StringMesh {
         Ok(mesh)
     }
 
-    /// Gives the nodes their shares of a wall whose stiffness and damping are a length's.
+    /// Leaves the nodes no share of a wall whose stiffness and damping belong to a length: the elements have all of it, and gauges, which act at a
+    /// point, what they have by node.
     fn put_wall_by_length(&mut self, contact: &ContactLaw) {
-        for index in 0..self.nodes.len() {
-            let (stiffness, damping) = if self.nodes[index].is_gauge {
-                (contact.stiffness, contact.damping)
-            } else {
-                let length = self.touching_length(index);
-                (length * contact.stiffness_of_a_metre(), length * contact.damping_of_a_metre())
-            };
-            let node = &mut self.nodes[index];
-            node.stiffness_share = stiffness / contact.stiffness;
-            node.damping_share = damping / contact.unit_damping();
+        for node in &mut self.nodes {
+            (node.stiffness_share, node.damping_share) =
+                if node.is_gauge { (1.0, contact.damping / contact.unit_damping()) } else { (0.0, 0.0) };
         }
-    }
-
-    /// Length of string \[m\] that touches the wall through a node: half of each adjoining element of the diameter that the node
-    /// touches with. The slimmer body beside a tool joint's end is off the wall there.
-    fn touching_length(&self, node: usize) -> f64 {
-        let adjoining =
-            [node.checked_sub(1).and_then(|above| self.elements.get(above)), self.elements.get(node)];
-        let adjoining = adjoining.into_iter().flatten();
-        let diameter = adjoining.clone().map(|element| element.outer_diameter).fold(0.0, f64::max);
-        let touching = adjoining.filter(|element| element.outer_diameter == diameter);
-        touching.map(|element| 0.5 * element.length).sum()
     }
 
     /// Measured depths of the nodes \[m\], increasing.
@@ -377,29 +359,21 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_those_of_the_length_that_touches() {
+    fn a_wall_by_length_leaves_the_nodes_their_gauges_alone() {
         let mut scenario = paper();
-        let whole = |node: &MeshNode| (node.stiffness_share, node.damping_share) == (1.0, 1.0);
-        assert!(paper_mesh().nodes.iter().all(whole), "a node's law");
+        let shares = |mesh: &StringMesh| -> Vec<(bool, f64, f64)> {
+            let of = |node: &MeshNode| (node.is_gauge, node.stiffness_share, node.damping_share);
+            mesh.nodes.iter().map(of).collect()
+        };
+        assert!(shares(&paper_mesh()).iter().all(|&(_, k, c)| (k, c) == (1.0, 1.0)), "a node's law");
         scenario.contact.law = WallLaw::PerLength;
-        scenario.contact.damping_per_length = Some(1e4);
-        for factor in [1.0, 0.25] {
-            let scenario = Scenario { mesh: scenario.mesh.scaled(factor), ..scenario.clone() };
-            let mesh = StringMesh::new(&scenario).unwrap();
-            let length = |depth: f64| mesh.nodes[mesh.nearest_node(depth)].stiffness_share * 1e7 / 2e7;
-            // The end of a tool joint has half of the joint's element and nothing of the body's, nor of the collar's, which is slimmer.
-            for (depth, expected) in [(4.0, 0.15), (4.3, 0.15), (13.5, 0.3), (89.5, 0.15), (90.5, 0.5)] {
-                assert!((length(depth) - expected * factor).abs() < 1e-12, "at {depth} m: {}", length(depth));
-            }
-            let body = mesh.elements[mesh.nearest_node(8.0)].length;
-            assert!((length(8.0) - body).abs() < 1e-12);
-            // Gauges act at a point: the whole of the law, whatever the mesh.
-            assert!(mesh.nodes.iter().all(|node| !node.is_gauge || whole(node)));
-            // All joints together touch with their own length, 9 pairs of 0.3 m.
-            let joints = mesh.nodes.iter().filter(|node| (node.contact_radius - 0.08095).abs() < 1e-9);
-            let touching: f64 = joints.map(|node| node.damping_share * 1e4 / 1e4).sum();
-            assert!((touching - 18.0 * 0.3).abs() < 1e-9, "{touching} m");
+        for (is_gauge, stiffness, damping) in shares(&StringMesh::new(&scenario).unwrap()) {
+            let share = if is_gauge { 1.0 } else { 0.0 };
+            assert_eq!((stiffness, damping), (share, share));
         }
+        // Shares of damping are over 1 N s/m if gauges have none.
+        scenario.contact.damping = 0.0;
+        assert!(shares(&StringMesh::new(&scenario).unwrap()).iter().all(|&(_, _, damping)| damping == 0.0));
     }
 
     #[test]

@@ -8,8 +8,10 @@ use std::fmt;
 use drillsweep_scenario::{NodeChoice, Scenario, WallLaw};
 use serde::{Deserialize, Serialize};
 
+use crate::beam::Shape;
+use crate::contact::{Plane, planes};
 use crate::freedom::{U, V};
-use crate::model::Model;
+use crate::model::{Model, element_values};
 use crate::statics::Equilibrium;
 
 /// Strings of more elements are not refined: their equilibria take seconds.
@@ -135,6 +137,8 @@ fn error<T: Copy>([own, half, quarter]: [T; 3], distance: impl Fn(T, T) -> f64) 
 struct Rest {
     /// Depth and (u, v) of the nodes \[m\].
     position: Vec<(f64, [f64; 2])>,
+    /// Shear parameters of the elements, with the deflections and slopes of their ends in the planes of u and v \[m, rad\].
+    planes: Vec<(f64, [Plane<f64>; 2])>,
     /// Depth of the lower end \[m\] and C_f of the elements; empty without mud.
     friction: Vec<(f64, f64)>,
 }
@@ -145,6 +149,15 @@ impl Rest {
         let elements = model.mesh.elements.iter().zip(&equilibrium.flows);
         Self {
             position: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),
+            planes: model
+                .elements
+                .iter()
+                .enumerate()
+                .map(|(e, element)| {
+                    let values = element_values(&equilibrium.displacement, e);
+                    (element.beam.shear_parameter(), planes(&values))
+                })
+                .collect(),
             friction: elements
                 .map(|(element, flow)| (element.top + element.length, flow.friction_coefficient))
                 .collect(),
@@ -159,13 +172,15 @@ impl Rest {
         Some(Self::of(&model, &equilibrium))
     }
 
-    /// (u, v) at a depth, between nodes on a straight line.
+    /// (u, v) at a depth, between nodes as the beam deflects.
     fn position_at(&self, depth: f64) -> [f64; 2] {
         let below =
             self.position.partition_point(|(node, _)| *node < depth).clamp(1, self.position.len() - 1);
-        let ((top, a), (bottom, b)) = (self.position[below - 1], self.position[below]);
-        let share = ((depth - top) / (bottom - top)).clamp(0.0, 1.0);
-        [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]
+        let (top, bottom) = (self.position[below - 1].0, self.position[below].0);
+        let place = ((depth - top) / (bottom - top)).clamp(0.0, 1.0);
+        let (shear_parameter, planes) = &self.planes[below - 1];
+        let shape = Shape::at(place, bottom - top, *shear_parameter).deflection;
+        planes.each_ref().map(|plane| shape.iter().zip(plane).map(|(shape, value)| shape * value).sum())
     }
 
     /// C_f of the element at a depth.

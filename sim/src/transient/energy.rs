@@ -9,13 +9,13 @@ use std::ops::Index;
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::ContactForces;
+use super::forces::{ContactForces, Forces};
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
-use crate::contact::{ContactNode, Wall};
+use crate::contact::{ContactNode, ContactSegment, Wall};
 use crate::effect::{
     ACCOUNTS, Account, Booked, DAMPING, NodalWork, Side, contact, friction, friction_torque, unbalance,
 };
-use crate::freedom::{Freedoms, LATERAL, U, V};
+use crate::freedom::{Freedoms, THETA_X, THETA_Y, U, V};
 use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
@@ -170,7 +170,7 @@ impl<const D: usize> Ledger<D> {
         ledger
     }
 
-    /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
+    /// Books a stage at `time` that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
     /// forces that it was solved with. It keeps the vectors and leaves others of their size.
     pub(super) fn book(
         &mut self,
@@ -178,9 +178,10 @@ impl<const D: usize> Ledger<D> {
         velocity: &mut NodalField<D>,
         displacement: &mut NodalField<D>,
         contact: &ContactForces,
-        unbalance: impl Iterator<Item = (usize, [f64; LATERAL])>,
+        forces: &Forces<D>,
+        time: f64,
     ) {
-        let power = self.power(velocity, displacement, contact, unbalance);
+        let power = self.power(velocity, displacement, contact, forces, time);
         self.work.nodal.add(weight, &power.nodal);
         self.forms.gather(weight, velocity, displacement);
     }
@@ -195,13 +196,14 @@ impl<const D: usize> Ledger<D> {
         self.forms.add(stages);
     }
 
-    /// Powers \[W\] of contact and unbalance.
+    /// Powers \[W\] of contact and unbalance at `time`.
     pub(super) fn power(
         &self,
         velocity: &NodalField<D>,
         displacement: &NodalField<D>,
         contact: &ContactForces,
-        unbalance: impl Iterator<Item = (usize, [f64; LATERAL])>,
+        forces: &Forces<D>,
+        time: f64,
     ) -> Work {
         let zero = Four::splat(0.0);
         let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
@@ -216,8 +218,12 @@ impl<const D: usize> Ledger<D> {
             friction_power = friction_power + friction::power(whole, normal);
             torque = torque + group.torque;
         }
+        let along = forces.segments().power(&contact.along, velocity);
+        normal_power = normal_power + along.normal;
+        friction_power = friction_power + along.friction;
+        torque = torque + along.torque;
         let nodal = NodalWork {
-            unbalance: unbalance::power(unbalance, velocity),
+            unbalance: unbalance::power(forces.unbalance.at(time), velocity),
             normal_contact: normal_power.sum(),
             friction: friction_power.sum(),
             rotation: friction_torque::power_of_rotation(torque.sum(), self.rotation_speed),
@@ -321,7 +327,18 @@ impl<const D: usize> Ledger<D> {
             let penetration = x[node][U].hypot(x[node][V]) - site.clearance;
             site.stiffness_share * self.wall.law().potential_energy(penetration)
         };
-        self.wall.touchable().map(stored).sum()
+        let [turn_x, turn_y] = [THETA_X, THETA_Y].map(|dof| self.freedoms.place(dof));
+        let stored_along = |(element, segment): (usize, &ContactSegment<f64>)| {
+            let [upper, lower] = [&x[element], &x[element + 1]];
+            let turn = |node: &[f64; D], place: Option<usize>| place.map_or(0.0, |place| node[place]);
+            let planes = [
+                [upper[U], turn(upper, turn_y), lower[U], turn(lower, turn_y)],
+                [upper[V], -turn(upper, turn_x), lower[V], -turn(lower, turn_x)],
+            ];
+            segment.potential_energy(self.wall.law(), &planes)
+        };
+        self.wall.touchable().map(stored).sum::<f64>()
+            + self.wall.segments().iter().enumerate().map(stored_along).sum::<f64>()
     }
 }
 

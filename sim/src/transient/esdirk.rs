@@ -7,7 +7,7 @@ use super::forces::{ContactForces, Forces};
 use super::grid::Grid;
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
-use crate::freedom::{Freedoms, LATERAL};
+use crate::freedom::LATERAL;
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
@@ -95,7 +95,7 @@ impl<const D: usize> Esdirk<D> {
         };
         Ok(Self {
             levels: (0..=grid.top()).map(level).collect::<Result<_, SingularBlock>>()?,
-            solver: StageSolver::new(system, initial, sweeps),
+            solver: StageSolver::new(system, initial, forces, sweeps),
             stages: std::array::from_fn(|_| Stage {
                 displacement: zero.clone(),
                 velocity: zero.clone(),
@@ -132,8 +132,8 @@ impl<const D: usize> Esdirk<D> {
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
             if WEIGHTS[stage] != 0.0 {
-                let unbalance = forces.unbalance.at(stage_time);
-                self.powers[stage] = ledger.power(velocity, displacement, &self.solver.contact, unbalance);
+                self.powers[stage] =
+                    ledger.power(velocity, displacement, &self.solver.contact, forces, stage_time);
             }
         }
         self.local_error = self.displacement_error(h, state);
@@ -181,6 +181,9 @@ impl<const D: usize> Esdirk<D> {
             let error = std::array::from_fn(|dof| velocity_error(group, dof));
             friction = forces.friction_change(group, x, v, &error).max(friction);
         }
+        let contact = &self.solver.contact;
+        let (x, v) = (&end.displacement, &end.velocity);
+        friction = forces.largest_friction_change_along(contact, x, v, &velocity_error).max(friction);
         StepError {
             displacement: (self.local_error / values).sqrt(),
             friction: friction.to_array().into_iter().fold(0.0, f64::max),
@@ -273,10 +276,8 @@ impl<const D: usize> Esdirk<D> {
                 velocity_offset[i][dof] = -c * x_base;
                 acceleration_offset[i][dof] = c * (velocity_offset[i][dof] - v_base);
                 // The predictor is for the contacts alone.
-                if Freedoms::<D>::concerns_contact(dof) {
-                    v[i][dof] = diagonal.mul_add(last[i][dof], v_base);
-                    x[i][dof] = diagonal.mul_add(v[i][dof], x_base);
-                }
+                v[i][dof] = diagonal.mul_add(last[i][dof], v_base);
+                x[i][dof] = diagonal.mul_add(v[i][dof], x_base);
             }
         }
     }

@@ -1,18 +1,36 @@
 //! The right-hand side of the equations of motion: constant loads, unbalance, contact.
 
+use super::segments::{LawAlong, SegmentForces, Segments};
 use crate::contact::{
-    ContactForce, ContactNode, ContactParameters, LateralMotion, Yielding, dynamic_contact, implicit_contact,
+    ContactForce, ContactNode, ContactParameters, ContactSegment, LateralMotion, SegmentCompliance,
+    SegmentForce, SegmentMotion, Surface, Yielding, dynamic_contact, dynamic_segment, implicit_contact,
+    implicit_segment,
 };
 use crate::effect::unbalance::TurningForces;
 use crate::freedom::{Freedoms, U, V};
-use crate::linalg::{Block, Four, Lane, Mask, NodalField};
+use crate::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
 use crate::model::Model;
 use crate::motion::DynamicSystem;
 
-/// What the wall does to every node, as of one evaluation: four nodes side by side.
+/// What the wall does to the string, as of one evaluation: to nodes, four side by side, and along elements.
 #[derive(Debug, Clone)]
 pub(super) struct ContactForces {
     groups: Vec<GroupContact>,
+    pub(super) along: SegmentForces,
+    /// If the wall acts along elements, the motion of each node's surface, four side by side, and its share of the normal forces: known at the ends of
+    /// steps alone.
+    surfaces: Vec<NodeSurfaces>,
+}
+
+/// How the surfaces of four nodes move on a wall that acts along elements.
+#[derive(Debug, Clone, Copy)]
+struct NodeSurfaces {
+    /// Penetrations \[m\]; zero where a node is off the wall.
+    penetration: Four,
+    /// Sliding speeds \[m/s\].
+    sliding_speed: Four,
+    /// Shares of the normal forces along the adjoining elements \[N\].
+    normal_force: Four,
 }
 
 /// What the wall does to four nodes; zero where one does not touch.
@@ -49,6 +67,7 @@ pub(super) struct NodeContact {
 #[derive(Debug, Clone)]
 pub(super) struct Compliance {
     groups: Vec<GroupCompliance>,
+    along: Vec<SegmentCompliance<Four>>,
 }
 
 /// How four nodes give way to their own contact forces.
@@ -83,9 +102,16 @@ impl SweepChange {
 }
 
 impl ContactForces {
-    /// No contact at any of so many nodes.
-    pub(super) fn none(nodes: usize) -> Self {
-        Self { groups: vec![GroupContact::none(); nodes.div_ceil(LANES)] }
+    /// No contact of a string.
+    pub(super) fn none<const D: usize>(forces: &Forces<D>) -> Self {
+        let groups = forces.sites.len();
+        let none =
+            NodeSurfaces { penetration: Four::ZERO, sliding_speed: Four::ZERO, normal_force: Four::ZERO };
+        Self {
+            groups: vec![GroupContact::none(); groups],
+            along: SegmentForces::none(&forces.segments),
+            surfaces: vec![none; if forces.segments.is_empty() { 0 } else { groups }],
+        }
     }
 
     /// The groups of which any node touches, with their numbers.
@@ -93,25 +119,42 @@ impl ContactForces {
         self.groups.iter().enumerate().filter(|(_, group)| group.penetration.is_some())
     }
 
-    /// Raises `peaks` to the normal forces where they are larger \[N\], four nodes side by side.
-    pub(super) fn add_to_peaks(&self, peaks: &mut [Four]) {
-        for (group, contact) in self.touching() {
-            peaks[group] = contact.normal_force.max(peaks[group]);
+    /// Raises `peaks` to the normal forces where they are larger \[N\], four nodes side by side; `sums` is room for as many.
+    pub(super) fn add_to_peaks(&self, peaks: &mut [Four], sums: &mut [Four]) {
+        if self.surfaces.is_empty() {
+            for (group, contact) in self.touching() {
+                peaks[group] = contact.normal_force.max(peaks[group]);
+            }
+            return;
+        }
+        for (sum, contact) in sums.iter_mut().zip(&self.groups) {
+            *sum = contact.normal_force;
+        }
+        self.along.add_normal_forces(sums, |sum| sum);
+        for (peak, sum) in peaks.iter_mut().zip(sums) {
+            *peak = sum.max(*peak);
         }
     }
 
-    /// Takes over what the wall does elsewhere.
+    /// Takes over what the wall does elsewhere, but for the motion of the nodes' surfaces.
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.groups.copy_from_slice(&other.groups);
+        self.along.copy_from(&other.along);
     }
 
     /// Visits every node in turn with what the wall does to it.
     #[inline(always)]
     pub(super) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
-        for (first, group) in (0..).step_by(LANES).zip(&self.groups) {
-            let penetration = group.penetration.map_or([0.0; LANES], Four::to_array);
-            let normal_force = group.normal_force.to_array();
-            let sliding_speed = group.sliding_speed.to_array();
+        for (index, group) in self.groups.iter().enumerate() {
+            let first = LANES * index;
+            let (penetration, sliding_speed, normal_force) = match self.surfaces.get(index) {
+                None => (group.penetration.unwrap_or(Four::ZERO), group.sliding_speed, group.normal_force),
+                Some(surfaces) => {
+                    (surfaces.penetration, surfaces.sliding_speed, group.normal_force + surfaces.normal_force)
+                }
+            };
+            let [penetration, sliding_speed, normal_force] =
+                [penetration, sliding_speed, normal_force].map(Four::to_array);
             for lane in 0..LANES.min(nodes - first) {
                 let touching = penetration[lane] > 0.0;
                 let [normal_force, sliding_speed] = [normal_force, sliding_speed].map(|values| values[lane]);
@@ -145,7 +188,9 @@ pub(super) struct Forces<const D: usize> {
     parameters: ContactParameters<Four>,
     /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
     sites: Vec<ContactNode<Four>>,
-    contact: bool,
+    /// Groups of which the wall pushes any node as a node: all, or those of gauges if it acts along elements.
+    pushed: Vec<bool>,
+    segments: Segments<D>,
     freedoms: Freedoms<D>,
 }
 
@@ -163,19 +208,31 @@ impl<const D: usize> Forces<D> {
                 damping_share: lanes(|site| site.damping_share, 0.0),
             }
         });
+        let sites: Vec<_> = sites.collect();
+        let has_share = |site: &ContactNode<Four>| {
+            (site.stiffness_share.greater_than(Four::ZERO) | site.damping_share.greater_than(Four::ZERO))
+                .any()
+        };
         Self {
             load: NodalField::from_nodes(&system.load),
             unbalance: TurningForces::new(&system.unbalance, system.rotation_speed),
             rotation_speed: system.rotation_speed,
             parameters: model.wall.law().in_lanes(),
-            sites: sites.collect(),
-            contact: model.effects.contact,
+            pushed: sites.iter().map(|site| model.effects.contact && has_share(site)).collect(),
+            segments: Segments::new(model, system.freedoms, &system.held, system.rotation_speed),
+            sites,
             freedoms: system.freedoms,
         }
     }
 
-    /// How the nodes give way to their own contact forces, from the blocks on the diagonal of a stage matrix' inverse.
-    pub(super) fn compliance(&self, inverse: &[Block<D>]) -> Compliance {
+    /// The wall along the elements.
+    pub(super) fn segments(&self) -> &Segments<D> {
+        &self.segments
+    }
+
+    /// How nodes and elements give way to their own contact forces, from blocks of a stage matrix' inverse.
+    pub(super) fn compliance(&self, bands: &InverseBands<D>) -> Compliance {
+        let inverse = &bands.diagonal;
         let site = |(first, site): (usize, &ContactNode<Four>)| {
             let of_lanes = |value: &dyn Fn(&Block<D>, f64) -> f64| {
                 Four::new(std::array::from_fn(|lane| {
@@ -191,7 +248,10 @@ impl<const D: usize> Forces<D> {
                 surface: of_lanes(&|block, radius| lateral(block) + radius * radius * twist(block)),
             }
         };
-        Compliance { groups: (0..).step_by(LANES).zip(&self.sites).map(site).collect() }
+        Compliance {
+            groups: (0..).step_by(LANES).zip(&self.sites).map(site).collect(),
+            along: self.segments.compliance(bands),
+        }
     }
 
     /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped
@@ -204,23 +264,53 @@ impl<const D: usize> Forces<D> {
         others: &NodalField<D>,
         all: &mut NodalField<D>,
     ) {
-        let law = |group: usize, motion: &LateralMotion<Four>, _: &GroupContact| {
-            dynamic_contact(&self.parameters, &self.sites[group], motion, Four::splat(self.rotation_speed))
-        };
-        self.contact_by(law, x, rates, out, others, all);
+        self.contact_by(self.law(), self.law_along(), x, rates, out, others, all);
     }
 
     /// What the wall does to the nodes of a motion, by the law alone.
     pub(super) fn contact_at(&self, x: &NodalField<D>, v: &NodalField<D>, out: &mut ContactForces) {
-        if !self.contact {
+        let (law, law_along) = (self.law(), self.law_along());
+        let rates = |group: usize, dof: usize| v.groups()[group][dof];
+        let pushed = x.groups().iter().zip(&mut out.groups).enumerate();
+        for (group, (x, out)) in pushed.filter(|&(group, _)| self.pushed[group]) {
+            self.push(group, &law, x, &rates, out, &mut [Four::splat(0.0); D]);
+        }
+        if self.segments.is_empty() {
             return;
         }
-        let law = |group: usize, motion: &LateralMotion<Four>, _: &GroupContact| {
+        self.segments.evaluate(&law_along, x, &rates, &mut out.along);
+        let twist = self.freedoms.twist();
+        for (group, ((x, site), surfaces)) in
+            x.groups().iter().zip(&self.sites).zip(&mut out.surfaces).enumerate()
+        {
+            let motion = lateral_motion(x, |dof| rates(group, dof), twist);
+            let surface = Surface::of(site, &motion, Four::splat(self.rotation_speed));
+            let touching = |value| Four::select(surface.touches, value, Four::ZERO);
+            *surfaces = NodeSurfaces {
+                penetration: touching(surface.penetration),
+                sliding_speed: touching(surface.sliding_speed),
+                normal_force: Four::ZERO,
+            };
+        }
+        out.along.add_normal_forces(&mut out.surfaces, |surfaces| &mut surfaces.normal_force);
+    }
+
+    /// The law at nodes.
+    #[inline(always)]
+    fn law(&self) -> impl Fn(usize, &LateralMotion<Four>, &GroupContact) -> ContactForce<Four> {
+        |group, motion, _| {
             dynamic_contact(&self.parameters, &self.sites[group], motion, Four::splat(self.rotation_speed))
-        };
-        let rates = |group: usize, dof: usize| v.groups()[group][dof];
-        for (group, (x, out)) in x.groups().iter().zip(&mut out.groups).enumerate() {
-            self.push(group, &law, x, &rates, out, &mut [Four::splat(0.0); D]);
+        }
+    }
+
+    /// The law along elements.
+    #[inline(always)]
+    fn law_along(&self) -> impl LawAlong {
+        |segment: &ContactSegment<Four>,
+         _: usize,
+         motion: &SegmentMotion<Four>,
+         force: &mut SegmentForce<Four>| {
+            dynamic_segment(&self.parameters, segment, motion, Four::splat(self.rotation_speed), force)
         }
     }
 
@@ -248,13 +338,23 @@ impl<const D: usize> Forces<D> {
             let rotation_speed = Four::splat(self.rotation_speed);
             implicit_contact(&self.parameters, &self.sites[group], motion, rotation_speed, &yielding)
         };
-        self.contact_by(law, x, rates, out, others, all);
+        let along = |segment: &ContactSegment<Four>,
+                     group: usize,
+                     motion: &SegmentMotion<Four>,
+                     force: &mut SegmentForce<Four>| {
+            let yielding = (&compliance.along[group], Four::splat(speed));
+            let rotation_speed = Four::splat(self.rotation_speed);
+            implicit_segment(&self.parameters, segment, motion, rotation_speed, yielding, force)
+        };
+        self.contact_by(law, along, x, rates, out, others, all);
     }
 
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "two laws, a motion, and where the forces go")]
     fn contact_by(
         &self,
         law: impl Fn(usize, &LateralMotion<Four>, &GroupContact) -> ContactForce<Four>,
+        law_along: impl LawAlong,
         x: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
         out: &mut ContactForces,
@@ -262,14 +362,19 @@ impl<const D: usize> Forces<D> {
         all: &mut NodalField<D>,
     ) {
         let n = self.sites.len();
-        let (x, others, out) = (&x.groups()[..n], &others.groups()[..n], &mut out.groups[..n]);
-        let all = &mut all.groups_mut()[..n];
-        for group in 0..n {
-            let mut forces = others[group];
-            if self.contact {
-                self.push(group, &law, &x[group], &rates, &mut out[group], &mut forces);
+        {
+            let (x, others, out) = (&x.groups()[..n], &others.groups()[..n], &mut out.groups[..n]);
+            let (all, pushed) = (&mut all.groups_mut()[..n], &self.pushed[..n]);
+            for group in 0..n {
+                let mut forces = others[group];
+                if pushed[group] {
+                    self.push(group, &law, &x[group], &rates, &mut out[group], &mut forces);
+                }
+                all[group] = forces;
             }
-            all[group] = forces;
+        }
+        if !self.segments.is_empty() {
+            self.segments.add_forces(&law_along, x, &rates, &mut out.along, (others, all));
         }
     }
 
@@ -294,7 +399,24 @@ impl<const D: usize> Forces<D> {
             most[1] = self.friction_change(group, x, &rates, &faster).max(most[1]);
         }
         let [lateral, friction] = most.map(|most| most.to_array().into_iter().fold(0.0, f64::max));
-        SweepChange { lateral, friction }
+        let mut change = SweepChange { lateral, friction };
+        let along = &contact.along;
+        change.merge(self.segments.sweep_change(&self.parameters, along, x, before, &rates, speed));
+        change
+    }
+
+    /// The largest change of a friction coefficient along elements in contact for a change of velocities, four elements side by side.
+    pub(super) fn largest_friction_change_along(
+        &self,
+        contact: &ContactForces,
+        x: &NodalField<D>,
+        v: &NodalField<D>,
+        change: &impl Fn(usize, usize) -> Four,
+    ) -> Four {
+        let rates = |group: usize, dof: usize| v.groups()[group][dof];
+        contact.along.touching().fold(Four::ZERO, |most, touching| {
+            self.segments.friction_change(&self.parameters, touching, x, &rates, change).max(most)
+        })
     }
 
     /// By how much friction coefficients change for a change of velocities, four nodes side by side: by the slope of the friction curve
@@ -340,13 +462,7 @@ impl<const D: usize> Forces<D> {
             }
             return;
         }
-        let motion = LateralMotion {
-            u,
-            v,
-            u_rate: rates(group, U),
-            v_rate: rates(group, V),
-            theta_z_rate: self.freedoms.twist().map_or(Four::splat(0.0), |twist| rates(group, twist)),
-        };
+        let motion = lateral_motion(x, |dof| rates(group, dof), self.freedoms.twist());
         let contact = law(group, &motion, out);
         let touches = contact.penetration.greater_than(Four::splat(0.0));
         let radius = Four::select(touches, site.clearance + contact.penetration, Four::splat(1.0));
@@ -364,6 +480,22 @@ impl<const D: usize> Forces<D> {
         if let Some(twist) = self.freedoms.twist() {
             forces[twist] = forces[twist] + contact.torque_z;
         }
+    }
+}
+
+/// Motion of four nodes as contact asks for it, from their displacements and the rate of each degree of freedom.
+#[inline(always)]
+fn lateral_motion<const D: usize>(
+    x: &[Four; D],
+    rates: impl Fn(usize) -> Four,
+    twist: Option<usize>,
+) -> LateralMotion<Four> {
+    LateralMotion {
+        u: x[U],
+        v: x[V],
+        u_rate: rates(U),
+        v_rate: rates(V),
+        theta_z_rate: twist.map_or(Four::ZERO, rates),
     }
 }
 

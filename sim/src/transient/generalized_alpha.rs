@@ -3,7 +3,6 @@
 use super::forces::{ContactForces, Forces};
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
 use super::run::{Books, State};
-use crate::freedom::Freedoms;
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
@@ -61,7 +60,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
             step,
             spectral_radius,
             matrix,
-            solver: StageSolver::new(system, initial, sweeps),
+            solver: StageSolver::new(system, initial, forces, sweeps),
             acceleration_offset: zero.clone(),
             velocity_offset: zero.clone(),
             mean_velocity: zero.clone(),
@@ -109,7 +108,8 @@ impl<const D: usize> GeneralizedAlpha<D> {
             &mut self.mean_velocity,
             &mut solver.displacement,
             &solver.contact,
-            forces.unbalance.at(level_time),
+            forces,
+            level_time,
         );
     }
 
@@ -130,10 +130,8 @@ impl<const D: usize> GeneralizedAlpha<D> {
                 acceleration_offset[i][dof] = sum(c.acceleration);
                 velocity_offset[i][dof] = sum(c.velocity);
                 // The predictor is for the contacts alone.
-                if Freedoms::<D>::concerns_contact(dof) {
-                    x[i][dof] = c.step_to_level.mul_add(c.half_step.mul_add(a0, v0), x0);
-                    v[i][dof] = c.step_to_level.mul_add(a0, v0);
-                }
+                x[i][dof] = c.step_to_level.mul_add(c.half_step.mul_add(a0, v0), x0);
+                v[i][dof] = c.step_to_level.mul_add(a0, v0);
             }
         }
     }

@@ -43,9 +43,9 @@ pub(super) struct StageSolver<const D: usize> {
     right: NodalField<D>,
     /// What the way inwards leaves for the way outwards.
     between: NodalVector<D>,
-    /// Displacements of the stage: the predictor of the lateral ones before a solve, the solution after it.
+    /// Displacements of the stage: the predictor before a solve, the solution after it.
     pub(super) displacement: NodalField<D>,
-    /// The predictor of the lateral velocities and the twist's.
+    /// The predictor of the velocities.
     pub(super) velocity: NodalField<D>,
     /// Displacements of the sweep before.
     previous: NodalField<D>,
@@ -56,6 +56,8 @@ pub(super) struct StageSolver<const D: usize> {
     change: SweepChange,
     /// Largest normal forces in the solves of a step.
     peaks: Vec<Four>,
+    /// Room for the normal forces of a solve.
+    normal_forces: Vec<Four>,
 }
 
 /// How far the contact sweeps of a run were from convergence.
@@ -122,7 +124,7 @@ impl<const D: usize> StageMatrix<D> {
         Ok(Self {
             factor: Factor::new(&matrix)?,
             coefficients,
-            compliance: forces.compliance(&matrix.inverse_diagonal()?),
+            compliance: forces.compliance(&matrix.inverse_bands()?),
             held_values: held
                 .map(|(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
                 .collect(),
@@ -131,7 +133,12 @@ impl<const D: usize> StageMatrix<D> {
 }
 
 impl<const D: usize> StageSolver<D> {
-    pub(super) fn new(system: &DynamicSystem<D>, initial: &[[f64; D]], sweeps: u32) -> Self {
+    pub(super) fn new(
+        system: &DynamicSystem<D>,
+        initial: &[[f64; D]],
+        forces: &Forces<D>,
+        sweeps: u32,
+    ) -> Self {
         let zero = NodalField::zeros(initial.len());
         Self {
             mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
@@ -143,10 +150,11 @@ impl<const D: usize> StageSolver<D> {
             displacement: zero.clone(),
             velocity: zero.clone(),
             previous: zero,
-            contact: ContactForces::none(initial.len()),
+            contact: ContactForces::none(forces),
             monitor: SweepMonitor::default(),
             change: SweepChange::default(),
             peaks: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
+            normal_forces: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
         }
     }
 
@@ -218,7 +226,7 @@ impl<const D: usize> StageSolver<D> {
             }
         }
         self.change.merge(change);
-        self.contact.add_to_peaks(&mut self.peaks);
+        self.contact.add_to_peaks(&mut self.peaks, &mut self.normal_forces);
         self.monitor.largest_change = self.monitor.largest_change.max(change.lateral);
         self.monitor.loose_solves += u64::from(!change.is_within(&LOOSE));
     }

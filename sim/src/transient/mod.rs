@@ -21,6 +21,7 @@ mod histories;
 mod implicit;
 mod rk4;
 mod run;
+mod segments;
 mod snapshots;
 mod stability;
 

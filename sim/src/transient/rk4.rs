@@ -78,6 +78,7 @@ pub(super) struct StepCollapsed;
 impl<const D: usize> Rk4<D> {
     pub(super) fn new(
         system: &DynamicSystem<D>,
+        forces: &Forces<D>,
         largest_step: f64,
         tolerance: Option<f64>,
         hole_radius: f64,
@@ -101,7 +102,7 @@ impl<const D: usize> Rk4<D> {
             external: zero,
             right: NodalField::zeros(n),
             between: vec![[0.0; D]; n],
-            contact: ContactForces::none(n),
+            contact: ContactForces::none(forces),
             rejected: 0,
             steps: 0,
             step_range: [f64::INFINITY, 0.0],
@@ -220,7 +221,7 @@ impl<const D: usize> Rk4<D> {
             self.mass.solve_field(&self.right, &mut self.between, &mut self.rates[stage].1);
             self.rates[stage].0.copy_from(v);
             if let Some(ledger) = &mut ledger {
-                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces.unbalance.at(stage_time));
+                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces, stage_time);
             }
         }
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {

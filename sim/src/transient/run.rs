@@ -223,7 +223,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 }
                 let largest = stepping.step.min(BELOW_RK4_LIMIT * rk4_limit);
                 let largest = if stepping.tolerance.is_none() { stepping.step } else { largest };
-                Stepper::Rk4(Box::new(Rk4::new(&system, largest, stepping.tolerance, hole_radius)?))
+                Stepper::Rk4(Box::new(Rk4::new(&system, &forces, largest, stepping.tolerance, hole_radius)?))
             }
         };
         // A step may end beyond the block.
@@ -249,12 +249,13 @@ impl<'m, const D: usize> Run<'m, D> {
             },
             model,
             system,
+            contact: ContactForces::none(&forces),
+            snapshots: Recorder::new(model, &forces, of_a_step),
             forces,
             initial: start,
             rest,
             stepper,
             ledger,
-            contact: ContactForces::none(model.node_count()),
             samples,
             grid,
             tolerances,
@@ -268,7 +269,6 @@ impl<'m, const D: usize> Run<'m, D> {
                 .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
                 .collect(),
             bit: bit_beside(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
-            snapshots: Recorder::new(model, of_a_step),
         };
         run.start()?;
         Ok(run)
@@ -409,7 +409,7 @@ impl<'m, const D: usize> Run<'m, D> {
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
         state.acceleration.copy_from_nodes(&right);
         state.stage_power =
-            self.ledger.power(&state.velocity, &state.displacement, contact, self.forces.unbalance.at(0.0));
+            self.ledger.power(&state.velocity, &state.displacement, contact, &self.forces, 0.0);
         self.observe([0.0; 2]);
         Ok(())
     }

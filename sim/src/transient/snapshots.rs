@@ -131,7 +131,7 @@ pub(super) struct Recorder<const D: usize> {
 
 impl<const D: usize> Recorder<D> {
     /// One for a run of `model`, whose steps span at most `samples_of_a_step` samples; none where no snapshots are asked for.
-    pub(super) fn new(model: &Model, samples_of_a_step: u64) -> Option<Self> {
+    pub(super) fn new(model: &Model, forces: &Forces<D>, samples_of_a_step: u64) -> Option<Self> {
         let times = SnapshotTimes::of(&model.scenario)?;
         let nodes = model.node_count();
         let mut block = SnapshotBlock::new(SnapshotSeries::of(model));
@@ -146,7 +146,7 @@ impl<const D: usize> Recorder<D> {
             most: most as usize,
             displacement: NodalField::zeros(nodes),
             velocity: NodalField::zeros(nodes),
-            contact: ContactForces::none(nodes),
+            contact: ContactForces::none(forces),
             whole: vec![[0.0; DOFS]; nodes],
         })
     }

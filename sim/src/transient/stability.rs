@@ -5,11 +5,12 @@ use drillsweep_scenario::{Integrator, TimeStepping};
 use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
-use crate::contact::ContactNode;
+use crate::beam::ElementVector;
+use crate::contact::{ContactNode, ContactSegment, whole_segment};
 use crate::effect::structural_damping;
 use crate::freedom::{DOFS, LATERAL, THETA_Z, U, V};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
-use crate::model::Model;
+use crate::model::{Model, add_element_vector, element_values};
 use crate::motion::DynamicSystem;
 use crate::statics::Equilibrium;
 use crate::string::MeshNode;
@@ -87,7 +88,7 @@ pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u
     subdivisions(model, &system, &unloaded.normal_force, stepping).unwrap_or(MOST_SUBDIVISIONS)
 }
 
-/// By how much a sweep can multiply an error of the displacements when every node is in the wall, and the node that it is largest at,
+/// By how much a sweep can multiply an error of the displacements when every node or element is in the wall, and the node that it is largest at,
 /// from 0. A sweep changes the force f of a node to the one that agrees with its motion x as far as the node's own compliance g moves it,
 /// `f' = (s x + s g f) / (1 + s g)` with the wall's slope `s = K_c + c_v C_c`; with `x = -A0^-1 f` for all nodes together that is
 /// `f' = -s / (1 + s g) (A0^-1 - g) f`, so that only what nodes do to each other is left. Friction counts as a damper where it rises with
@@ -107,24 +108,57 @@ fn sweep_factor(
     let law = model.wall.law();
     let (stiffness, damping) = (contact.stiffness, coefficients.velocity * contact.unit_damping());
     let matrix = coefficients.matrix(system);
-    let inverse = matrix.inverse_diagonal()?;
+    let inverse = matrix.inverse_bands()?;
+    let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
+    let slopes = |wall: &ContactNode<f64>, force: f64| {
+        let friction = law.friction_slope(model.rotation_speed * wall.contact_radius).max(0.0);
+        let friction = coefficients.velocity * force * friction;
+        let lateral = stiffness * wall.stiffness_share + damping * wall.damping_share + friction;
+        (lateral, friction * wall.contact_radius * wall.contact_radius)
+    };
     // Of every node: the slopes of its force laterally and about its axis, and its own compliances.
     let sites: Vec<[(f64, f64); 2]> = model
         .mesh
         .nodes
         .iter()
         .zip(normal_force)
-        .zip(&inverse)
+        .zip(&inverse.diagonal)
         .map(|((node, force), inverse)| {
-            let radius = node.contact_radius;
-            let slope = law.friction_slope(model.rotation_speed * radius).max(0.0);
-            let friction = coefficients.velocity * force * slope;
-            let lateral = stiffness * node.stiffness_share + damping * node.damping_share + friction;
-            let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
+            let site = node.site();
+            // Along elements, nodes have no share of the force.
+            let force = if site.stiffness_share > 0.0 { *force } else { 0.0 };
+            let (lateral, twist) = slopes(&site, force);
             [
                 (lateral, own(0.5 * (inverse[(U, U)] + inverse[(V, V)]))),
-                (friction * radius * radius, own(inverse[(THETA_Z, THETA_Z)])),
+                (twist, own(inverse[(THETA_Z, THETA_Z)])),
             ]
+        })
+        .collect();
+    let segments: Vec<ClosedSegment> = model
+        .wall
+        .segments()
+        .iter()
+        .enumerate()
+        .map(|(element, segment)| {
+            let force = 0.25 * (normal_force[element] + normal_force[element + 1]);
+            let compliance = |place: (usize, usize), column: (usize, usize)| {
+                let (row_node, column_node) = (element + place.0, element + column.0);
+                if system.held[row_node][place.1] || system.held[column_node][column.1] {
+                    return 0.0;
+                }
+                let block = match (place.0, column.0) {
+                    (0, 1) => &inverse.upper[element],
+                    (1, 0) => return inverse.upper[element][(column.1, place.1)],
+                    _ => &inverse.diagonal[row_node],
+                };
+                block[(place.1, column.1)]
+            };
+            ClosedSegment::new(
+                element,
+                segment,
+                |wall| slopes(wall, force),
+                |row, column| own(compliance(row, column)),
+            )
         })
         .collect();
     let solver = Factor::new(&matrix)?;
@@ -137,44 +171,149 @@ fn sweep_factor(
             }
         })
         .collect();
+    let mut points: Vec<[[f64; 3]; 2]> =
+        (0..segments.len()).map(|element| segments[element].displacements(&x)).collect();
     let mut forces = x.clone();
+    let mut along = points.clone();
     let (mut factor, mut node) = (0.0, 0);
     for _ in 0..SWEEP_ITERATIONS {
         let pushed = |(slope, own): (f64, f64), x: f64| slope / slope.mul_add(own, 1.0) * x;
-        for (((force, x), &[lateral, twist]), held) in forces.iter_mut().zip(&x).zip(&sites).zip(&system.held)
-        {
+        for ((force, x), &[lateral, twist]) in forces.iter_mut().zip(&x).zip(&sites) {
             *force =
                 lateral_and_twist([pushed(lateral, x[U]), pushed(lateral, x[V])], pushed(twist, x[THETA_Z]));
-            for (value, _) in force.iter_mut().zip(held).filter(|(_, held)| **held) {
-                *value = 0.0;
-            }
+        }
+        for ((force, x), segment) in along.iter_mut().zip(&points).zip(&segments) {
+            *force = segment.pushed(x);
         }
         // The held top node never touches.
         forces[0] = [0.0; DOFS];
         x.clone_from_slice(&forces);
+        for (force, segment) in along.iter().zip(&segments) {
+            segment.add_loads(force, &mut x);
+        }
+        for (x, held) in x.iter_mut().zip(&system.held) {
+            for (value, _) in x.iter_mut().zip(held).filter(|(_, held)| **held) {
+                *value = 0.0;
+            }
+        }
         solver.solve_in_place(&mut x);
+        for ((points, force), segment) in points.iter_mut().zip(&along).zip(&segments) {
+            *points = segment.displacements(&x);
+            segment.subtract_own(force, points);
+        }
         for ((x, force), &[(_, lateral), (_, twist)]) in x.iter_mut().zip(&forces).zip(&sites) {
             *x = lateral_and_twist(
                 [x[U] - lateral * force[U], x[V] - lateral * force[V]],
                 x[THETA_Z] - twist * force[THETA_Z],
             );
         }
-        // Twist counts by the way of the surface.
-        let size = |(x, node): (&[f64; DOFS], &MeshNode)| {
-            x[U].hypot(x[V]).max(node.contact_radius * x[THETA_Z].abs())
+        // Twist counts by the way of the surface. Displacements count where something pushes.
+        let of_node = |((x, node), site): ((&[f64; DOFS], &MeshNode), &[(f64, f64); 2])| {
+            let size = x[U].hypot(x[V]).max(node.contact_radius * x[THETA_Z].abs());
+            if site[0].0 > 0.0 { size } else { 0.0 }
         };
-        (node, factor) = x
-            .iter()
-            .zip(&model.mesh.nodes)
-            .map(size)
-            .enumerate()
-            .fold((0, 0.0), |most, (node, size)| if size > most.1 { (node, size) } else { most });
+        let nodes = x.iter().zip(&model.mesh.nodes).zip(&sites).map(of_node).enumerate();
+        let of_segment = |(x, segment): (&[[f64; 3]; 2], &ClosedSegment)| {
+            let size = |x: &[f64; 3]| x[0].hypot(x[1]).max(segment.radius * x[2].abs());
+            (segment.element, size(&x[0]).max(size(&x[1])))
+        };
+        let sizes = nodes.chain(points.iter().zip(&segments).map(of_segment));
+        (node, factor) = sizes.fold((0, 0.0), |most, size| if size.1 > most.1 { size } else { most });
         if factor == 0.0 {
             break;
         }
-        x.as_flattened_mut().iter_mut().for_each(|value| *value /= factor);
+        let values = x.as_flattened_mut().iter_mut();
+        values.chain(points.as_flattened_mut().as_flattened_mut()).for_each(|value| *value /= factor);
     }
     Ok((factor, node))
+}
+
+/// An element in the wall with its whole length, at its two Gauss points.
+struct ClosedSegment {
+    element: usize,
+    radius: f64,
+    /// Displacements of each point along u, along v and about the axis by the nodal values.
+    rows: [[ElementVector; 3]; 2],
+    /// Slopes of each point's force laterally \[N/m\] and about the axis \[N m\].
+    slopes: [(f64, f64); 2],
+    /// Lateral displacement by a lateral force, between the points \[m/N\]; zero if forces are not implicit.
+    lateral: [[f64; 2]; 2],
+    /// Twist by torque, between the points \[rad/(N m)\].
+    twist: [[f64; 2]; 2],
+}
+
+impl ClosedSegment {
+    /// Of an element with the slopes of a point's force, and the compliances of its nodes by (node of the element, degree of freedom).
+    fn new(
+        element: usize,
+        segment: &ContactSegment<f64>,
+        slopes: impl Fn(&ContactNode<f64>) -> (f64, f64),
+        compliance: impl Fn((usize, usize), (usize, usize)) -> f64,
+    ) -> Self {
+        let points = whole_segment(segment);
+        let rows = points.map(|(rows, _)| rows);
+        let between = |row: &ElementVector, column: &ElementVector| {
+            let nonzero = |values: &ElementVector| -> Vec<(usize, f64)> {
+                values.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect()
+            };
+            let columns = nonzero(column);
+            let products = nonzero(row)
+                .into_iter()
+                .flat_map(|(i, a)| columns.iter().map(move |&(j, b)| (i, j, a * b)).collect::<Vec<_>>());
+            products
+                .map(|(i, j, product)| product * compliance((i / DOFS, i % DOFS), (j / DOFS, j % DOFS)))
+                .sum::<f64>()
+        };
+        let pairs = |dof: usize| [0, 1].map(|i| [0, 1].map(|j| between(&rows[i][dof], &rows[j][dof])));
+        let (u, v) = (pairs(0), pairs(1));
+        Self {
+            element,
+            radius: segment.wall.contact_radius,
+            slopes: points.map(|(_, wall)| slopes(&wall)),
+            lateral: [0, 1].map(|i| [0, 1].map(|j| 0.5 * (u[i][j] + v[i][j]))),
+            twist: pairs(2),
+            rows,
+        }
+    }
+
+    fn displacements(&self, x: &[[f64; DOFS]]) -> [[f64; 3]; 2] {
+        let values = element_values(x, self.element);
+        self.rows.each_ref().map(|rows| rows.each_ref().map(|row| row.dot(&values)))
+    }
+
+    /// Forces of both points that agree with displacements without them.
+    fn pushed(&self, x: &[[f64; 3]; 2]) -> [[f64; 3]; 2] {
+        let mut forces = [[0.0; 3]; 2];
+        for dof in 0..3 {
+            let slope = self.slopes.map(|(lateral, twist)| if dof < 2 { lateral } else { twist });
+            let own = if dof < 2 { &self.lateral } else { &self.twist };
+            let [[a, b], [c, d]] =
+                [0, 1].map(|i| [0, 1].map(|j| slope[i] * own[i][j] + if i == j { 1.0 } else { 0.0 }));
+            let right = [0, 1].map(|i| slope[i] * x[i][dof]);
+            let determinant = a * d - b * c;
+            forces[0][dof] = (d * right[0] - b * right[1]) / determinant;
+            forces[1][dof] = (a * right[1] - c * right[0]) / determinant;
+        }
+        forces
+    }
+
+    fn add_loads(&self, force: &[[f64; 3]; 2], loads: &mut [[f64; DOFS]]) {
+        for (rows, force) in self.rows.iter().zip(force) {
+            for (row, force) in rows.iter().zip(force) {
+                add_element_vector(loads, self.element, &(row * *force));
+            }
+        }
+    }
+
+    /// Takes out of displacements what the forces of both points make of them.
+    fn subtract_own(&self, force: &[[f64; 3]; 2], x: &mut [[f64; 3]; 2]) {
+        for i in 0..2 {
+            for dof in 0..3 {
+                let own = if dof < 2 { &self.lateral[i] } else { &self.twist[i] };
+                x[i][dof] -= own[0] * force[0][dof] + own[1] * force[1][dof];
+            }
+        }
+    }
 }
 
 /// What contact concerns of a node; zero where it does not.
@@ -204,6 +343,16 @@ fn largest_ratio(
 ) -> Result<f64, SingularBlock> {
     let mass = mass_factor(system)?;
     let n = model.node_count();
+    let along: Vec<_> = model
+        .wall
+        .segments()
+        .iter()
+        .zip(&model.elements)
+        .map(|(segment, element)| {
+            let per_length = closed(&segment.wall) / segment.length;
+            element.chord.matrix_to_nodes(&element.beam.lateral_mass()) * per_length
+        })
+        .collect();
     let mut x: Vec<[f64; DOFS]> =
         (0..n).map(|i| std::array::from_fn(|dof| if (i + dof) % 2 == 0 { 1.0 } else { -0.9 })).collect();
     let mut product = vec![[0.0; DOFS]; n];
@@ -218,6 +367,14 @@ fn largest_ratio(
         for (node, site) in model.wall.touchable() {
             product[node][U] += closed(site) * x[node][U];
             product[node][V] += closed(site) * x[node][V];
+        }
+        for (e, wall) in along.iter().enumerate() {
+            add_element_vector(&mut product, e, &(wall * element_values(&x, e)));
+        }
+        for (product, held) in product.iter_mut().zip(&system.held) {
+            for (value, _) in product.iter_mut().zip(held).filter(|(_, held)| **held) {
+                *value = 0.0;
+            }
         }
         largest = dot(&x, &product) / mass_norm(&system.mass, &x);
         mass.solve_in_place(&mut product);

@@ -8,7 +8,7 @@ use crate::effect::{
 };
 use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
-use crate::model::{Model, NodalVector, add_element_matrix, clear_held};
+use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, clear_held};
 use crate::statics::Equilibrium;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
@@ -93,6 +93,10 @@ impl Model {
         }
         let held = self.held_without(still);
         let mut load = self.constant_load(&equilibrium.drag);
+        for (e, element) in self.elements.iter().enumerate() {
+            let of_slopes = element.load_of_slopes(equilibrium.tension[e], equilibrium.torque[e]);
+            add_element_vector(&mut load, e, &-of_slopes);
+        }
         move_held_to_load(&stiffness, &held, &equilibrium.displacement, &mut load);
         for matrix in [&mut mass, &mut damping, &mut stiffness].into_iter().chain(&mut damping_of) {
             clear_held(matrix, &held);

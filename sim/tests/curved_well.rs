@@ -262,3 +262,62 @@ fn base_case_rests_as_in_the_paper() {
         assert!(*force <= 1.0e7 * penetration * (1.0 + 1e-9) && *force >= 0.5e7 * penetration);
     }
 }
+
+#[test]
+fn tension_in_an_arc_is_a_load_along_the_element() {
+    // 7.5 deg in 30 m, horizontal: to the right of the string, so that the axis bends towards +v.
+    let model = Model::new(&horizontal_arc(7.5)).expect("valid");
+    let curvature = (7.5_f64 / 30.0).to_radians();
+    for element in &model.elements {
+        let length = element.chord.length;
+        // A load w in the plane of v has the end moments -+ w l^2 / 12 about -e1, which T kappa needs in addition to what the chords' directions
+        // make of T: on the left-hand side, loads are negative.
+        let moment = curvature * length * length / 12.0;
+        let load = element.load_of_slopes(1.0, 0.0);
+        let small = 1e-3 * moment;
+        for (dof, value) in load.iter().enumerate() {
+            let wanted = match dof {
+                3 => moment,
+                9 => -moment,
+                _ => 0.0,
+            };
+            assert!((value.abs() - wanted.abs()).abs() < small, "{dof}: {value} for {wanted}");
+        }
+        assert!(load[3] * load[9] < 0.0);
+    }
+}
+
+/// Displacements of the free end of a pipe of 40 m in a slight arc, without wall and weight, under a pull and a torque: so slight that the angles of
+/// chords and tangents, (kappa l)^2 / 8, do not count.
+fn end_in_an_arc(elements: u32, [pull, torque]: [f64; 2]) -> [f64; 2] {
+    let mut scenario = horizontal_arc(0.1);
+    scenario.string.sections.truncate(1);
+    scenario.string.sections[0].length = 40.0;
+    scenario.string.gauges.clear();
+    scenario.string.unbalance.clear();
+    scenario.mud = None;
+    scenario.recording.nodes.clear();
+    let operation = &mut scenario.operation;
+    (operation.rotation_speed_rpm, operation.weight_on_bit, operation.torque_on_bit) = (0.0, pull, torque);
+    for effect in [Effect::Contact, Effect::Gravity, Effect::WellBending] {
+        scenario.effects.set(effect, Switch::Off);
+    }
+    scenario.mesh.lengths_mut().expect("has target lengths").drillpipe = 40.0 / f64::from(elements);
+    let model = Model::new(&scenario).expect("valid");
+    let rest = Equilibrium::find(&model).expect("rests");
+    let [u, v, ..] = rest.displacement[model.node_count() - 1];
+    [u, v]
+}
+
+#[test]
+fn displacements_in_an_arc_converge_at_fourth_order() {
+    for (loads, dof) in [([4e3, 0.0], 1), ([0.0, -3e3], 0)] {
+        let at_end = |elements| end_in_an_arc(elements, loads)[dof];
+        let limit = at_end(128);
+        let errors = [4, 8, 16].map(|elements| (at_end(elements) / limit - 1.0).abs());
+        // Between third and fifth order; without the loads on the slopes errors are of second order.
+        for pair in errors.windows(2) {
+            assert!((8.0..32.0).contains(&(pair[0] / pair[1])), "{loads:?}: {errors:?}");
+        }
+    }
+}

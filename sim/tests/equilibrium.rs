@@ -265,7 +265,18 @@ fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
     let mut largest = forces.as_flattened().iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     for (e, element) in model.elements.iter().enumerate() {
         let q = element_values(&rest.displacement, e);
-        let inner = element.stiffness(element.tension_row.dot(&q), element.torque_row.dot(&q)) * q;
+        let (tension, torque) = (element.tension_row.dot(&q), element.torque_row.dot(&q));
+        let mut inner = element.stiffness(tension, torque) * q;
+        // Tension and torque on the slopes of the hole's axis.
+        let slopes = element.chord.tangent_rotations(&model.frames[e], &model.frames[e + 1]);
+        for (is_active, unit, value) in [
+            (model.effects.axial_stiffening, element.beam.tension_stiffening(), tension),
+            (model.effects.torque_stiffening, element.beam.torque_stiffening(), torque),
+        ] {
+            if is_active {
+                inner += element.chord.vector_to_nodes(&(unit * slopes)) * value;
+            }
+        }
         largest = largest.max(inner.amax());
         for (i, force) in inner.iter().enumerate() {
             forces[e + i / 6][i % 6] -= force;

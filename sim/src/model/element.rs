@@ -25,6 +25,10 @@ pub struct StringElement {
     pub tension_unit: Option<ElementMatrix>,
     /// Stiffening by a torque of 1 N m; absent where the effect is off.
     pub torque_unit: Option<ElementMatrix>,
+    /// Loads, on the left-hand side, of a tension of 1 N on the slopes that the hole's axis has against the chord; zero if the effect is off.
+    pub tension_load: ElementVector,
+    /// The same of a torque of 1 N m.
+    pub torque_load: ElementVector,
     /// Stiffness of the flows, end term included; absent where the effect is off.
     pub flow: Option<ElementMatrix>,
     /// T = `tension_row` . q \[N\].
@@ -85,8 +89,15 @@ impl StringElement {
         let distributed = std::array::from_fn(|axis| weight[axis] + terms.distributed[axis]);
         let load = beam.distributed_load(distributed) + terms.nodal;
         let to_nodes = |matrix: ElementMatrix| chord.matrix_to_nodes(&matrix);
+        let initial_slopes = chord.tangent_rotations(input.frames[0], input.frames[1]);
+        let of_slopes = |unit: &Option<ElementMatrix>| {
+            let load = unit.map_or(ElementVector::zeros(), |unit| unit * initial_slopes);
+            chord.vector_to_nodes(&load)
+        };
         Self {
             elastic: to_nodes(stiffness),
+            tension_load: of_slopes(&terms.by_tension),
+            torque_load: of_slopes(&terms.by_torque),
             tension_unit: terms.by_tension.map(to_nodes),
             torque_unit: terms.by_torque.map(to_nodes),
             flow: terms.stiffness.map(to_nodes),
@@ -100,6 +111,14 @@ impl StringElement {
             beam,
             chord,
         }
+    }
+
+    /// Loads, on the left-hand side, of tension \[N\] and torque \[N m\] on the slopes of the hole's axis against the chord, T K_s theta0 + T0 K_t theta0
+    /// (docs/model/beam.md, Tension and torque in a curved hole).
+    ///
+    /// The chords alone carry the lateral load T kappa as forces at the nodes; this is what makes it a load along the element.
+    pub fn load_of_slopes(&self, tension: f64, torque: f64) -> ElementVector {
+        self.tension_load * tension + self.torque_load * torque
     }
 
     /// Stiffness at a given tension \[N\] and torque \[N m\].

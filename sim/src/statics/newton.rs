@@ -195,13 +195,15 @@ pub(super) fn linearise_with(
         let tension = element.tension_row.dot(&q);
         let torque = element.torque_row.dot(&q);
         let mut stiffness = element.stiffness(tension, torque);
-        add_element_vector(&mut residual, e, &-(stiffness * q));
+        let forces = stiffness * q + element.load_of_slopes(tension, torque);
+        add_element_vector(&mut residual, e, &-forces);
         // T and T0 are linear in the displacements: their own change belongs to the tangent.
-        for (unit, row) in
-            [(&element.tension_unit, &element.tension_row), (&element.torque_unit, &element.torque_row)]
-        {
+        for (unit, of_slopes, row) in [
+            (&element.tension_unit, &element.tension_load, &element.tension_row),
+            (&element.torque_unit, &element.torque_load, &element.torque_row),
+        ] {
             if let Some(unit) = unit {
-                let forces: ElementVector = unit * q;
+                let forces: ElementVector = unit * q + of_slopes;
                 let change: ElementMatrix = forces * row.transpose();
                 stiffness += change;
             }

@@ -13,6 +13,7 @@ use drillsweep_sim::modes::{
     InstabilityKind, ModeKind, ModeSearch, Stability, UndampedTorsion, modes, stability,
 };
 use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::string::MeshElement;
 use drillsweep_sim::study::cost::Measure;
 use drillsweep_sim::study::finer::{Verdict, ask};
 use drillsweep_sim::transient::{EnergyRow, NodeHistory, Outcome, Records, Transient};
@@ -53,9 +54,16 @@ impl Scene {
             );
         }
         let contact = &scenario.contact;
-        for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts).skip(1) {
-            // Half the stiffness at least, and the damper's part of the force is on the way in.
-            let deepest = contacts.largest_normal_force / (0.5 * contact.stiffness * node.stiffness_share);
+        let elements = &scene.model.mesh.elements;
+        let nodes = scene.model.mesh.nodes.iter().zip(&scene.records.contacts).enumerate();
+        for (i, (node, contacts)) in nodes.skip(1) {
+            // Half the stiffness at least, and the damper's part of the force is on the way in. Of a wall along the elements a node carries half of each
+            // adjoining one, or less next to an end of the contact.
+            let half = |element: Option<&MeshElement>| element.map_or(0.0, |element| 0.5 * element.length);
+            let along =
+                contact.stiffness_of_a_metre() * 0.5 * (half(elements.get(i - 1)) + half(elements.get(i)));
+            let stiffness = if node.stiffness_share > 0.0 { contact.stiffness } else { along };
+            let deepest = contacts.largest_normal_force / (0.5 * stiffness);
             let penetration = contacts.largest_radius() - node.clearance;
             assert!(penetration <= deepest + 1e-9, "{}: {penetration} m for {contacts:?}", scenario.name);
         }

@@ -495,23 +495,70 @@ fn a_lane_has_the_bits_of_a_node_alone() {
     }
 }
 
+/// Over laws, responses and speeds where the solution is the only one, bisection finds the same friction.
 #[test]
 fn a_sliding_speed_that_gives_way_solves_its_equation() {
-    for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3), (2.0, 1.0)] {
-        let law = ContactLaw { static_friction, dynamic_friction, ..SOFT };
-        let parameters = parameters(&law);
-        // Up to where friction falls faster than the speed gives way, the solution is the only one.
-        for response in [0.0, 1e-4, 1e-3, 1e-2, 0.05] {
-            for unopposed in [0.0, 1e-4, 3e-3, 0.03, 0.1, 0.5, -0.02, -2.0] {
-                let speed: f64 = parameters.opposed_sliding_speed(unopposed, response);
-                let left = speed + response * parameters.friction_coefficient(speed) - unopposed;
-                assert!(left.abs() < 1e-9, "{law:?}, {response}, {unopposed}: {left:e}");
-                assert!(speed * unopposed >= 0.0 && speed.abs() <= unopposed.abs());
+    for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3), (0.3, 0.29), (2.0, 1.0)] {
+        for friction_reference_speed in [1e-4, 0.033, 1.0] {
+            let law = ContactLaw { static_friction, dynamic_friction, friction_reference_speed, ..SOFT };
+            let parameters: ContactParameters<f64> = parameters(&law);
+            let fast = parameters.fast_sliding();
+            let powers =
+                |from: i32, to: i32| (8 * from..=8 * to).map(|eighth| 10_f64.powf(f64::from(eighth) / 8.0));
+            for (response, unopposed) in powers(-4, 4).flat_map(|r| powers(-5, 1).map(move |u| (r, u * fast)))
+            {
+                let response = response * law.friction_reference_speed;
+                let left = |speed: f64| speed + response * parameters.friction_coefficient(speed) - unopposed;
+                let rises = |speed: f64| 1.0 + response * parameters.friction_slope(speed) > 0.05;
+                if !powers(-3, 1).all(|speed| rises(speed * fast)) {
+                    continue;
+                }
+                let (mut below, mut above) = (0.0, unopposed);
+                for _ in 0..60 {
+                    let middle = 0.5 * (below + above);
+                    if left(middle) < 0.0 { below = middle } else { above = middle }
+                }
+                let exact = parameters.friction_coefficient(above);
+                for sign in [1.0, -1.0] {
+                    let speed = parameters.opposed_sliding_speed(sign * unopposed, response);
+                    assert!(speed * sign >= 0.0 && speed.abs() <= unopposed);
+                    let error =
+                        (parameters.friction_coefficient(speed) - sign * exact).abs() / static_friction;
+                    assert!(error < 1e-8, "{law:?}, {response}, {unopposed}: {error:e}");
+                }
             }
         }
-        // A stiff node is held: its speed is what the slope at rest allows.
-        let speed: f64 = parameters.opposed_sliding_speed(0.1, 100.0);
-        assert!((speed / (0.1 / (1.0 + 100.0 * parameters.friction_slope(0.0))) - 1.0).abs() < 0.1);
+    }
+}
+
+/// Where friction falls faster than the speed gives way, the solution is that nearest to rest.
+#[test]
+fn a_node_that_could_stick_or_slide_sticks() {
+    let parameters: ContactParameters<f64> =
+        parameters(&ContactLaw { static_friction: 0.3, dynamic_friction: 0.1, ..SOFT });
+    for response in [3.0, 30.0, 300.0] {
+        let peak = (1..2000)
+            .map(|i| 1e-4 * f64::from(i))
+            .map(|speed| speed + response * parameters.friction_coefficient(speed));
+        let most = peak.clone().zip(peak.skip(1)).find(|(now, next)| next < now).unwrap().0;
+        for unopposed in [0.1, 0.5, 0.9].map(|share| share * most) {
+            let speed = parameters.opposed_sliding_speed(unopposed, response);
+            let left = speed + response * parameters.friction_coefficient(speed) - unopposed;
+            assert!(left.abs() < 1e-7 * unopposed, "{response}, {unopposed}: {left:e}");
+            assert!(parameters.friction_slope(speed) > 0.0, "{response}, {unopposed}: slides at {speed}");
+        }
+    }
+}
+
+/// A lane that has converged does not change while its neighbours iterate on.
+#[test]
+fn opposed_lanes_are_independent() {
+    let one = parameters(&SOFT);
+    let four = one.in_lanes::<Four>();
+    let (unopposed, response) = ([0.5, 1e-3, -0.3, 0.08], [1.3, 2e-2, 0.2, 1e-5]);
+    let together = four.opposed_sliding_speed(Four::new(unopposed), Four::new(response));
+    for lane in 0..4 {
+        assert_eq!(together.lane(lane), one.opposed_sliding_speed(unopposed[lane], response[lane]));
     }
 }
 

@@ -78,8 +78,8 @@ pub enum ComputeError {
     /// The run in time cannot be set up.
     #[error(transparent)]
     Transient(TransientError),
-    /// The run in time failed; beside it, whether the scene itself is unstable.
-    #[error("{error}; {}", .stability.as_ref().map_or_else(String::new, |stability| stability.to_string()))]
+    /// The run in time failed, with whether the scenario's own instability explains it.
+    #[error("{error}; {}", verdict(.error, .stability.as_deref()))]
     Run {
         /// What was seen.
         error: TransientError,
@@ -103,6 +103,17 @@ pub enum ComputeError {
     /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+/// Whether an instability of the scenario explains why a run failed, in words.
+fn verdict(error: &TransientError, stability: Option<&Stability>) -> String {
+    match (error, stability) {
+        (TransientError::Diverged { time, .. }, Some(stability)) => stability.of_divergence_at(*time),
+        (_, Some(stability)) => stability.to_string(),
+        (_, None) => {
+            "the modes about the equilibrium, which would show an instability, were not found".into()
+        }
+    }
 }
 
 impl ComputeError {
@@ -129,7 +140,12 @@ impl ComputeError {
                     TransientError::Diverged { time, node, .. } => (Some(*time), number(Some(*node))),
                     _ => (None, None),
                 };
-                let details = Map::from_iter([("stability".to_owned(), json!(stability))]);
+                let explains = |stability: &Stability| Some(stability.explains_divergence_at(time?));
+                let is_explained = stability.as_deref().and_then(explains);
+                let details = Map::from_iter([
+                    ("stability".to_owned(), json!(stability)),
+                    ("is_explained_by_instability".to_owned(), json!(is_explained)),
+                ]);
                 PointError { time, node, details, ..error }
             }
             // What fails before the first step fails at its time.
@@ -444,7 +460,8 @@ mod tests {
         assert!(time > 0.5 && time < 30.0, "{error}");
         assert!((2..=61).contains(&node), "{error}");
         assert_eq!(error["stability"]["stable"], false, "{error}");
-        assert!(error["reason"].as_str().unwrap().contains("flutter"), "{error}");
+        assert!(error["reason"].as_str().unwrap().contains("physically unstable: flutter"), "{error}");
+        assert_eq!(error["is_explained_by_instability"], true, "{error}");
     }
 
     #[test]

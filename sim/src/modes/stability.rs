@@ -20,6 +20,13 @@ const BAND_HZ: f64 = 20.0;
 /// Growth \[1/s\] below which a mode counts as neither growing nor decaying.
 const NEUTRAL: f64 = 1e-6;
 
+/// Natural logarithm of the growth from which on an unstable mode can be why a run diverged: twentyfold, from a string that vibrates by all of its
+/// clearance, some centimetres, to two hole radii. Vibrations about the equilibrium are smaller and need longer.
+const EXPLAINING_GROWTH: f64 = 3.0;
+
+/// What every verdict on small motions leaves out.
+pub(super) const CONSTANT_TORQUE: &str = "torque on bit is constant: stick-slip at the bit is not judged";
+
 /// The verdict of the linearised equations about the equilibrium, contacts closed, on frequencies up to `complete_to_hz`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -92,21 +99,50 @@ impl fmt::Display for Stability {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.instability {
             None if self.stable == Some(true) => {
-                write!(formatter, "stable about its equilibrium up to {:.0} Hz", self.complete_to_hz)
+                write!(
+                    formatter,
+                    "stable about its equilibrium up to {:.0} Hz; {CONSTANT_TORQUE}",
+                    self.complete_to_hz
+                )
             }
             None => write!(
                 formatter,
-                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}",
+                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}; {CONSTANT_TORQUE}",
                 self.complete_to_hz, self.completeness
             ),
-            Some(unstable) => write!(
-                formatter,
-                "physically unstable: {}, {:.3} Hz, growing with {:.3} 1/s, most at {:.1} m",
-                unstable.kind.in_words(),
-                unstable.frequency_hz,
-                unstable.growth_rate,
-                unstable.measured_depth
+            Some(unstable) => write!(formatter, "physically unstable: {unstable}"),
+        }
+    }
+}
+
+impl fmt::Display for Instability {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "{}, {:.3} Hz, growing with {:.3} 1/s, most at {:.1} m",
+            self.kind.in_words(),
+            self.frequency_hz,
+            self.growth_rate,
+            self.measured_depth
+        )
+    }
+}
+
+impl Stability {
+    /// Whether a mode that grows can be why a run diverged after `time` \[s\].
+    pub fn explains_divergence_at(&self, time: f64) -> bool {
+        self.instability.is_some_and(|unstable| unstable.growth_rate * time >= EXPLAINING_GROWTH)
+    }
+
+    /// The verdict on a run that diverged after `time` \[s\], in words: by which instability, or that none explains it.
+    pub fn of_divergence_at(&self, time: f64) -> String {
+        match &self.instability {
+            Some(_) if self.explains_divergence_at(time) => self.to_string(),
+            Some(unstable) => format!(
+                "numerical or unexplained: what grows fastest about the equilibrium ({unstable}) had grown by a factor of {:.2} by then",
+                (unstable.growth_rate * time).exp()
             ),
+            None => format!("numerical or unexplained: {self}"),
         }
     }
 }
@@ -201,5 +237,41 @@ fn kind(
         3 if moves == ModeKind::Torsional => InstabilityKind::StickSlip,
         3 => InstabilityKind::FrictionWhirl,
         _ => InstabilityKind::Other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_growth_that_had_the_time_explains_a_divergence() {
+        let unstable = Instability {
+            kind: InstabilityKind::StickSlip,
+            growth_rate: 0.657,
+            frequency_hz: 2.2,
+            node: 49,
+            measured_depth: 57.7,
+            growing_modes: 1,
+        };
+        let verdict = Stability {
+            stable: Some(false),
+            complete_to_hz: 20.0,
+            completeness: Completeness::Counted,
+            instability: Some(unstable),
+        };
+        assert!(!verdict.explains_divergence_at(0.023) && !verdict.explains_divergence_at(1.5));
+        let early = verdict.of_divergence_at(0.023);
+        assert!(
+            early.starts_with("numerical or unexplained") && early.contains("a factor of 1.02"),
+            "{early}"
+        );
+        assert_eq!(verdict.of_divergence_at(10.0), verdict.to_string());
+        let stable = Stability { stable: Some(true), instability: None, ..verdict };
+        assert!(
+            stable.of_divergence_at(10.0).starts_with("numerical or unexplained: stable about"),
+            "{stable}"
+        );
+        assert!(stable.to_string().ends_with(CONSTANT_TORQUE));
     }
 }

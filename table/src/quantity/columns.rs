@@ -262,7 +262,7 @@ quantities! {
     UNDAMPED_TORSION_HZ: "undamped_torsion_hz", "", FREQUENCY, "undamped torsion hz";
     /// Growth of that mode's amplitude.
     UNDAMPED_TORSION_GROWTH: "undamped_torsion_growth", "", RATE, "undamped torsion growth";
-    /// Whether small motions about the equilibrium decay; absent where none was found to grow but not all were found.
+    /// Whether small motions about the equilibrium decay while torque on bit is constant; absent where none was found to grow but not all were found.
     STABLE: "stable", "", -, "stable";
     /// How small motions about the equilibrium grow.
     INSTABILITY: "instability", "", -, "instability";
@@ -314,7 +314,7 @@ quantities! {
     TOLERANCE: "tolerance", "", RATIO, "tolerance";
     /// Processor time over simulated time.
     CPU_PER_SIMULATED_SECOND: "cpu_per_simulated_second", "", RATIO, "cpu per simulated second";
-    /// Processor time of RK4 with its usual step over this one's.
+    /// Processor time of RK4 with the longest of its fixed steps over this one's.
     SPEED_OVER_RK4: "speed_over_rk4", "", RATIO, "speed over rk4";
     /// Orbit size of the reference.
     REFERENCE_ORBIT_SIZE: "reference_orbit_size", "", WIDTH, "reference orbit size";

@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_scenario::Problems;
 use drillsweep_sim::admission::validate;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
+use drillsweep_sim::transient::step_problem;
 use drillsweep_worker::calibrate;
 use serde_json::json;
 
@@ -27,6 +29,9 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
     for warning in validate(&scenario)? {
         tracing::warn!("{}: {}", warning.path, warning.message);
+    }
+    if let Some(problem) = step_problem(&scenario) {
+        return Err(Problems::from(problem).into());
     }
     let speed = calibrate()?;
     let plan = Plan::new(&scenario, Some(&speed))?.with_equilibrium(&scenario);

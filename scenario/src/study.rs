@@ -60,8 +60,8 @@ const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StudyReference {
-    /// The two methods; absent means `rk4` with 0.05 ms, or just below its stability limit where that is less, and `esdirk4`
-    /// with 0.125 ms and up to 30 contact sweeps.
+    /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30
+    /// contact sweeps.
     #[serde(default)]
     pub methods: Option<Vec<TimeStepping>>,
     /// Relative difference of orbit size, mean radius and contact force up to which the two agree, above 0 and below 1; 0.01 unless

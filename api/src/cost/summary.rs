@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
-use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, RK4_STEP, StatisticError};
+use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, StatisticError};
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub struct SummaryRow {
     pub radius_deviation: Option<WorstBias>,
     /// Processor time per simulated second; absent where the run failed.
     pub cpu_per_simulated_second: Option<f64>,
-    /// How many times faster than RK4 with steps of 0.05 ms.
+    /// How many times faster than RK4 with steps of [`SummaryRow::rk4_step`].
     pub speed_over_rk4: Option<f64>,
     /// What a named accuracy promises, and whether it keeps it; absent for others.
     pub promise: Option<PromiseCheck>,
@@ -262,16 +262,8 @@ pub fn summary_text(rows: &[SummaryRow]) -> String {
     for row in rows {
         let is_new = !known.contains(&row.scenario.as_str());
         known.push(&row.scenario);
-        // To rounding: the step is a part of the recording interval.
-        let other_step = row.rk4_step.filter(|step| is_new && (step / RK4_STEP - 1.0).abs() > 1e-6);
-        if let Some(step) = other_step {
-            let _ = writeln!(
-                text,
-                "x rk4 of {}: rk4 ran with {}, and its time is scaled to {}",
-                row.scenario,
-                step_text(step),
-                step_text(RK4_STEP)
-            );
+        if let Some(step) = row.rk4_step.filter(|_| is_new) {
+            let _ = writeln!(text, "x rk4 of {}: relative to rk4 with {}", row.scenario, step_text(step));
         }
     }
     text
@@ -351,8 +343,9 @@ mod tests {
             "promises (orbit size and std of radius): draft 8 and 15 %, standard 2 and 5 %, reference 0.3 and 1 %; spurious are \
              lines above a twentieth of the highest"
         );
-        assert_eq!(lines[11], "x rk4 of other: rk4 ran with 40 µs, and its time is scaled to 50 µs");
-        assert_eq!(lines.len(), 12, "{text}");
+        assert_eq!(lines[11], "x rk4 of paper-200m: relative to rk4 with 50 µs");
+        assert_eq!(lines[12], "x rk4 of other: relative to rk4 with 40 µs");
+        assert_eq!(lines.len(), 13, "{text}");
     }
 
     #[test]

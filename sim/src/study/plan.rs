@@ -454,9 +454,9 @@ mod tests {
         });
         let plan = Plan::new(&scenario, Some(&speed)).unwrap();
         let study = plan.study.clone().unwrap();
-        // RK4 at 0.05 ms and ESDIRK4 at 0.125 ms make the reference.
+        // RK4 at a 17th of a millisecond and ESDIRK4 at 0.125 ms make the reference.
         assert_eq!((study.runs, study.simulated_time, study.lines_not_known), (9, 540.0, 0));
-        let steps = 3.0 * (60.0 / 5e-5 + 60.0 / 1.25e-4 + 60.0 / 1e-3);
+        let steps = 3.0 * (60.0 * 17e3 + 60.0 / 1.25e-4 + 60.0 / 1e-3);
         assert!((study.cpu_time.unwrap() / (steps * 297e-6) - 1.0).abs() < 1e-9, "{study:?}");
         assert_eq!(plan.cpu_time(), study.cpu_time);
         // Beside it stands one run of the scenario.

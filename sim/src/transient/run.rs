@@ -42,8 +42,8 @@ pub(crate) const BLOCK_BYTES: u64 = 8 << 20;
 const BLOCK_SAMPLES: u64 = 8192;
 
 /// Part of RK4's stability limit up to which it lengthens its steps by itself: the limit is found by a Rayleigh quotient, which comes from
-/// below and so makes steps too long, if only by 1e-5 in the base case, and modes near half their critical damping are stable up to
-/// 0.94 of it.
+/// below and so makes steps too long, if only by 1e-5 in the base case, and of symmetric matrices, without what gyroscopic moments, flows and
+/// friction add.
 const BELOW_RK4_LIMIT: f64 = 0.95;
 
 /// Hole radii from the axis at which a run has diverged, with a wall. A node there is a whole hole radius deep in the rock, if not more: the

@@ -1,6 +1,7 @@
 //! What limits a step before accuracy does.
 
 use drillsweep_scenario::{Integrator, TimeStepping};
+use nalgebra::Complex;
 
 use super::implicit::StageCoefficients;
 use super::rk4::mass_factor;
@@ -15,13 +16,16 @@ use crate::motion::DynamicSystem;
 use crate::statics::Equilibrium;
 use crate::string::MeshNode;
 
-/// How far from zero RK4's region of stability reaches, over the step: it ends at 2.785 on the negative real axis and at 2 sqrt 2 = 2.828 on the
-/// imaginary one (Hairer and Wanner 1996, section IV.2).
-///
-/// The eigenvalues of `m x'' + c x' + k x = 0` have the modulus (k/m)^(1/2), or less than c/m beyond critical damping, so the larger of the
-/// highest frequency and the highest c/m bounds all of them. From 0.34 to 0.53 of critical damping the region reaches less far,
-/// to 2.616: where damping in proportion to stiffness damps the highest frequency that much, a step at the limit is up to 6 % too long.
+/// Where RK4's region of stability ends on the negative real axis, times the step; on the imaginary one it ends at 2 sqrt 2 = 2.828 (Hairer
+/// and Wanner 1996, section IV.2).
 const RK4_REACH: f64 = 2.785;
+
+/// Least distance from zero at which the region ends on any ray of the left half-plane is 2.616, at half the critical damping; a ray is
+/// searched for its end from this distance to [`RK4_REACH`].
+const RK4_LEAST_REACH: f64 = 2.6;
+
+/// Rays from no to critical damping that are looked at for the largest stable step: neighbours' reaches differ by 2 % at most.
+const RAYS: u32 = 100;
 
 /// Iterations for the highest frequency; the ratio to the next ones is close to one, but the Rayleigh quotient
 /// converges with its square. In the base case they leave 1e-5 of the frequency.
@@ -323,15 +327,48 @@ fn lateral_and_twist([u, v]: [f64; LATERAL], twist: f64) -> [f64; DOFS] {
     values
 }
 
-/// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and from the fastest decay
-/// that its contacts' dampers make.
+/// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and the highest c/m of
+/// `m x'' + c x' + k x = 0` that its damping and its contacts' dampers make.
 pub(super) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
     let contact = &model.scenario.contact;
     let stiffness = |site: &ContactNode<f64>| contact.stiffness * site.stiffness_share;
     let frequency = largest_ratio(model, system, &system.stiffness, stiffness)?.sqrt();
     let damping = |site: &ContactNode<f64>| contact.unit_damping() * site.damping_share;
     let decay = largest_ratio(model, system, system.damping_of(&structural_damping::DISSIPATED), damping)?;
-    Ok(RK4_REACH / frequency.max(decay))
+    Ok(largest_stable_step(frequency, decay))
+}
+
+/// The largest step of RK4 \[s\] that is stable for all modes of frequencies up to `frequency` \[rad/s\] and c/m up to `decay` \[1/s\].
+///
+/// Up to critical damping the eigenvalues of a mode of the damping ratio zeta lie on the ray of the angle acos(-zeta), as far from zero as its
+/// frequency, which is c/m over 2 zeta; beyond, they are real and less than c/m.
+fn largest_stable_step(frequency: f64, decay: f64) -> f64 {
+    let strongest = 0.5 * decay / frequency;
+    (0..=RAYS)
+        .map(|ray| f64::from(ray) / f64::from(RAYS))
+        .chain((strongest <= 1.0).then_some(strongest))
+        .map(|ratio| rk4_reach(ratio) / frequency.min(0.5 * decay / ratio))
+        .fold(RK4_REACH / frequency.max(decay), f64::min)
+}
+
+/// How far RK4's region of stability reaches from zero on the ray of the eigenvalues of damping ratio `ratio`, at most [`RK4_REACH`].
+fn rk4_reach(ratio: f64) -> f64 {
+    let (mut stable, mut beyond) = (RK4_LEAST_REACH, RK4_REACH);
+    if rk4_growth(ratio, beyond) <= 1.0 {
+        return beyond;
+    }
+    while beyond - stable > 1e-6 {
+        let middle = 0.5 * (stable + beyond);
+        if rk4_growth(ratio, middle) <= 1.0 { stable = middle } else { beyond = middle }
+    }
+    stable
+}
+
+/// Growth in a step of a mode of damping ratio `ratio` whose eigenvalues, times the step, have the modulus `reach`: the Taylor polynomial of
+/// degree 4 of the exponential function.
+fn rk4_growth(ratio: f64, reach: f64) -> f64 {
+    let z = Complex::new(-ratio, (1.0 - ratio * ratio).sqrt()) * reach;
+    (1..=4).rev().fold(Complex::from(1.0), |sum, k| 1.0 + sum * z / f64::from(k)).norm()
 }
 
 /// The largest eigenvalue of a matrix with `closed` added at every node in the wall, over the mass.
@@ -401,25 +438,49 @@ fn dot(a: &[[f64; DOFS]], b: &[[f64; DOFS]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Complex;
-
     use super::*;
 
+    /// Largest growth in a step of RK4 of `m x'' + c x' + k x = 0`, from the eigenvalues of its step matrix.
+    fn growth(frequency: f64, decay: f64, step: f64) -> f64 {
+        let a = nalgebra::Matrix2::new(0.0, 1.0, -frequency * frequency, -decay) * step;
+        let one = nalgebra::Matrix2::identity();
+        let matrix = one + a * (one + a * (one + a * (one + a / 4.0) / 3.0) / 2.0);
+        matrix.complex_eigenvalues().iter().fold(0.0, |most: f64, value| most.max(value.norm()))
+    }
+
     #[test]
-    fn rk4_is_stable_as_far_as_is_said() {
-        // A mode of the damping ratio zeta, with a step of so much over its frequency: the Taylor polynomial of degree 4 of its eigenvalue.
-        let growth = |zeta: f64, reach: f64| {
-            let z = Complex::new(-zeta, (1.0 - zeta * zeta).sqrt()) * reach;
-            (0..4).rev().fold(Complex::from(1.0), |sum, k| 1.0 + sum * z / f64::from(k + 1)).norm()
-        };
-        for zeta in [0.0, 0.1, 0.2, 0.33, 1.0] {
-            // Beyond half the critical damping c/m is larger than the frequency.
-            assert!(growth(zeta, RK4_REACH / (2.0 * zeta).max(1.0)) <= 1.0, "{zeta}");
+    fn steps_up_to_the_limit_are_stable_for_every_mode_within_its_bounds() {
+        for decay in [0.0, 0.1, 0.5, 0.68, 0.8, 0.94, 1.06, 1.5, 2.5, 20.0] {
+            let limit = largest_stable_step(1.0, decay);
+            for frequency in (1..=40).map(|i| f64::from(i) / 40.0) {
+                for decay in (0..=40).map(|i| decay * f64::from(i) / 40.0) {
+                    let most = growth(frequency, decay, limit);
+                    assert!(most <= 1.0 + 1e-6, "{frequency}, {decay}, {limit}: {most}");
+                }
+            }
         }
-        for zeta in (0..=100).map(|percent| f64::from(percent) / 100.0) {
-            assert!(growth(zeta, 2.616 / (2.0 * zeta).max(1.0)) <= 1.0, "{zeta}");
+    }
+
+    #[test]
+    fn steps_beyond_the_limit_of_the_highest_mode_grow() {
+        // As damped as the highest mode of stiffness-proportional damping.
+        for decay in [0.7, 0.8, 0.94, 1.0, 1.05] {
+            let limit = largest_stable_step(1.0, decay);
+            assert!(growth(1.0, decay, 1.002 * limit) > 1.0, "{decay}");
+            assert!(limit >= 2.616 && limit < 2.785, "{decay}: {limit}");
         }
-        assert!(growth(0.5, RK4_REACH) > 1.0 && growth(0.5, 0.94 * RK4_REACH) <= 1.0);
-        assert!(growth(1.0, 1.001 * RK4_REACH) > 1.0);
+        for decay in [0.0, 0.1, 0.6] {
+            assert!((largest_stable_step(1.0, decay) - RK4_REACH).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_region_of_stability_has_one_end_on_every_ray() {
+        for ratio in (0..=100).map(|percent| f64::from(percent) / 100.0) {
+            let reach = rk4_reach(ratio);
+            for part in (1..=1000).map(|i| f64::from(i) / 1000.0) {
+                assert!(rk4_growth(ratio, part * reach) <= 1.0 + 1e-12, "{ratio}, {part}");
+            }
+        }
     }
 }

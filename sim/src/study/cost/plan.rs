@@ -14,10 +14,7 @@ use crate::statics::Equilibrium;
 use crate::study::plan::{MachineSpeed, Plan};
 use crate::transient::{recorded_nodes, rk4_stability_limit};
 
-/// Step of the reference's RK4 \[s\], where that is stable; speeds are relative to it.
-pub const RK4_STEP: f64 = 5e-5;
-
-/// Part of RK4's stability limit, found about the equilibrium, that a step may have.
+/// Part of RK4's stability limit, found about the equilibrium, that its steps in the reference have.
 const BELOW_LIMIT: f64 = 0.95;
 
 /// Step \[s\] and most contact sweeps of the reference's ESDIRK4.
@@ -170,9 +167,9 @@ fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
     }
 }
 
-/// RK4 with its usual step or below its stability limit \[s\], and ESDIRK4 with a small step and converged sweeps.
+/// RK4 just below its stability limit \[s\], and ESDIRK4 with a small step and converged sweeps.
 fn usual_reference(interval: f64, limit: f64) -> Vec<TimeStepping> {
-    let rk4 = part_of(interval, RK4_STEP.min(BELOW_LIMIT * limit));
+    let rk4 = part_of(interval, BELOW_LIMIT * limit);
     let esdirk4 = TimeStepping::fixed(Integrator::Esdirk4, part_of(interval, ESDIRK4_STEP));
     vec![
         TimeStepping::fixed(Integrator::Rk4, rk4),
@@ -229,7 +226,8 @@ mod tests {
         assert_eq!(names[..5], ["A", "B", "draft", "standard", "reference"]);
         assert_eq!(names[5..], [&alpha[..], &["esdirk4"; 3]].concat());
         let stepping = |row: &PlannedRow| row.scenario.accuracy.time_stepping();
-        assert_eq!(stepping(&rows[0]), TimeStepping::fixed(Integrator::Rk4, 5e-5));
+        // 0.95 of 63.7 us is the 17th part of a millisecond at most.
+        assert_eq!(stepping(&rows[0]), TimeStepping::fixed(Integrator::Rk4, 1e-3 / 17.0));
         assert_eq!((stepping(&rows[1]).step, stepping(&rows[1]).contact_sweeps), (1.25e-4, 30));
     }
 
@@ -300,7 +298,7 @@ mod tests {
         let draft_steps = Plan::new(&rows[2].scenario, None).unwrap().accuracies[0].steps.unwrap();
         let (time, unknown) = expected_cpu_time(&rows[..4], &speed);
         assert_eq!(unknown, 1);
-        let steps = 60.0 / 5e-5 + 60.0 / 1.25e-4 + draft_steps as f64;
+        let steps = 60.0 * 17e3 + 60.0 / 1.25e-4 + draft_steps as f64;
         assert!((time / (5.0 * 297e-6 * steps) - 1.0).abs() < 1e-9, "{time}");
     }
 }

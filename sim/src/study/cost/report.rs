@@ -4,7 +4,7 @@ use drillsweep_scenario::{Integrator, Scenario};
 
 use super::compare::{Reference, agreements};
 use super::measure::Measure;
-use super::plan::{PlannedRow, RK4_STEP, Role};
+use super::plan::{PlannedRow, Role};
 use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
 use crate::study::ensemble::parting_time;
@@ -190,25 +190,22 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
     times.filter_map(parted).reduce(f64::min)
 }
 
-/// The run of RK4 whose fixed step is nearest to the usual one.
+/// The run of RK4 with the longest fixed step.
 pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a CostRow> {
     let is_fixed = |row: &&CostRow| {
         row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
     };
-    let distance = |row: &CostRow| (row.step / RK4_STEP).ln().abs();
-    rows.filter(is_fixed).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    rows.filter(is_fixed).max_by(|a, b| a.step.total_cmp(&b.step))
 }
 
-/// Enters how many times faster than RK4 with its usual step each line is. RK4's cost is its steps', so that any fixed step tells
-/// it; the nearest is taken.
+/// Enters how many times faster than RK4 with its longest fixed step each line is.
 fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow]) {
-    let Some(per_step) =
-        rk4(references.iter().chain(methods.iter())).map(|rk4| rk4.cpu_per_simulated_second * rk4.step)
+    let Some(cost) = rk4(references.iter().chain(methods.iter())).map(|rk4| rk4.cpu_per_simulated_second)
     else {
         return;
     };
     for row in references.iter_mut().chain(methods) {
-        let speed = per_step / RK4_STEP / row.cpu_per_simulated_second;
+        let speed = cost / row.cpu_per_simulated_second;
         row.speed_over_rk4 = (row.failure.is_none() && speed.is_finite()).then_some(speed);
     }
 }
@@ -279,8 +276,8 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
     let wanted = format!("{} % of {}{but}", rounded(100.0 * accuracy), quantity.words());
     let text = match (best, cpu_time) {
         (Some(row), Some(cpu_time)) => {
-            let speed = row.speed_over_rk4.map_or_else(String::new, |speed| {
-                format!(", {speed:.1} times faster than rk4 with {} ms", 1e3 * RK4_STEP)
+            let speed = row.speed_over_rk4.zip(report.rk4()).map_or_else(String::new, |(speed, rk4)| {
+                format!(", {speed:.1} times faster than rk4 with {} ms", (1e6 * rk4.step).round() / 1e3)
             });
             let confidence =
                 if report.members == 1 { "; one member, so that confidence is unknown" } else { "" };

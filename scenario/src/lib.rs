@@ -14,6 +14,7 @@ mod problem;
 mod request;
 mod set;
 mod snapshots;
+mod statics;
 mod strict;
 mod study;
 
@@ -25,6 +26,7 @@ pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::ScenarioRequest;
 pub use snapshots::Snapshots;
+pub use statics::{StartFriction, Starts, Statics};
 pub use strict::read_strictly;
 pub use study::{CostStudy, MethodSteps, StudyReference, USUAL_STEPS};
 
@@ -51,6 +53,9 @@ pub struct Scenario {
     pub operation: Operation,
     /// Borehole contact and friction.
     pub contact: ContactLaw,
+    /// The equilibrium that the run starts from; absent means that with static friction.
+    #[serde(default)]
+    pub statics: Statics,
     /// Rayleigh damping of the structure.
     pub damping: RayleighDamping,
     /// How finely the string is cut into elements: `"auto"` or target element lengths. Too coarse, and bending between contacts and
@@ -409,8 +414,8 @@ pub struct ContactLaw {
     /// normal forces are never negative, and a rebound keeps more of its energy.
     #[serde(default)]
     pub adhesion: Adhesion,
-    /// Static friction coefficient mu_s, the peak of the friction curve, 0 or more; usual 0.15 to 0.5. The equilibrium is found
-    /// with it, so that it also sets the torque along the string at rest. 0 means no friction at all.
+    /// Static friction coefficient mu_s, the peak of the friction curve, 0 or more; usual 0.15 to 0.5. It sets the torque along the
+    /// string at break-away, and that of the equilibrium unless `statics.friction` is `sliding`. 0 means no friction at all.
     pub static_friction: f64,
     /// Dynamic friction coefficient mu_d of fast sliding, 0 to mu_s; usual 0.1 to 0.4. The more it lies below mu_s, the more the
     /// falling curve feeds torsion, up to stick-slip; where it equals mu_s, it feeds none. Backward whirl is driven by friction

@@ -115,7 +115,7 @@ macro_rules! numbers {
 }
 
 numbers!(Scenario: well, string, mud, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
-    without name, effects, ensemble);
+    without name, statics, effects, ensemble);
 numbers!(Well: hole_diameter, survey);
 numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
 numbers!(DrillString: material, sections, gauges, unbalance);

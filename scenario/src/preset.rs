@@ -19,7 +19,7 @@ macro_rules! presets {
 presets! {
     "paper-200m": "Base case of Tran et al. 2019: 200 m string in a curved 3D hole, with mud",
     "paper-200m-dry": "The same without mud, hence without buoyancy",
-    "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s: torsion above the lowest modes decays",
+    "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s, from a start in balance: torsion above the lowest modes decays",
     "closed/fast-heavy-mud": "The damped base case with 0.04 m3/s of mud of 2100 kg/m3: its largest orbits",
     "closed/building-well": "The damped base case in a well that builds from 25 to 60 degrees",
     "closed/near-horizontal": "The damped base case in a well of 85 to 90 degrees, hardly bent",
@@ -66,7 +66,7 @@ pub fn preset(name: &str) -> Option<Scenario> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::TimeWindow;
+    use crate::{StartFriction, TimeWindow};
 
     #[test]
     fn every_preset_parses_under_its_own_name() {
@@ -86,13 +86,14 @@ mod tests {
     }
 
     #[test]
-    fn the_damped_case_differs_by_its_damping_alone() {
+    fn the_damped_case_differs_by_its_damping_and_start_alone() {
         let (printed, mut damped) = (preset("paper-200m").unwrap(), preset("paper-200m-damped").unwrap());
         assert_eq!(
             (printed.damping.stiffness_proportional, damped.damping.stiffness_proportional),
             (0.0, 3e-5)
         );
         damped.damping = printed.damping;
+        damped.statics = printed.statics;
         damped.name.clone_from(&printed.name);
         assert_eq!(printed, damped);
     }
@@ -108,6 +109,15 @@ mod tests {
             assert_eq!((scene.duration, scene.orbit_window()), (60.0, TimeWindow { from: 40.0, to: 60.0 }));
             assert_eq!((&scene.operation, &scene.contact), (&damped.operation, &damped.contact), "{name}");
             assert_eq!(scene.recording.nodes.len(), 3, "{name}");
+        }
+    }
+
+    #[test]
+    fn runs_start_in_balance_but_for_the_papers_own_and_hard_ones() {
+        for (name, _) in PRESETS {
+            let is_printed = name.starts_with("hard/") || ["paper-200m", "paper-200m-dry"].contains(name);
+            let expected = if is_printed { StartFriction::BreakAway } else { StartFriction::Sliding };
+            assert_eq!(preset(name).unwrap().statics.friction, expected, "{name}");
         }
     }
 

@@ -3,7 +3,7 @@
 use drillsweep_scenario::{
     ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud,
     NodeChoice, Operation, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots,
-    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    Statics, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 use serde::Serialize;
 
@@ -83,7 +83,8 @@ enum CanonicalMesh {
 /// of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every effect decided, and
 /// with -0.0 written as 0.0.
 ///
-/// Snapshots, which most scenarios do not ask for, stand behind all else where there are some, and leave no trace where there are none. Any
+/// Snapshots, which most scenarios do not ask for, stand behind all else where there are some, and leave no trace where there are none; so
+/// does the start of the run behind them if it is not the default one (their lengths differ, so that none is taken for the other). Any
 /// other change of the scenario's fields changes the encoding, so keys of different versions of the program must not be compared.
 pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
     let active = active_effects(scenario);
@@ -95,6 +96,7 @@ pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
         mud,
         operation,
         contact,
+        statics,
         damping,
         mesh,
         duration,
@@ -128,6 +130,10 @@ pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
     let encoded = match snapshots {
         Some(snapshots) => encoded.and_then(|encoded| postcard::to_extend(&snapshots, encoded)),
         None => encoded,
+    };
+    let encoded = match statics {
+        statics if statics == Statics::default() => encoded,
+        statics => encoded.and_then(|encoded| postcard::to_extend(&statics, encoded)),
     };
     encoded.expect("postcard encodes structs, sequences and numbers of known length")
 }
@@ -226,6 +232,29 @@ mod tests {
         ];
         for other in others {
             assert_ne!(of(other.clone()), asked, "{other}");
+        }
+    }
+
+    #[test]
+    fn start_counts_unless_it_is_the_default_one_and_leaves_other_keys_as_they_were() {
+        let bytes = canonical_bytes(&paper());
+        let of = |scenario: &Scenario, statics: Value| {
+            canonical_bytes(&scenario.with("statics", statics).expect("a valid section"))
+        };
+        assert_eq!(of(&paper(), json!({ "friction": "break_away", "start": "one" })), bytes);
+        let starts = [
+            json!({ "friction": "sliding" }),
+            json!({ "start": "both" }),
+            json!({ "friction": "sliding", "start": "both" }),
+        ];
+        let with_snapshots = paper().with("recording.snapshots", json!({ "rate_hz": 25.0 })).unwrap();
+        let mut seen = vec![bytes.clone(), canonical_bytes(&with_snapshots)];
+        for scenario in [paper(), with_snapshots] {
+            for start in &starts {
+                let encoded = of(&scenario, start.clone());
+                assert!(encoded.starts_with(&bytes) && !seen.contains(&encoded), "{start}");
+                seen.push(encoded);
+            }
         }
     }
 

@@ -3,9 +3,11 @@
 use std::f64::consts::PI;
 
 use drillsweep_scenario::{
-    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, SurveyStation, Switch, preset,
+    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, StartFriction, SurveyStation, Switch,
+    preset,
 };
 use drillsweep_sim::beam::BeamSection;
+use drillsweep_sim::contact::{LateralMotion, dynamic_contact};
 use drillsweep_sim::model::{GRAVITY, Model, element_values};
 use drillsweep_sim::mud::element_flow;
 use drillsweep_sim::statics::Equilibrium;
@@ -340,5 +342,92 @@ fn a_string_that_nothing_holds_stays_on_the_axis_of_a_vertical_hole() {
         let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
         assert!(rest.displacement.iter().all(|[u, v, ..]| *u == 0.0 && *v == 0.0), "scene {index}");
         assert!(unbalanced(&model, &rest) < 1e-9, "scene {index}");
+    }
+}
+
+/// The horizontal string of collars with friction, without loads at the bit.
+fn rubbing() -> Scenario {
+    let mut scenario = horizontal(200.0, [0.159, 0.071], 2.5);
+    let contact = &mut scenario.contact;
+    (contact.static_friction, contact.dynamic_friction, contact.friction_reference_speed) = (0.3, 0.2, 0.033);
+    scenario.operation.weight_on_bit = 0.0;
+    scenario
+}
+
+#[test]
+fn torque_at_the_top_is_what_friction_takes_at_break_away_and_sliding() {
+    let mut scenario = rubbing();
+    let beam = section(&scenario);
+    let weight = beam.density * beam.area * GRAVITY * 200.0;
+    // (14) as printed, at the speed of a collar's surface.
+    let xi = (1.0f64 - 0.2 / 0.3).sqrt();
+    let speed = scenario.operation.rotation_speed_rpm * PI / 30.0 * 0.0795;
+    let fade = 1.0 + (1.0 - xi) / (2.0 * 0.033 * 0.2) * speed;
+    let mu = speed / (2.0 * 0.033) * ((1.0 - xi) / fade + (1.0 + xi) / (fade * fade));
+    let mut found = Vec::new();
+    for (start, friction) in [(StartFriction::BreakAway, 0.3), (StartFriction::Sliding, mu)] {
+        scenario.statics.friction = start;
+        let model = Model::new(&scenario).expect("valid");
+        let rest = Equilibrium::find(&model).expect("lies");
+        let normal: f64 = rest.normal_force.iter().sum();
+        let taken = friction * normal * 0.0795;
+        assert!(
+            (rest.torque[0] / -taken - 1.0).abs() < 1e-9,
+            "{start:?}: {} N m for {taken}",
+            rest.torque[0]
+        );
+        // Friction carries its part of the weight; the clamp that of the span to where the string comes to lie.
+        let carried = normal * (1.0 + friction * friction).sqrt() / weight;
+        assert!((0.95..1.0).contains(&carried), "{start:?}: {carried} of the weight");
+        found.push((model, rest));
+    }
+    // The other equilibrium, searched from each, is the one that was searched from the centre line.
+    for (own, other, friction) in [(0, 1, StartFriction::Sliding), (1, 0, StartFriction::BreakAway)] {
+        let (model, rest) = &found[own];
+        let beside = rest.with_friction_at_rest(model, friction).expect("found");
+        assert!((beside.torque[0] / found[other].1.torque[0] - 1.0).abs() < 1e-9);
+        let places =
+            beside.displacement.as_flattened().iter().zip(found[other].1.displacement.as_flattened());
+        assert!(places.into_iter().all(|(a, b)| (a - b).abs() < 1e-9), "{friction:?}");
+    }
+}
+
+/// The largest unbalanced force or moment at the first moment of a run without unbalance, over the largest force of the wall.
+fn unbalanced_at_the_start(scenario: &Scenario) -> f64 {
+    let mut scenario = scenario.clone();
+    scenario.string.unbalance.clear();
+    let model = Model::new(&scenario).expect("valid");
+    let rest = Equilibrium::find(&model).expect("rests");
+    let system = model.dynamic_system(&rest);
+    let mut forces = rest.displacement.clone();
+    system.stiffness.multiply_into(&rest.displacement, &mut forces);
+    let mut largest = 0.0_f64;
+    for (force, load) in forces.as_flattened_mut().iter_mut().zip(system.load.as_flattened()) {
+        *force = load - *force;
+    }
+    for (node, site) in model.wall.touchable() {
+        let [u, v, ..] = rest.displacement[node];
+        let still = LateralMotion { u, v, u_rate: 0.0, v_rate: 0.0, theta_z_rate: 0.0 };
+        let contact = dynamic_contact(model.wall.law(), site, &still, model.rotation_speed);
+        for (dof, force) in [(0, contact.force_u), (1, contact.force_v), (5, contact.torque_z)] {
+            forces[node][dof] += force;
+        }
+        largest = largest.max(contact.normal);
+    }
+    let places = forces.as_flattened().iter().zip(system.held.as_flattened());
+    places.filter(|(_, held)| !**held).fold(0.0_f64, |most, (force, _)| most.max(force.abs())) / largest
+}
+
+#[test]
+fn a_run_from_sliding_friction_begins_in_balance_and_one_from_break_away_does_not() {
+    let mut string = preset("closed/building-well").expect("shipped preset");
+    for scenario in [&mut rubbing(), &mut string] {
+        scenario.statics.friction = StartFriction::Sliding;
+        let sliding = unbalanced_at_the_start(scenario);
+        assert!(sliding < 1e-9, "{}: {sliding:e} from sliding", scenario.name);
+        // mu falls from 0.3 to 0.21 or 0.22 at the surface of pipe and collars.
+        scenario.statics.friction = StartFriction::BreakAway;
+        let step = unbalanced_at_the_start(scenario);
+        assert!((0.07..0.1).contains(&step), "{}: {step} from break-away", scenario.name);
     }
 }

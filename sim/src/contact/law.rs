@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw};
+use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction};
 
+use super::ContactNode;
 use crate::linalg::{Lane, Mask};
 
 /// A [`ContactLaw`] with its switches, ready to evaluate.
@@ -25,6 +26,8 @@ pub struct ContactParameters<L> {
     reach: L,
     /// Whether any friction is felt: without, its coefficient is not evaluated.
     pub(super) has_friction: bool,
+    /// Friction of a node at rest.
+    at_rest: StartFriction,
     /// 1 where friction pushes along the wall, 0 where that is switched off.
     pub(super) tangential_share: L,
     /// 1 where friction turns the string, 0 where that is switched off.
@@ -67,6 +70,7 @@ impl<L: Lane> ContactParameters<L> {
             decay: L::splat(decay),
             reach: L::splat(1.0 / decay),
             has_friction: !frictionless && (effects.friction || effects.friction_torque),
+            at_rest: StartFriction::default(),
             tangential_share: share(effects.friction),
             torque_share: share(effects.friction_torque),
         }
@@ -221,11 +225,6 @@ impl<L: Lane> ContactParameters<L> {
         (friction, slope)
     }
 
-    /// Static friction coefficient mu_s.
-    pub fn static_friction(&self) -> L {
-        self.static_friction
-    }
-
     /// Energy \[J\] stored by the contact stiffness of such a node, the integral of K_c(p) p from 0 to P; zero out of contact.
     pub fn potential_energy(&self, penetration: L) -> L {
         let p = penetration.max(L::splat(0.0));
@@ -242,6 +241,37 @@ impl<L: Lane> ContactParameters<L> {
 }
 
 impl ContactParameters<f64> {
+    /// The law with another friction of nodes at rest; that in motion is the same.
+    #[must_use]
+    pub fn with_friction_at_rest(self, at_rest: StartFriction) -> Self {
+        Self { at_rest, ..self }
+    }
+
+    /// The law with a share of its friction, at rest and in motion.
+    #[must_use]
+    pub fn with_friction_share(self, share: f64) -> Self {
+        Self {
+            tangential_share: share * self.tangential_share,
+            torque_share: share * self.torque_share,
+            ..self
+        }
+    }
+
+    /// Friction coefficient of a node at rest in a frame that turns with `rotation_speed` Omega \[rad/s\], in its sense: mu_s at
+    /// break-away (36), or mu at the sliding speed Omega R_e (14). Without rotation there is no sense to take, and no friction.
+    pub fn friction_at_rest(&self, node: &ContactNode<f64>, rotation_speed: f64) -> f64 {
+        match self.at_rest {
+            StartFriction::BreakAway if rotation_speed == 0.0 => 0.0,
+            StartFriction::BreakAway => rotation_speed.signum() * self.static_friction,
+            StartFriction::Sliding => self.friction_coefficient(rotation_speed * node.contact_radius),
+        }
+    }
+
+    /// The friction of nodes at rest.
+    pub(super) fn at_rest(&self) -> StartFriction {
+        self.at_rest
+    }
+
     /// The same law in every lane.
     pub fn in_lanes<L: Lane>(&self) -> ContactParameters<L> {
         let splat = L::splat;
@@ -255,6 +285,7 @@ impl ContactParameters<f64> {
             decay: splat(self.decay),
             reach: splat(self.reach),
             has_friction: self.has_friction,
+            at_rest: self.at_rest,
             tangential_share: splat(self.tangential_share),
             torque_share: splat(self.torque_share),
         }

@@ -20,8 +20,8 @@ pub struct StaticContactForce {
     pub tangent: [[f64; 2]; 3],
 }
 
-/// The quasi-static force (36): F_n = K_c P with friction mu_s as if the string slid in the sense of its
-/// rotation Omega \[rad/s\]. Without rotation there is no sense to take, so there is no friction.
+/// The quasi-static force (36): F_n = K_c P with [friction](ContactParameters::friction_at_rest) as if the string slid in the sense of
+/// its rotation Omega \[rad/s\].
 pub fn static_contact(
     law: &ContactParameters<f64>,
     node: &ContactNode<f64>,
@@ -38,8 +38,7 @@ pub fn static_contact(
     if penetration <= 0.0 {
         return StaticContactForce::default();
     }
-    let sense = if rotation_speed == 0.0 { 0.0 } else { rotation_speed.signum() };
-    let friction = sense * law.static_friction();
+    let friction = law.friction_at_rest(node, rotation_speed);
     let tangential = friction * law.tangential_share;
     let torque_arm = friction * law.torque_share * node.contact_radius;
     let (normal_u, normal_v) = (u / radius, v / radius);
@@ -102,8 +101,7 @@ pub fn smooth_static_contact(
     }
     // (gap + root) / 2 without the difference of what is nearly equal.
     let penetration = if gap > 0.0 { 0.5 * (gap + root) } else { 0.5 * width * width / (root - gap) };
-    let sense = if rotation_speed == 0.0 { 0.0 } else { rotation_speed.signum() };
-    let whole_friction = sense * law.static_friction();
+    let whole_friction = law.friction_at_rest(node, rotation_speed);
     let friction = friction_share * whole_friction;
     let tangential = friction * law.tangential_share;
     let torque_arm = law.torque_share * node.contact_radius;

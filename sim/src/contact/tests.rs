@@ -1,6 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
-use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
+use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction, WallLaw};
 
 use super::*;
 use crate::beam::{ElementVector, Shape};
@@ -234,6 +234,41 @@ fn static_friction_acts_in_the_sense_of_rotation() {
         assert_close(force.force_u, normal * (-cos + friction * sin), 1e-11);
         assert_close(force.force_v, normal * (-sin - friction * cos), 1e-11);
         assert_close(force.torque_z, -friction * normal * NODE.contact_radius, 1e-11);
+    }
+}
+
+#[test]
+fn friction_of_the_sliding_start_is_that_of_the_curve_at_the_speed_of_the_surface() {
+    let law = parameters(&BASE).with_friction_at_rest(StartFriction::Sliding);
+    // (14) as printed.
+    let xi = (1.0f64 - 0.2 / 0.3).sqrt();
+    let decay = (1.0 - xi) / (2.0 * 0.033 * 0.2);
+    let printed = |v: f64| {
+        let fade = 1.0 + decay * v.abs();
+        v / (2.0 * 0.033) * ((1.0 - xi) / fade + (1.0 + xi) / (fade * fade))
+    };
+    let (u, v) = (0.0402 * 0.7f64.cos(), 0.0402 * 0.7f64.sin());
+    for speed in [12.6, -12.6, 0.3, 0.0] {
+        let force = static_contact(&law, &NODE, u, v, speed);
+        let friction = printed(speed * NODE.contact_radius) * force.normal;
+        assert_close(force.torque_z, -friction * NODE.contact_radius, 1e-12);
+        // The same force as of a node that the turning frame carries along the wall.
+        let still = LateralMotion { u, v, u_rate: 0.0, v_rate: 0.0, theta_z_rate: 0.0 };
+        let moving = dynamic_contact(&law, &NODE, &still, speed);
+        assert_close(force.force_u, moving.force_u, 1e-12);
+        assert_close(force.force_v, moving.force_v, 1e-12);
+    }
+}
+
+#[test]
+fn a_share_of_the_friction_scales_what_rubs_and_nothing_else() {
+    for start in [StartFriction::BreakAway, StartFriction::Sliding] {
+        let whole = parameters(&BASE).with_friction_at_rest(start);
+        let force = |law| static_contact(&law, &NODE, 0.0402, 0.0, 12.6);
+        let (of_whole, of_share) = (force(whole), force(whole.with_friction_share(0.25)));
+        assert_close(of_share.force_u, of_whole.force_u, 1e-15);
+        assert_close(of_share.force_v, 0.25 * of_whole.force_v, 1e-15);
+        assert_close(of_share.torque_z, 0.25 * of_whole.torque_z, 1e-15);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The wall of a hole as a string's nodes and elements meet it.
 
-use drillsweep_scenario::{ActiveEffects, ContactLaw};
+use drillsweep_scenario::{ActiveEffects, ContactLaw, StartFriction};
 
 use super::law::ContactParameters;
 use super::{ContactNode, ContactSegment};
@@ -51,8 +51,21 @@ impl Wall {
         self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
     }
 
-    /// The same contact sites with another law.
+    /// The same contact sites with another law, but the same kind of friction at rest.
     pub fn with_law(&self, law: &ContactLaw, effects: &ActiveEffects) -> Self {
-        Self { law: ContactParameters::new(law, effects), ..self.clone() }
+        let law = ContactParameters::new(law, effects).with_friction_at_rest(self.law.at_rest());
+        Self { law, ..self.clone() }
+    }
+
+    /// The same wall with another friction of nodes at rest.
+    #[must_use]
+    pub fn with_friction_at_rest(&self, at_rest: StartFriction) -> Self {
+        Self { law: self.law.with_friction_at_rest(at_rest), ..self.clone() }
+    }
+
+    /// The same wall with a share of its friction.
+    #[must_use]
+    pub fn with_friction_share(&self, share: f64) -> Self {
+        Self { law: self.law.with_friction_share(share), ..self.clone() }
     }
 }

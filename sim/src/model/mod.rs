@@ -119,6 +119,7 @@ impl Model {
         let by_length = contact.law == WallLaw::PerLength;
         let segments = mesh.elements.iter().zip(elements).filter(|_| by_length).map(segment);
         Wall::new(contact, effects, mesh.nodes.iter().enumerate().map(site), segments)
+            .with_friction_at_rest(scenario.statics.friction)
     }
 
     /// Number of nodes.

@@ -2,8 +2,6 @@
 //!
 //! Either begins where an equilibrium is known: at rest on the centre line, or on the frictionless wall.
 
-use drillsweep_scenario::ContactLaw;
-
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
 use super::path::{self, Growth, Point, add};
 use crate::contact::Wall;
@@ -42,18 +40,7 @@ pub(super) fn with_growing_friction(
 
 /// The model's wall without friction.
 pub(super) fn frictionless(model: &Model) -> Wall {
-    with_friction(model, 0.0)
-}
-
-/// The model's wall with a share of its friction.
-fn with_friction(model: &Model, share: f64) -> Wall {
-    let own = &model.scenario.contact;
-    let law = ContactLaw {
-        static_friction: share * own.static_friction,
-        dynamic_friction: share * own.dynamic_friction,
-        ..*own
-    };
-    model.wall.with_law(&law, &model.effects)
+    model.wall.with_friction_share(0.0)
 }
 
 /// The loads grow, while a spring to the centre line fades.
@@ -104,7 +91,7 @@ struct Friction<'a> {
 impl Growth for Friction<'_> {
     fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
         let on = |wall: &Wall| linearise(self.model, wall, self.load, &at.displacement);
-        let (residual, tangent) = on(&with_friction(self.model, at.share));
+        let (residual, tangent) = on(&self.model.wall.with_friction_share(at.share));
         // Friction is in proportion to its share.
         let (mut slope, (without, _)) = (on(&self.model.wall).0, on(&self.none));
         add(&mut slope, -1.0, &without);

@@ -14,8 +14,9 @@ mod relaxation;
 use hydraulics::{Sections, drag, node_pressures};
 pub use newton::NewtonSettings;
 pub use overload::Overload;
+pub(crate) use overload::negative_eigenvalues;
 
-use drillsweep_scenario::ContactLaw;
+use drillsweep_scenario::{ContactLaw, StartFriction};
 
 use crate::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
 use crate::freedom::{DOFS, U, V};
@@ -158,13 +159,26 @@ impl Equilibrium {
         settings: &NewtonSettings,
     ) -> Result<Self, StaticsError> {
         let sections = Sections::new(model)?;
-        let failure = match Self::find_in_passes(model, &sections, displacement, settings) {
+        let concentric = vec![0.0; model.elements.len()];
+        let mut settings = settings.clone();
+        let found = Self::in_passes(
+            model,
+            &model.wall,
+            &sections,
+            (displacement, concentric),
+            |load, displacement| {
+                let outcome = with_fallbacks(model, load, displacement, &settings)?;
+                // Later passes start next to the solution: plain Newton from there.
+                settings.initial_shift = 0.0;
+                Ok(outcome)
+            },
+        );
+        let failure = match found {
             Err(failure) if failure.is_open() => failure,
             ended => return ended,
         };
         let Some((displacement, outcome)) = homotopy::find(model, &sections) else { return Err(failure) };
-        let eccentricity: Vec<f64> =
-            (0..model.elements.len()).map(|element| model.eccentricity(element, &displacement)).collect();
+        let eccentricity = eccentricities(model, &displacement);
         let flows = sections.flows(&eccentricity)?;
         let drag = drag(model, &flows);
         let effort = StaticsEffort {
@@ -172,26 +186,55 @@ impl Equilibrium {
             hydraulic_passes: 1,
             residual: outcome.residual,
         };
-        Self::assemble(model, displacement, flows, drag, effort)
+        Self::assemble(model, &model.wall, displacement, flows, drag, effort)
     }
 
-    /// The equilibrium under the drag of the mud where the string lies, found by computing each from the other in turn.
-    fn find_in_passes(
+    /// The equilibrium of the same model with another friction at rest, searched from this one; this one itself if nothing rubs.
+    ///
+    /// # Errors
+    /// When Newton's method from here, with and without its spring, or the iteration with the hydraulics does not converge.
+    pub fn with_friction_at_rest(
+        &self,
         model: &Model,
-        sections: &Sections,
-        mut displacement: NodalVector,
-        settings: &NewtonSettings,
+        friction: StartFriction,
     ) -> Result<Self, StaticsError> {
-        let mut settings = settings.clone();
-        let mut eccentricity = vec![0.0; model.elements.len()];
+        let effects = &model.effects;
+        let turns = model.rotation_speed != 0.0 && model.scenario.contact.static_friction != 0.0;
+        if !(turns && effects.contact && (effects.friction || effects.friction_torque)) {
+            return Ok(self.clone());
+        }
+        let wall = model.wall.with_friction_at_rest(friction);
+        let sections = Sections::new(model)?;
+        let plain = NewtonSettings {
+            initial_shift: 0.0,
+            iteration_limit: newton::LAST_ITERATIONS,
+            ..NewtonSettings::default()
+        };
+        let start = (self.displacement.clone(), eccentricities(model, &self.displacement));
+        Self::in_passes(model, &wall, &sections, start, |load, displacement| {
+            let before = displacement.clone();
+            newton::solve(model, &wall, load, displacement, &plain).or_else(|_| {
+                *displacement = before;
+                newton::solve(model, &wall, load, displacement, &NewtonSettings::default())
+            })
+        })
+    }
+
+    /// The equilibrium on `wall` under the drag of the mud where the string lies, found by computing each from the other in turn: from
+    /// displacements and eccentricities to begin with, and by `solve`, which moves displacements to the equilibrium under a load.
+    fn in_passes(
+        model: &Model,
+        wall: &Wall,
+        sections: &Sections,
+        (mut displacement, mut eccentricity): (NodalVector, Vec<f64>),
+        mut solve: impl FnMut(&[[f64; DOFS]], &mut NodalVector) -> Result<newton::NewtonOutcome, StaticsError>,
+    ) -> Result<Self, StaticsError> {
         let mut newton_iterations = 0;
         for pass in 1..=HYDRAULIC_PASSES {
             let flows = sections.flows(&eccentricity)?;
             let drag = drag(model, &flows);
-            let outcome = with_fallbacks(model, &model.constant_load(&drag), &mut displacement, &settings)?;
+            let outcome = solve(&model.constant_load(&drag), &mut displacement)?;
             newton_iterations += outcome.iterations;
-            // Later passes start next to the solution: plain Newton from there.
-            settings.initial_shift = 0.0;
             let (mut change, mut node) = (0.0, 1);
             for (e, old) in eccentricity.iter_mut().enumerate() {
                 let new = model.eccentricity(e, &displacement);
@@ -203,7 +246,7 @@ impl Equilibrium {
             if flows.is_empty() || change <= ECCENTRICITY_TOLERANCE {
                 let effort =
                     StaticsEffort { newton_iterations, hydraulic_passes: pass, residual: outcome.residual };
-                return Self::assemble(model, displacement, flows, drag, effort);
+                return Self::assemble(model, wall, displacement, flows, drag, effort);
             }
             if pass == HYDRAULIC_PASSES {
                 return Err(StaticsError::HydraulicsNotConverged { passes: pass, change, node });
@@ -229,6 +272,7 @@ impl Equilibrium {
 
     fn assemble(
         model: &Model,
+        wall: &Wall,
         displacement: NodalVector,
         flows: Vec<ElementFlow>,
         drag: Vec<f64>,
@@ -246,7 +290,7 @@ impl Equilibrium {
         let torque = rows(|element| &element.torque_row);
         let mut normal_force: Vec<f64> = (0..model.node_count())
             .map(|node| {
-                contact_at(&model.wall, node, &displacement[node], model.rotation_speed)
+                contact_at(wall, node, &displacement[node], model.rotation_speed)
                     .map_or(0.0, |contact| contact.normal)
             })
             .collect();
@@ -261,6 +305,10 @@ impl Equilibrium {
         let pressures = pressures.map_err(|error| StaticsError::Mud { node: model.node_count(), error })?;
         Ok(Self { displacement, tension, torque, normal_force, flows, drag, pressures, effort })
     }
+}
+
+fn eccentricities(model: &Model, displacement: &[[f64; DOFS]]) -> Vec<f64> {
+    (0..model.elements.len()).map(|element| model.eccentricity(element, displacement)).collect()
 }
 
 /// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with

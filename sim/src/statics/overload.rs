@@ -155,9 +155,8 @@ fn free_rotations(model: &Model, stiffness: &BlockTridiagonal) -> usize {
     [top.e1, top.e2].iter().filter(|axis| turns_freely(axis)).count()
 }
 
-/// In how many directions the stiffness is negative, with the lateral displacements of all nodes held where there is a wall: the negative
-/// eigenvalues of the pivot blocks of its symmetric part (Sylvester's law of inertia).
-fn negative_directions(model: &Model, mut stiffness: BlockTridiagonal) -> usize {
+/// In how many directions the stiffness is negative, with the lateral displacements of all nodes held where there is a wall.
+fn negative_directions(model: &Model, stiffness: BlockTridiagonal) -> usize {
     let nodes = model.node_count();
     let held: Vec<[bool; DOFS]> = (0..nodes)
         .map(|node| {
@@ -166,7 +165,13 @@ fn negative_directions(model: &Model, mut stiffness: BlockTridiagonal) -> usize 
             std::array::from_fn(|dof| by_top[dof] || (model.effects.contact && !bends(dof)))
         })
         .collect();
-    clear_held(&mut stiffness, &held);
+    negative_eigenvalues(stiffness, &held)
+}
+
+/// Number of negative eigenvalues of the symmetric part of a stiffness without its held degrees of freedom: of its pivot blocks
+/// (Sylvester's law of inertia), up to the first that is singular.
+pub(crate) fn negative_eigenvalues(mut stiffness: BlockTridiagonal, held: &[[bool; DOFS]]) -> usize {
+    clear_held(&mut stiffness, held);
     let matrix = |block: &Block| SMatrix::<f64, DOFS, DOFS>::from_fn(|i, j| block[(i, j)]);
     let mut negative = 0;
     let mut above: Option<SMatrix<f64, DOFS, DOFS>> = None;

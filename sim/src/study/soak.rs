@@ -7,7 +7,7 @@
 use drillsweep_scenario::{
     Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge,
     Integrator, Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording,
-    RegimeChoice, Scenario, Section, SectionKind, SurveyStation, Switch, TimeStepping, ToolJoint,
+    RegimeChoice, Scenario, Section, SectionKind, Statics, SurveyStation, Switch, TimeStepping, ToolJoint,
     TopCondition, UnbalanceMass, WallLaw, Well,
 };
 
@@ -185,6 +185,7 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
         operation: draw_operation(&mut draw),
         mud: draw_mud(&mut draw),
         contact: draw_contact(&mut draw),
+        statics: Statics::default(),
         damping: RayleighDamping {
             mass_proportional: draw.or_zero(0.2, 1e-3, 1.0),
             stiffness_proportional: draw.or_zero(0.6, 1e-8, 1e-4),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use clap::Args;
 use drillsweep_sim::admission::validate;
 use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{Completeness, ModeSearch, Modes, modes};
+use drillsweep_sim::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
 use drillsweep_sim::statics::Equilibrium;
 
 use crate::print;
@@ -87,5 +87,6 @@ fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
             found.completeness
         )?;
     }
+    writeln!(text, "{BIT_NOT_JUDGED}")?;
     Ok(text)
 }

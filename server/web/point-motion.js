@@ -352,7 +352,7 @@ export function motion(context) {
       if (among) fill(cell, h("span", { class: "soft" }, `among ${among.count} modes from ${say("frequency", among.from, 3)} to ${say("frequency", among.to, 3)}`));
       else fill(cell, mode && `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`);
     }
-    fill(about, found.problem ?? `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}.`);
+    fill(about, found.problem ?? `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`);
   }
   const about = h("p", { class: "small soft", role: "status" });
 

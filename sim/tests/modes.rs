@@ -10,7 +10,10 @@ use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
 use drillsweep_sim::effect::active_effects;
 use drillsweep_sim::linalg::BlockTridiagonal;
 use drillsweep_sim::model::{Model, add_element_matrix};
-use drillsweep_sim::modes::{Completeness, Mode, ModeKind, ModeSearch, Modes, Pencil, modes, modes_of};
+use drillsweep_sim::modes::{
+    Completeness, InstabilityKind, Mode, ModeKind, ModeSearch, Modes, Pencil, Stability, modes, modes_of,
+    static_stability,
+};
 use drillsweep_sim::statics::Equilibrium;
 use nalgebra::DMatrix;
 
@@ -595,5 +598,82 @@ fn straight_strings_have_the_modes_of_rods_unless_they_are_switched_off() {
         let mut without = scenario.clone();
         without.effects.set(effect, Switch::Off);
         assert_eq!(of_kind(&without, kind), [0.0; 0], "{kind:?} switched off");
+    }
+}
+
+#[test]
+fn a_buckled_column_on_the_axis_leaves_it_as_beam_theory_says() {
+    // A column clamped above and free below under a thrust P that keeps its direction: E I y'''' + P y'' + m l^2 y = 0. With
+    // a^2 + b^2 = P / E I and a b = sqrt(m / E I) l, y = A (cos a x - cos b x) + B (b sin a x - a sin b x) has y'' = 0 and
+    // y''' + (P / E I) y' = 0 at its end.
+    let (length, share) = (40.0, 1.1);
+    let mut scenario = base();
+    scenario.mud = None;
+    for station in &mut scenario.well.survey {
+        (station.inclination_deg, station.azimuth_deg) = (90.0, 0.0);
+    }
+    scenario.string.sections =
+        vec![Section { length, count: 1, tool_joint: None, ..scenario.string.sections[2] }];
+    scenario.string.gauges.clear();
+    scenario.string.unbalance.clear();
+    scenario.recording.nodes.clear();
+    scenario.effects.set(Effect::Gravity, Switch::Off);
+    (scenario.damping.mass_proportional, scenario.operation.rotation_speed_rpm) = (0.0, 0.0);
+    scenario.operation.torque_on_bit = 0.0;
+    let of = &scenario.string.sections[0];
+    let beam = BeamSection::pipe(of.outer_diameter, of.inner_diameter, &scenario.string.material);
+    let thrust = share * (0.5 * PI / length).powi(2);
+    scenario.operation.weight_on_bit = -thrust * beam.bending_stiffness();
+    let determinant = |product: f64| {
+        let root = (0.25 * thrust * thrust - product * product).sqrt();
+        let (a, b) = ((0.5 * thrust + root).sqrt(), (0.5 * thrust - root).sqrt());
+        let ((sin_a, cos_a), (sin_b, cos_b)) = ((a * length).sin_cos(), (b * length).sin_cos());
+        // Over a b, which all terms have.
+        let moment = [b * b * cos_b - a * a * cos_a, a * b * (b * sin_b - a * sin_a)];
+        let shear = [a * sin_b - b * sin_a, b * b * cos_a - a * a * cos_b];
+        moment[0] * shear[1] - moment[1] * shear[0]
+    };
+    let (mut low, mut high) = (1e-9 * thrust, 0.499 * thrust);
+    let is_negative_below = determinant(low) < 0.0;
+    while high - low > 1e-12 * thrust {
+        let middle = 0.5 * (low + high);
+        if (determinant(middle) < 0.0) == is_negative_below { low = middle } else { high = middle }
+    }
+    let growth = low * (beam.bending_stiffness() / (beam.density * beam.area)).sqrt();
+
+    let judged = |scenario: &Scenario| {
+        let model = Model::new(scenario).expect("valid");
+        static_stability(&model, &Equilibrium::find(&model).expect("straight"))
+    };
+    let found = judged(&scenario).expect("negative stiffness");
+    let unstable = found.instability.expect("unstable");
+    assert_eq!((found.stable, unstable.kind), (Some(false), InstabilityKind::Buckling), "{found}");
+    assert!(unstable.is_static() && found.warning().is_some());
+    // Shear and rotary inertia take 1e-4 of it.
+    assert!((unstable.growth_rate / growth - 1.0).abs() < 1e-3, "{found} instead of {growth} 1/s");
+
+    scenario.operation.weight_on_bit /= 2.0 * share;
+    assert_eq!(judged(&scenario), None);
+}
+
+#[test]
+fn strings_on_the_wall_hold_and_a_pushed_one_on_the_axis_does_not() {
+    for (name, holds) in [
+        ("paper-200m", true),
+        ("paper-200m-damped", true),
+        ("closed/near-horizontal", true),
+        ("hard/horizontal", true),
+        ("hard/stick-slip", true),
+        ("hard/near-buckling", true),
+        ("hard/on-axis", true),
+        ("hard/vertical", false),
+        ("hard/beyond-buckling", false),
+    ] {
+        let model = Model::new(&preset(name).expect("shipped preset")).expect("valid");
+        let found = static_stability(&model, &Equilibrium::find(&model).expect("rests"));
+        let warning = found.as_ref().and_then(Stability::warning);
+        assert_eq!(warning.is_none(), holds, "{name}: {found:?}");
+        // Negative stiffness is looked for without friction, which makes none.
+        assert_eq!(found.is_none(), holds, "{name}: {found:?}");
     }
 }

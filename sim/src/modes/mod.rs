@@ -16,7 +16,7 @@ mod torsion;
 mod walk;
 
 pub use pencil::Pencil;
-pub use stability::{Instability, InstabilityKind, Stability, stability};
+pub use stability::{Instability, InstabilityKind, Stability, stability, static_stability};
 pub use torsion::{TorsionalMode, UndampedTorsion, torsional_modes};
 
 use std::f64::consts::TAU;
@@ -33,6 +33,9 @@ use walk::eigenpairs;
 
 /// Size of `Mode::whirl` from which a mode counts as whirling in one sense.
 const ONE_SENSE: f64 = 0.1;
+
+/// Limit of every statement that modes decay: equations with a constant torque on bit hold no feedback of the bit's speed on it.
+pub const BIT_NOT_JUDGED: &str = "torque on bit is constant: stick-slip at the bit is not judged";
 
 /// The band that is searched.
 #[derive(Debug, Clone, Copy, PartialEq)]

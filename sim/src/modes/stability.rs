@@ -8,11 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use super::arnoldi::Eigenpair;
 use super::pencil::{Pencil, add_contact, times};
-use super::walk::eigenpairs;
-use super::{Completeness, Mode, ModeKind, ModeSearch, ModesError};
+use super::walk::{Found, eigenpairs, uncounted_eigenpairs};
+use super::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, ModesError};
+use crate::contact::sliding_tangent;
+use crate::freedom::{U, V};
 use crate::linalg::BlockTridiagonal;
 use crate::model::{Model, add_element_matrix, clear_held};
-use crate::statics::Equilibrium;
+use crate::statics::{Equilibrium, negative_eigenvalues};
 
 /// Band in which the verdict looks for growth \[Hz\]: the frequencies of drilling vibrations.
 const BAND_HZ: f64 = 20.0;
@@ -23,9 +25,6 @@ const NEUTRAL: f64 = 1e-6;
 /// Natural logarithm of the growth from which on an unstable mode can be why a run diverged: twentyfold, from a string that vibrates by all of its
 /// clearance, some centimetres, to two hole radii. Vibrations about the equilibrium are smaller and need longer.
 const EXPLAINING_GROWTH: f64 = 3.0;
-
-/// What every verdict on small motions leaves out.
-pub(super) const CONSTANT_TORQUE: &str = "torque on bit is constant: stick-slip at the bit is not judged";
 
 /// The verdict of the linearised equations about the equilibrium, contacts closed, on frequencies up to `complete_to_hz`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -101,13 +100,13 @@ impl fmt::Display for Stability {
             None if self.stable == Some(true) => {
                 write!(
                     formatter,
-                    "stable about its equilibrium up to {:.0} Hz; {CONSTANT_TORQUE}",
+                    "stable about its equilibrium up to {:.0} Hz; {BIT_NOT_JUDGED}",
                     self.complete_to_hz
                 )
             }
             None => write!(
                 formatter,
-                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}; {CONSTANT_TORQUE}",
+                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}; {BIT_NOT_JUDGED}",
                 self.complete_to_hz, self.completeness
             ),
             Some(unstable) => write!(formatter, "physically unstable: {unstable}"),
@@ -147,7 +146,7 @@ impl Stability {
     }
 }
 
-/// The verdict on a model about its equilibrium.
+/// The verdict on a model about its equilibrium, on all modes up to 20 Hz.
 ///
 /// # Errors
 /// When the modes cannot be found.
@@ -155,28 +154,94 @@ pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, 
     let pencil = Pencil::about(model, equilibrium);
     let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
     let found = eigenpairs(&pencil, &search)?;
-    let growing = found.in_band(&search).filter(|pair| pair.value.re > NEUTRAL);
-    let fastest = growing.clone().max_by(|a, b| a.value.re.total_cmp(&b.value.re));
-    Ok(Stability {
-        stable: match (fastest, found.completeness) {
-            (Some(_), _) => Some(false),
-            (None, Completeness::Counted) => Some(true),
-            (None, _) => None,
-        },
-        complete_to_hz: (found.complete_to / TAU).min(BAND_HZ),
-        completeness: found.completeness,
-        instability: fastest.map(|pair| {
-            let mode = Mode::new(&pencil, pair, &model.mesh.depths());
-            Instability {
-                kind: kind(model, equilibrium, &pencil, pair, mode.kind),
-                growth_rate: mode.growth_rate,
-                frequency_hz: mode.frequency_hz,
-                node: mode.node,
-                measured_depth: mode.measured_depth,
-                growing_modes: growing.count(),
+    Ok(Stability::of(model, equilibrium, &pencil, &found, &search))
+}
+
+/// The verdict on an equilibrium that the string leaves without vibrating about it, such as that of a buckled string on the hole's axis;
+/// `None` if there is no such motion.
+///
+/// It takes a few milliseconds unless the stiffness is negative in some direction; only then the lowest modes, some tens of them and what
+/// grows without vibrating, are found. They are not counted, and never show that all modes decay.
+pub fn static_stability(model: &Model, equilibrium: &Equilibrium) -> Option<Stability> {
+    if negative_directions(model, equilibrium) == 0 {
+        return None;
+    }
+    let pencil = Pencil::about(model, equilibrium);
+    // One mode ends the search after its first shift, which yields all that are as low.
+    let search = ModeSearch { to_hz: BAND_HZ, most: 1, ..ModeSearch::default() };
+    let found = uncounted_eigenpairs(&pencil, &search).ok()?;
+    let verdict = Stability::of(model, equilibrium, &pencil, &found, &search);
+    verdict.instability.is_some().then_some(verdict)
+}
+
+/// Number of directions in which the stiffness of the equilibrium is negative, its contacts closed and without friction: friction makes the
+/// stiffness of a contact unsymmetric, so that its symmetric part is next to always negative in some direction, and what it feeds vibrates.
+fn negative_directions(model: &Model, equilibrium: &Equilibrium) -> usize {
+    let system = model.system_of_all_motions(equilibrium);
+    let mut stiffness = system.stiffness;
+    for (node, site) in model.wall.touchable() {
+        let [u, v, ..] = equilibrium.displacement[node];
+        // Nothing rubs without a sliding speed.
+        let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, 0.0) else { continue };
+        for (row, entries) in [U, V].into_iter().zip(tangent.stiffness) {
+            for (column, entry) in [U, V].into_iter().zip(entries) {
+                stiffness.diagonal[node][(row, column)] += entry;
             }
-        }),
-    })
+        }
+    }
+    negative_eigenvalues(stiffness, &system.held)
+}
+
+impl Stability {
+    fn of(
+        model: &Model,
+        equilibrium: &Equilibrium,
+        pencil: &Pencil,
+        found: &Found,
+        search: &ModeSearch,
+    ) -> Self {
+        let growing = found.in_band(search).filter(|pair| pair.value.re > NEUTRAL);
+        let fastest = growing.clone().max_by(|a, b| a.value.re.total_cmp(&b.value.re));
+        Self {
+            stable: match (fastest, found.completeness) {
+                (Some(_), _) => Some(false),
+                (None, Completeness::Counted) => Some(true),
+                (None, _) => None,
+            },
+            complete_to_hz: (found.complete_to / TAU).min(BAND_HZ),
+            completeness: found.completeness,
+            instability: fastest.map(|pair| {
+                let mode = Mode::new(pencil, pair, &model.mesh.depths());
+                Instability {
+                    kind: kind(model, equilibrium, pencil, pair, mode.kind),
+                    growth_rate: mode.growth_rate,
+                    frequency_hz: mode.frequency_hz,
+                    node: mode.node,
+                    measured_depth: mode.measured_depth,
+                    growing_modes: growing.count(),
+                }
+            }),
+        }
+    }
+
+    /// In words, that the string leaves its equilibrium without vibrating about it; `None` if no such motion was found.
+    pub fn warning(&self) -> Option<String> {
+        let unstable = self.instability.filter(Instability::is_static)?;
+        Some(format!(
+            "the equilibrium is unstable: {} moves the string away from it, growing with {:.3} 1/s, most at {:.1} m; its contacts, forces \
+             and torque are not those that the string comes to, and how it leaves depends on the least disturbance",
+            unstable.kind.in_words(),
+            unstable.growth_rate,
+            unstable.measured_depth
+        ))
+    }
+}
+
+impl Instability {
+    /// Whether it grows more than e times before it has turned by a radian: the string leaves the equilibrium and does not vibrate about it.
+    pub fn is_static(&self) -> bool {
+        TAU * self.frequency_hz < self.growth_rate
+    }
 }
 
 /// What puts most energy into a growing mode decides its kind.
@@ -227,7 +292,7 @@ fn kind(
         power(&wall, Some(&rubbing)),
     ];
     let most = (0..powers.len()).max_by(|&a, &b| powers[a].total_cmp(&powers[b])).unwrap_or(0);
-    let still = pair.value.im == 0.0;
+    let still = pair.value.im < pair.value.re;
     match most {
         _ if powers[most] <= 0.0 => InstabilityKind::Other,
         0 if still => InstabilityKind::Buckling,
@@ -272,6 +337,6 @@ mod tests {
             stable.of_divergence_at(10.0).starts_with("numerical or unexplained: stable about"),
             "{stable}"
         );
-        assert!(stable.to_string().ends_with(CONSTANT_TORQUE));
+        assert!(stable.to_string().ends_with(BIT_NOT_JUDGED));
     }
 }

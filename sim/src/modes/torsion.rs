@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::stability::CONSTANT_TORQUE;
+use super::BIT_NOT_JUDGED;
 use crate::contact::{sliding_segment, sliding_tangent};
 use crate::model::{Model, element_values};
 use crate::statics::Equilibrium;
@@ -94,7 +94,7 @@ pub fn torsional_modes(model: &Model, equilibrium: &Equilibrium) -> Option<Vec<T
 impl fmt::Display for UndampedTorsion {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.highest_hz, self.growing_modes) {
-            (None, _) => write!(formatter, "all torsional modes decay; {CONSTANT_TORQUE}"),
+            (None, _) => write!(formatter, "all torsional modes decay; {BIT_NOT_JUDGED}"),
             (Some(highest), _) if self.up_to_the_mesh => write!(
                 formatter,
                 "torsional modes grow up to {highest:.0} Hz, where the mesh ends ({:.0} Hz): friction that falls with speed feeds them, and \
@@ -104,12 +104,12 @@ impl fmt::Display for UndampedTorsion {
             ),
             (Some(highest), Some(count)) => write!(
                 formatter,
-                "{count} torsional modes grow, the highest at {highest:.1} Hz; all above decay; {CONSTANT_TORQUE}"
+                "{count} torsional modes grow, the highest at {highest:.1} Hz; all above decay; {BIT_NOT_JUDGED}"
             ),
             (Some(highest), None) => {
                 write!(
                     formatter,
-                    "torsional modes may grow up to {highest:.1} Hz and decay above; {CONSTANT_TORQUE}"
+                    "torsional modes may grow up to {highest:.1} Hz and decay above; {BIT_NOT_JUDGED}"
                 )
             }
         }

@@ -101,6 +101,10 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         let step = format!("{} ms", step * 1e3);
         writeln!(text, "  {name:10} {:18} {step:>9} {steps:>10}  {time}{chosen}", integrator.name())?;
     }
+    if let (Some(break_away), Some(rotating)) = (plan.torque_top_break_away, plan.torque_top_rotating) {
+        let (break_away, rotating) = (break_away / 1e3, rotating / 1e3);
+        writeln!(text, "torque at the top: {break_away:.3} kN m at break-away, {rotating:.3} kN m rotating")?;
+    }
     if let Some(torsion) = plan.undamped_torsion.filter(|torsion| !torsion.up_to_the_mesh) {
         writeln!(text, "{torsion}")?;
     }

@@ -144,6 +144,15 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         statics.torque_top / 1e3,
         statics.torque_bit / 1e3
     )?;
+    if let (Some(break_away), Some(rotating)) = (statics.torque_top_break_away, statics.torque_top_rotating) {
+        writeln!(
+            text,
+            "  torque at the top   {:>10.3} kN m at break-away, {:.3} kN m rotating; the run starts from {}",
+            break_away / 1e3,
+            rotating / 1e3,
+            scenario.statics.friction.name()
+        )?;
+    }
     if let (Some([least, largest]), Some([k_least, k_largest])) =
         (statics.friction_coefficient_range, statics.rotation_damping_range)
     {
@@ -193,6 +202,9 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         )?;
         if let Some(ResultErrors { time, mesh, spread }) = &computed.errors {
             writeln!(text, "{time}\n{mesh}\n{spread}")?;
+        }
+        if let Some(starts) = computed.starts.as_ref().filter(|starts| !starts.differ) {
+            writeln!(text, "{starts}")?;
         }
         if let Some(time) = computed.histories_part_at {
             writeln!(text, "the runs part at {time:.2} s: after that only statistics are meaningful")?;

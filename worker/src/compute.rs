@@ -4,18 +4,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use drillsweep_api::{FailureClass, PointError};
-use drillsweep_scenario::Scenario;
+use drillsweep_scenario::{Scenario, StartFriction, Starts};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{Model, ModelError};
-use drillsweep_sim::modes::{Stability, UndampedTorsion, stability};
+use drillsweep_sim::modes::{Stability, UndampedTorsion, stability, static_stability};
 use drillsweep_sim::signal::sample_range;
 use drillsweep_sim::statics::{Equilibrium, StaticsError};
 use drillsweep_sim::study::cost::{CostReport, Recommendation, StudyError};
 use drillsweep_sim::study::ensemble::{distances, parting_time};
 use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
+use drillsweep_sim::study::starts::StartsCompared;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
 use drillsweep_sim::transient::{Block, Histories, Outcome, Transient, TransientError, recorded_nodes};
 use drillsweep_table::quantity::columns::*;
@@ -42,7 +43,10 @@ pub struct Computed {
     pub histories_part_at: Option<f64>,
     /// The cost study in place of a run, where the scenario asks for one.
     pub study: Option<CostReport>,
-    /// Whether the scene is unstable by its physics, where the scenario asks for it.
+    /// The statistics of the run from the other start, if the scenario compares both.
+    pub starts: Option<StartsCompared>,
+    /// The verdict on the equilibrium: by all modes up to 20 Hz if the scenario requests it; otherwise only if the string leaves it without
+    /// vibrating about it.
     pub stability: Option<Stability>,
     /// The torsional modes that falling friction feeds; absent without a run in time, twist or friction that turns the string.
     pub undamped_torsion: Option<UndampedTorsion>,
@@ -75,6 +79,14 @@ pub enum ComputeError {
     /// There is no equilibrium.
     #[error(transparent)]
     Statics(#[from] StaticsError),
+    /// There is no equilibrium to start the second of two compared runs from.
+    #[error("the start with the friction {}: {error}", .friction.name())]
+    OtherStart {
+        /// Its friction.
+        friction: StartFriction,
+        /// Why there is none.
+        error: StaticsError,
+    },
     /// The run in time cannot be set up.
     #[error(transparent)]
     Transient(TransientError),
@@ -149,7 +161,7 @@ impl ComputeError {
                 PointError { time, node, details, ..error }
             }
             // What fails before the first step fails at its time.
-            ComputeError::Statics(failure) => {
+            ComputeError::Statics(failure) | ComputeError::OtherStart { error: failure, .. } => {
                 PointError { time: Some(0.0), node: number(Some(failure.node())), ..error }
             }
             ComputeError::Transient(failure) => {
@@ -165,6 +177,12 @@ impl Computed {
     pub fn summary_row(&self) -> Map<String, Value> {
         let mut row =
             summary_row(&self.statics, self.transient.as_ref(), &self.ensemble, self.histories_part_at);
+        if let Some(starts) = &self.starts {
+            row.put(&STARTS_DIFFER, starts.differ);
+            row.put(&STARTS_SIZE_DIFFERENCE, starts.orbit_size);
+            row.put(&STARTS_DEVIATION_DIFFERENCE, starts.radius_deviation);
+            row.put(&STARTS_DIFFERENCE_NODE, starts.node);
+        }
         if let Some(stability) = &self.stability {
             let unstable = stability.instability;
             row.put(&STABLE, stability.stable);
@@ -203,11 +221,11 @@ impl Computed {
     }
 }
 
-/// Simulated time of all runs of a point \[s\]: of its ensemble, or of its cost study.
+/// Simulated time of all runs of a point \[s\]: of its ensemble and its other start, or of its cost study.
 pub fn simulated_time_total(scenario: &Scenario) -> f64 {
     match &scenario.cost_study {
         Some(_) => study_time(scenario),
-        None => scenario.duration * f64::from(scenario.ensemble),
+        None => scenario.duration * f64::from(scenario.runs()),
     }
 }
 
@@ -224,8 +242,8 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
 }
 
 /// Simulates one point from its start, or from where the same point was suspended; temporary files are made in the directory
-/// `scratch`. What does not fit the point is passed over: it begins again. The other members of an ensemble and the runs of a
-/// cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
+/// `scratch`. What does not fit the point is passed over: it begins again. The other members of an ensemble, the run from the other start
+/// and the runs of a cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
 ///
 /// # Errors
 /// As [`compute`].
@@ -239,7 +257,9 @@ pub fn compute_from(
     let started = Stopwatch::start();
     let model = Model::new(scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
-    let statics = StaticsSummary::new(&equilibrium);
+    let (friction, other_friction) = (scenario.statics.friction, scenario.statics.friction.other());
+    let other_start = equilibrium.with_friction_at_rest(&model, other_friction);
+    let statics = StaticsSummary::new(&equilibrium, friction, other_start.as_ref().ok());
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();
@@ -284,14 +304,25 @@ pub fn compute_from(
     }
     let summary = |records| TransientSummary::new(&model, records).map_err(ArtifactError::from);
     let transient = records.as_ref().map(summary).transpose()?;
-    let stability = if scenario.recording.stability { runs.stability() } else { None };
+    let mut starts = None;
+    if let (Some(run), Starts::Both) = (&transient, scenario.statics.start) {
+        let other_start =
+            other_start.map_err(|error| ComputeError::OtherStart { friction: other_friction, error })?;
+        let Outcome::Finished(other) = (Runs { equilibrium: &other_start, ..runs }).member(0)? else {
+            return Err(ComputeError::Cancelled);
+        };
+        starts = Some(StartsCompared::new(run, &summary(&other)?, friction, &scenario.accuracy));
+    }
+    let stability =
+        if scenario.recording.stability { runs.stability() } else { static_stability(&model, &equilibrium) };
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let errors = transient.as_ref().map(|transient| {
         let mesh = MeshEstimate::of(&model, &equilibrium);
         ResultErrors::new(transient, &ensemble, undamped_torsion.as_ref(), mesh)
     });
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = stability.iter().filter_map(Stability::warning).collect();
+    warnings.extend(starts.iter().filter(|starts| starts.differ).map(StartsCompared::to_string));
     if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
         warnings.extend(torsion.warning(records.effort.resolved_hz));
     }
@@ -321,6 +352,7 @@ pub fn compute_from(
         ensemble,
         histories_part_at,
         study,
+        starts,
         stability,
         undamped_torsion,
         errors,
@@ -330,7 +362,8 @@ pub fn compute_from(
     Ok(Computation::Finished(Box::new(computed)))
 }
 
-/// The runs in time of a point.
+/// The runs in time of a point from one of its starts.
+#[derive(Clone, Copy)]
 struct Runs<'a> {
     model: &'a Model,
     equilibrium: &'a Equilibrium,
@@ -462,6 +495,54 @@ mod tests {
         assert_eq!(error["stability"]["stable"], false, "{error}");
         assert!(error["reason"].as_str().unwrap().contains("physically unstable: flutter"), "{error}");
         assert_eq!(error["is_explained_by_instability"], true, "{error}");
+    }
+
+    #[test]
+    fn runs_from_both_starts_are_compared() {
+        // Without unbalance the string stays where it slides; from break-away its friction falls, and it swings.
+        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        (scenario.duration, scenario.statics.start) = (0.3, Starts::Both);
+        scenario.recording.spectrum_windows = Some(Vec::new());
+        scenario.recording.orbit_window = None;
+        scenario.string.unbalance.clear();
+        let computed = compute(&scenario, &Control::new()).expect("runs");
+        let row = computed.summary_row();
+        assert_eq!(row["starts_differ"], true);
+        assert!(row["starts_size_difference"].as_f64().unwrap() > 0.99, "{row:?}");
+        assert!([10, 49, 282].contains(&row["starts_difference_node"].as_u64().unwrap()));
+        assert!(
+            computed.warnings.iter().any(|warning| warning.contains("hysteresis")),
+            "{:?}",
+            computed.warnings
+        );
+        let [break_away, rotating] =
+            ["torque_top_break_away", "torque_top_rotating"].map(|name| row[name].as_f64().unwrap());
+        assert_eq!(row["torque_top"], rotating);
+        assert!(break_away < 1.1 * rotating && rotating < -5000.0, "{break_away} and {rotating} N m");
+
+        // Nothing rubs: both starts are one.
+        (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
+        let computed = compute(&scenario, &Control::new()).expect("runs");
+        let row = computed.summary_row();
+        assert_eq!((&row["starts_differ"], &row["starts_size_difference"]), (&json!(false), &json!(0.0)));
+        assert_eq!(row["torque_top_break_away"], row["torque_top_rotating"]);
+    }
+
+    #[test]
+    fn an_equilibrium_that_the_string_leaves_is_reported_with_every_result() {
+        let computed = |name| {
+            let mut scenario = preset(name).expect("shipped preset");
+            scenario.duration = 0.01;
+            scenario.recording.spectrum_windows = Some(Vec::new());
+            scenario.recording.orbit_window = None;
+            compute(&scenario, &Control::new()).expect("runs")
+        };
+        let vertical = computed("hard/vertical");
+        let row = vertical.summary_row();
+        assert_eq!((&row["stable"], &row["instability"]), (&json!(false), &json!("buckling")));
+        let warning = &json!(vertical.provenance)["warnings"][0];
+        assert!(warning.as_str().unwrap().starts_with("the equilibrium is unstable: buckling"), "{warning}");
+        assert_eq!(computed("hard/horizontal").summary_row().get("stable"), None);
     }
 
     #[test]

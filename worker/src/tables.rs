@@ -82,6 +82,8 @@ pub(crate) fn summary_row(
     row.put(&TENSION_TOP, statics.tension_top);
     row.put(&TENSION_BIT, statics.tension_bit);
     row.put(&TORQUE_TOP, statics.torque_top);
+    row.put(&TORQUE_TOP_BREAK_AWAY, statics.torque_top_break_away);
+    row.put(&TORQUE_TOP_ROTATING, statics.torque_top_rotating);
     row.put(&TORQUE_BIT, statics.torque_bit);
     if let Some([least, largest]) = statics.friction_coefficient_range {
         row.put(&FRICTION_COEFFICIENT_MIN, least);

@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::{
     Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
-    TOLERANCES, TimeStepping, TimeWindow,
+    Starts, TOLERANCES, TimeStepping, TimeWindow,
 };
 
 use super::report::Report;
@@ -45,6 +45,13 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         "ensemble",
         scenario.ensemble,
         format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
+    );
+    report.require(
+        scenario.statics.start == Starts::One
+            || scenario.cost_study.is_none() && active_effects(scenario).transient,
+        "statics.start",
+        "both",
+        "must be one: there are no runs whose statistics could be compared (none in time, or a cost study in their place)",
     );
     if let Some(study) = &scenario.cost_study {
         study::check(report, scenario, study);

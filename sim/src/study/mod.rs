@@ -8,4 +8,5 @@ pub mod footprint;
 pub mod mesh_estimate;
 pub mod plan;
 pub mod soak;
+pub mod starts;
 pub mod summary;

@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::cost;
 use crate::effect::{EffectDecision, decide_effects};
 use crate::model::{Model, ModelError};
-use crate::modes::UndampedTorsion;
+use crate::modes::{UndampedTorsion, static_stability};
 use crate::statics::Equilibrium;
 use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
+use crate::study::summary::StaticsSummary;
 use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
 
 /// The plan of a scenario.
@@ -48,6 +49,11 @@ pub struct Plan {
     /// The torsional modes that falling friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
     /// there is no run in time, twist takes no part or friction does not turn the string.
     pub undamped_torsion: Option<UndampedTorsion>,
+    /// Torque at the top \[N m\] at break-away, friction mu_s at every node that touches; absent as `mesh_error`, or if that equilibrium was
+    /// not found.
+    pub torque_top_break_away: Option<f64>,
+    /// Torque at the top \[N m\] of the rotating string, friction mu at the sliding speed of each node; absent likewise.
+    pub torque_top_rotating: Option<f64>,
     /// The mesh's part of the error of the equilibrium; absent where [`Plan::with_equilibrium`] was not asked or there is none.
     pub mesh_error: Option<MeshEstimate>,
     /// What the equilibrium shows that can be simulated but is probably not meant, in words.
@@ -141,12 +147,12 @@ impl Plan {
         let nodes = model.node_count();
         let lengths = || model.mesh.elements.iter().map(|element| element.length);
         let in_time = model.effects.transient;
-        let simulated_time = if in_time { scenario.duration * f64::from(scenario.ensemble) } else { 0.0 };
+        let simulated_time = if in_time { scenario.duration * f64::from(scenario.runs()) } else { 0.0 };
         let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
         let degrees_of_freedom = degrees_of_freedom(&model);
         let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
         let planned = |(name, stepping): (&str, TimeStepping)| {
-            let runs = u64::from(scenario.ensemble);
+            let runs = u64::from(scenario.runs());
             let steps = step_count(&model, stepping).map(|steps| steps * runs);
             let cost = |steps: u64| {
                 let (speed, method) = (speed?, MethodKind::of(stepping));
@@ -177,6 +183,8 @@ impl Plan {
             study,
             is_study: scenario.cost_study.is_some(),
             undamped_torsion: None,
+            torque_top_break_away: None,
+            torque_top_rotating: None,
             mesh_error: None,
             warnings: Vec::new(),
         })
@@ -191,7 +199,13 @@ impl Plan {
         };
         let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
         self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        let start = scenario.statics.friction;
+        let other = equilibrium.with_friction_at_rest(&model, start.other());
+        let statics = StaticsSummary::new(&equilibrium, start, other.as_ref().ok());
+        self.torque_top_break_away = statics.torque_top_break_away;
+        self.torque_top_rotating = statics.torque_top_rotating;
         self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));
+        self.warnings.extend(static_stability(&model, &equilibrium).and_then(|found| found.warning()));
         for (planned, (_, stepping)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
             let more = planned.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
             if more > 1.0 {

@@ -1,6 +1,6 @@
 //! One row of scalars about a point: what a sweep's table shows.
 
-use drillsweep_scenario::TimeWindow;
+use drillsweep_scenario::{StartFriction, TimeWindow};
 use serde::Serialize;
 
 use crate::effect::contact;
@@ -29,8 +29,12 @@ pub struct StaticsSummary {
     pub tension_top: f64,
     /// Effective tension of the lowest element \[N\].
     pub tension_bit: f64,
-    /// Torque of the uppermost element \[N m\].
+    /// Torque of the uppermost element \[N m\] at the equilibrium that the run starts from.
     pub torque_top: f64,
+    /// The same at break-away, friction mu_s at every node that touches; absent if that equilibrium was not found.
+    pub torque_top_break_away: Option<f64>,
+    /// The same of the string that rotates, friction mu at the sliding speed of each node; absent if that equilibrium was not found.
+    pub torque_top_rotating: Option<f64>,
     /// Torque of the lowest element \[N m\].
     pub torque_bit: f64,
     /// Smallest and largest C_f along the string; absent without mud.
@@ -119,17 +123,23 @@ pub struct LineSummary {
 }
 
 impl StaticsSummary {
-    /// Sums up an equilibrium.
-    pub fn new(equilibrium: &Equilibrium) -> Self {
+    /// The sums of the equilibrium that a run starts from, and the torque at the top with the friction of the `other` start.
+    pub fn new(equilibrium: &Equilibrium, start: StartFriction, other: Option<&Equilibrium>) -> Self {
         let end = |values: &[f64], last: bool| {
             if last { values.last() } else { values.first() }.copied().unwrap_or(0.0)
+        };
+        let torque_top = end(&equilibrium.torque, false);
+        let torque_of = |friction: StartFriction| {
+            if friction == start { Some(torque_top) } else { other.map(|other| end(&other.torque, false)) }
         };
         Self {
             contacts: equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count(),
             normal_force_total: equilibrium.normal_force.iter().sum(),
             tension_top: end(&equilibrium.tension, false),
             tension_bit: end(&equilibrium.tension, true),
-            torque_top: end(&equilibrium.torque, false),
+            torque_top,
+            torque_top_break_away: torque_of(StartFriction::BreakAway),
+            torque_top_rotating: torque_of(StartFriction::Sliding),
             torque_bit: end(&equilibrium.torque, true),
             friction_coefficient_range: range(equilibrium.flows.iter().map(|flow| flow.friction_coefficient)),
             rotation_damping_range: range(equilibrium.flows.iter().map(|flow| flow.rotation_damping)),

@@ -114,8 +114,12 @@ quantities! {
     TENSION_TOP: "tension_top", "", FORCE, "tension top";
     /// Effective tension of the lowest element.
     TENSION_BIT: "tension_bit", "", FORCE, "tension bit";
-    /// Torque of the uppermost element.
+    /// Torque of the uppermost element at the equilibrium that the run starts from, `statics.friction`.
     TORQUE_TOP: "torque_top", "", TORQUE, "torque top";
+    /// Torque of the uppermost element at break-away: friction mu_s at every node that touches; absent if that equilibrium was not found.
+    TORQUE_TOP_BREAK_AWAY: "torque_top_break_away", "", TORQUE, "torque top at break-away";
+    /// Torque of the uppermost element of the rotating string: friction mu at the sliding speed of each node; absent if that equilibrium was not found.
+    TORQUE_TOP_ROTATING: "torque_top_rotating", "", TORQUE, "torque top rotating";
     /// Torque of the lowest element.
     TORQUE_BIT: "torque_bit", "", TORQUE, "torque bit";
 
@@ -262,13 +266,21 @@ quantities! {
     UNDAMPED_TORSION_HZ: "undamped_torsion_hz", "", FREQUENCY, "undamped torsion hz";
     /// Growth of that mode's amplitude.
     UNDAMPED_TORSION_GROWTH: "undamped_torsion_growth", "", RATE, "undamped torsion growth";
-    /// Whether small motions about the equilibrium decay while torque on bit is constant; absent where none was found to grow but not all were found.
+    /// Whether the statistics of the runs from both starts differ by more than the accuracy promises; absent unless `statics.start` is `both`.
+    STARTS_DIFFER: "starts_differ", "", -, "starts differ";
+    /// Largest difference of orbit sizes between the runs from both starts, relative to the larger.
+    STARTS_SIZE_DIFFERENCE: "starts_size_difference", "", RATIO, "size difference of starts";
+    /// Largest difference of the radius' standard deviations between the runs from both starts, relative to the larger.
+    STARTS_DEVIATION_DIFFERENCE: "starts_deviation_difference", "", RATIO, "deviation difference of starts";
+    /// Node with the largest difference of orbit sizes between the runs from both starts.
+    STARTS_DIFFERENCE_NODE: "starts_difference_node", "", -, "node of the starts' difference";
+    /// Whether small motions about the equilibrium decay, with a constant torque on bit; absent where none was found to grow but not all were found. Without `recording.stability` only false, for a string that leaves its equilibrium without vibrating about it.
     STABLE: "stable", "", -, "stable";
     /// How small motions about the equilibrium grow.
     INSTABILITY: "instability", "", -, "instability";
     /// Growth rate of the mode that grows fastest.
     INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
-    /// Frequency of the mode that grows fastest.
+    /// Frequency of the mode that grows fastest; next to 0 where the string leaves its equilibrium without vibrating about it.
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
     /// Where the point, or its reference run, stands.
     STATE: "state", "", -, "state";

@@ -12,7 +12,8 @@ use crate::Scenario;
 pub struct Statics {
     /// Friction of the equilibrium: `break_away` (mu_s, the paper's) or `sliding` (mu at the speed at which each node slides); absent
     /// means `break_away`. From `break_away` a run begins with a step of the friction, from mu_s to mu at the sliding speed, which
-    /// excites torsion; from `sliding` it begins in balance, and unbalance or an instability alone sets it in motion.
+    /// excites torsion; from `sliding` it begins in balance, and unbalance or an instability alone sets it in motion. Stick-slip then
+    /// grows from next to nothing, and takes longer to reach its size.
     #[serde(default)]
     pub friction: StartFriction,
     /// Starts that are run: `one` (the equilibrium with the `friction` above) or `both` (that with the other friction as well, to

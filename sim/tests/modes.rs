@@ -648,7 +648,7 @@ fn a_buckled_column_on_the_axis_leaves_it_as_beam_theory_says() {
     let found = judged(&scenario).expect("negative stiffness");
     let unstable = found.instability.expect("unstable");
     assert_eq!((found.stable, unstable.kind), (Some(false), InstabilityKind::Buckling), "{found}");
-    assert!(unstable.is_static() && found.warning().is_some());
+    assert!(found.warning().is_some_and(|warning| warning.contains("buckling")));
     // Shear and rotary inertia take 1e-4 of it.
     assert!((unstable.growth_rate / growth - 1.0).abs() < 1e-3, "{found} instead of {growth} 1/s");
 

@@ -258,8 +258,13 @@ pub fn compute_from(
     let model = Model::new(scenario)?;
     let equilibrium = Equilibrium::find(&model)?;
     let (friction, other_friction) = (scenario.statics.friction, scenario.statics.friction.other());
-    let other_start = equilibrium.with_friction_at_rest(&model, other_friction);
-    let statics = StaticsSummary::new(&equilibrium, friction, other_start.as_ref().ok());
+    let other_start = match equilibrium.with_friction_at_rest(&model, other_friction) {
+        Err(error) if scenario.statics.start == Starts::Both => {
+            return Err(ComputeError::OtherStart { friction: other_friction, error });
+        }
+        found => found.ok(),
+    };
+    let statics = StaticsSummary::new(&equilibrium, friction, other_start.as_ref());
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();
@@ -305,23 +310,20 @@ pub fn compute_from(
     let summary = |records| TransientSummary::new(&model, records).map_err(ArtifactError::from);
     let transient = records.as_ref().map(summary).transpose()?;
     let mut starts = None;
-    if let (Some(run), Starts::Both) = (&transient, scenario.statics.start) {
-        let other_start =
-            other_start.map_err(|error| ComputeError::OtherStart { friction: other_friction, error })?;
-        let Outcome::Finished(other) = (Runs { equilibrium: &other_start, ..runs }).member(0)? else {
+    if let (Some(run), Some(other_start), Starts::Both) = (&transient, &other_start, scenario.statics.start) {
+        let Outcome::Finished(other) = (Runs { equilibrium: other_start, ..runs }).member(0)? else {
             return Err(ComputeError::Cancelled);
         };
         starts = Some(StartsCompared::new(run, &summary(&other)?, friction, &scenario.accuracy));
     }
-    let stability =
-        if scenario.recording.stability { runs.stability() } else { static_stability(&model, &equilibrium) };
+    let left = static_stability(&model, &equilibrium);
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let errors = transient.as_ref().map(|transient| {
         let mesh = MeshEstimate::of(&model, &equilibrium);
         ResultErrors::new(transient, &ensemble, undamped_torsion.as_ref(), mesh)
     });
-    let mut warnings: Vec<String> = stability.iter().filter_map(Stability::warning).collect();
+    let mut warnings: Vec<String> = left.iter().filter_map(Stability::warning).collect();
     warnings.extend(starts.iter().filter(|starts| starts.differ).map(StartsCompared::to_string));
     if let (Some(torsion), Some(records)) = (&undamped_torsion, &records) {
         warnings.extend(torsion.warning(records.effort.resolved_hz));
@@ -353,7 +355,7 @@ pub fn compute_from(
         histories_part_at,
         study,
         starts,
-        stability,
+        stability: if scenario.recording.stability { runs.stability() } else { left },
         undamped_torsion,
         errors,
         warnings,

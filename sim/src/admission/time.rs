@@ -345,7 +345,7 @@ pub(super) fn is_whole(ratio: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::AccuracyPreset;
+    use drillsweep_scenario::{AccuracyPreset, CostStudy, Effect, Switch};
 
     use super::super::report::testing::{problem, problems, warnings};
     use super::*;
@@ -501,6 +501,19 @@ mod tests {
         assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes[3]"));
         let found = warnings(|s| s.recording.nodes.clear());
         assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes"));
+    }
+
+    #[test]
+    fn both_starts_are_compared_by_runs_in_time() {
+        for change in [(|s| s.cost_study = Some(CostStudy::default())) as fn(&mut Scenario), |s| {
+            s.effects.set(Effect::Transient, Switch::Off)
+        }] {
+            let found = problem("statics.start", |s| {
+                s.statics.start = Starts::Both;
+                change(s);
+            });
+            assert!(found.message.contains("compared"), "{found}");
+        }
     }
 
     #[test]

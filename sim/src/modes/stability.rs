@@ -154,7 +154,7 @@ pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, 
     let pencil = Pencil::about(model, equilibrium);
     let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
     let found = eigenpairs(&pencil, &search)?;
-    Ok(Stability::of(model, equilibrium, &pencil, &found, &search))
+    Ok(Stability::of(model, equilibrium, &pencil, &found, found.in_band(&search)))
 }
 
 /// The verdict on an equilibrium that the string leaves without vibrating about it, such as that of a buckled string on the hole's axis;
@@ -170,7 +170,8 @@ pub fn static_stability(model: &Model, equilibrium: &Equilibrium) -> Option<Stab
     // One mode ends the search after its first shift, which yields all that are as low.
     let search = ModeSearch { to_hz: BAND_HZ, most: 1, ..ModeSearch::default() };
     let found = uncounted_eigenpairs(&pencil, &search).ok()?;
-    let verdict = Stability::of(model, equilibrium, &pencil, &found, &search);
+    let leaving = found.in_band(&search).filter(|pair| does_not_vibrate(pair));
+    let verdict = Stability::of(model, equilibrium, &pencil, &found, leaving);
     verdict.instability.is_some().then_some(verdict)
 }
 
@@ -193,14 +194,15 @@ fn negative_directions(model: &Model, equilibrium: &Equilibrium) -> usize {
 }
 
 impl Stability {
-    fn of(
+    /// The verdict on those of the eigenpairs found that are `judged`.
+    fn of<'a>(
         model: &Model,
         equilibrium: &Equilibrium,
         pencil: &Pencil,
-        found: &Found,
-        search: &ModeSearch,
+        found: &'a Found,
+        judged: impl Iterator<Item = &'a Eigenpair> + Clone,
     ) -> Self {
-        let growing = found.in_band(search).filter(|pair| pair.value.re > NEUTRAL);
+        let growing = judged.filter(|pair| pair.value.re > NEUTRAL);
         let fastest = growing.clone().max_by(|a, b| a.value.re.total_cmp(&b.value.re));
         Self {
             stable: match (fastest, found.completeness) {
@@ -224,9 +226,9 @@ impl Stability {
         }
     }
 
-    /// In words, that the string leaves its equilibrium without vibrating about it; `None` if no such motion was found.
+    /// In words, that the string leaves its equilibrium; `None` if no motion was found to grow.
     pub fn warning(&self) -> Option<String> {
-        let unstable = self.instability.filter(Instability::is_static)?;
+        let unstable = self.instability?;
         Some(format!(
             "the equilibrium is unstable: {} moves the string away from it, growing with {:.3} 1/s, most at {:.1} m; its contacts, forces \
              and torque are not those that the string comes to, and how it leaves depends on the least disturbance",
@@ -237,11 +239,9 @@ impl Stability {
     }
 }
 
-impl Instability {
-    /// Whether it grows more than e times before it has turned by a radian: the string leaves the equilibrium and does not vibrate about it.
-    pub fn is_static(&self) -> bool {
-        TAU * self.frequency_hz < self.growth_rate
-    }
+/// Whether a motion grows more than e times before it has turned by a radian: the string leaves the equilibrium and does not vibrate about it.
+fn does_not_vibrate(pair: &Eigenpair) -> bool {
+    pair.value.im < pair.value.re
 }
 
 /// What puts most energy into a growing mode decides its kind.
@@ -292,7 +292,7 @@ fn kind(
         power(&wall, Some(&rubbing)),
     ];
     let most = (0..powers.len()).max_by(|&a, &b| powers[a].total_cmp(&powers[b])).unwrap_or(0);
-    let still = pair.value.im < pair.value.re;
+    let still = does_not_vibrate(pair);
     match most {
         _ if powers[most] <= 0.0 => InstabilityKind::Other,
         0 if still => InstabilityKind::Buckling,

@@ -280,7 +280,7 @@ quantities! {
     INSTABILITY: "instability", "", -, "instability";
     /// Growth rate of the mode that grows fastest.
     INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
-    /// Frequency of the mode that grows fastest; next to 0 where the string leaves its equilibrium without vibrating about it.
+    /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
     /// Where the point, or its reference run, stands.
     STATE: "state", "", -, "state";

@@ -164,9 +164,20 @@ fn points(
         }
         if has(tables::HISTORY.name) || has(tables::SPECTRA.name) {
             for node in point.summary.iter().flat_map(recorded_nodes) {
-                for window in point.scenario.spectrum_windows() {
+                let node_and_format = format!("node={node}&window=hann&format={format}");
+                let Some(windows) = point.scenario.spectrum_windows() else {
+                    // What is kept of a run that settles is its window.
+                    let name = format!("spectrum-node{node}.{format}");
+                    files.download(
+                        client,
+                        &format!("{path}/spectrum?{node_and_format}"),
+                        folder.join(name),
+                    )?;
+                    continue;
+                };
+                for window in windows {
                     let (from, to) = (json!(window.from), json!(window.to));
-                    let query = format!("node={node}&from={from}&to={to}&window=hann&format={format}");
+                    let query = format!("{node_and_format}&from={from}&to={to}");
                     let name = format!("spectrum-node{node}-{from}-{to}s.{format}");
                     files.download(client, &format!("{path}/spectrum?{query}"), folder.join(name))?;
                 }

@@ -163,10 +163,16 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         writeln!(text, "{stability}")?;
     }
     if let (Some(transient), Some(run)) = (&computed.transient, &provenance.run) {
+        writeln!(text, "{}", transient.settling)?;
         for orbit in &transient.orbits {
+            let interval = orbit.interval.map_or_else(String::new, |interval| {
+                let [size, deviation] =
+                    [interval.orbit_radius_rms, interval.radius_deviation].map(|half| half * 1e3);
+                format!("; 95 % of size +- {size:.3} mm, of deviation +- {deviation:.3} mm")
+            });
             writeln!(
                 text,
-                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm",
+                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm{interval}",
                 orbit.node,
                 orbit.measured_depth,
                 number(orbit.window.from),
@@ -230,7 +236,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             transient.resolved_hz,
             transient.capture_count
         )?;
-        let simulated = scenario.duration;
+        let simulated = transient.simulated_time;
         writeln!(
             text,
             "{} steps, {:.2} s wall, {:.2} s CPU ({:.4} CPU s per simulated s)",

@@ -79,14 +79,13 @@ impl Accuracy {
     /// What the choice promises of statistics; absent where integrator and step are given, which promise nothing.
     pub fn promise(&self) -> Option<Promise> {
         let orbit_size = self.statistics_tolerance()?;
-        let radius_deviation = match self {
-            Accuracy::Preset(AccuracyPreset::Draft) => 0.15,
-            Accuracy::Preset(AccuracyPreset::Standard) => 0.05,
-            Accuracy::Preset(AccuracyPreset::Reference) => 0.01,
-            // As the standard's.
-            Accuracy::Target(_) | Accuracy::Explicit(_) => 2.5 * orbit_size,
-        };
-        Some(Promise { orbit_size, radius_deviation })
+        Some(match self {
+            Accuracy::Preset(preset) => preset.promise(),
+            // In the ratio of the standard's.
+            Accuracy::Target(_) | Accuracy::Explicit(_) => {
+                Promise { orbit_size, radius_deviation: 2.5 * orbit_size }
+            }
+        })
     }
 }
 
@@ -189,6 +188,16 @@ impl AccuracyPreset {
             AccuracyPreset::Standard => 0.02,
             AccuracyPreset::Reference => 0.003,
         }
+    }
+
+    /// What it promises of statistics.
+    pub fn promise(self) -> Promise {
+        let radius_deviation = match self {
+            AccuracyPreset::Draft => 0.15,
+            AccuracyPreset::Standard => 0.05,
+            AccuracyPreset::Reference => 0.01,
+        };
+        Promise { orbit_size: self.tolerance(), radius_deviation }
     }
 
     /// The name on the wire.

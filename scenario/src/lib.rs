@@ -17,6 +17,7 @@ mod snapshots;
 mod statics;
 mod strict;
 mod study;
+mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
@@ -29,6 +30,7 @@ pub use snapshots::Snapshots;
 pub use statics::{StartFriction, Starts, Statics};
 pub use strict::read_strictly;
 pub use study::{CostStudy, MethodSteps, StudyReference, USUAL_STEPS};
+pub use window::{OrbitWindow, WindowName};
 
 use serde::{Deserialize, Serialize};
 
@@ -61,9 +63,9 @@ pub struct Scenario {
     /// How finely the string is cut into elements: `"auto"` or target element lengths. Too coarse, and bending between contacts and
     /// torsion at high frequencies are wrong; too fine costs processor time in proportion to the number of elements.
     pub mesh: Mesh,
-    /// Simulated time \[s\], a whole multiple of the recording interval; usual 20 to 120. Too short, and the statistics show how
-    /// the run starts: friction takes some 15 s to swing torsion of the base case up to stick-slip. Longer runs cost processor time
-    /// in proportion.
+    /// Simulated time \[s\], a whole multiple of the recording interval; where `recording.orbit_window` is `settled` the longest that a
+    /// run may take. Usual 20 to 120 with a fixed window, 300 with a settled one. Too short, and the statistics show how the run
+    /// starts: torsion that friction feeds can take 100 s to swing up to stick-slip. Longer runs cost processor time in proportion.
     pub duration: f64,
     /// What is kept of the run.
     pub recording: Recording,
@@ -81,25 +83,6 @@ pub struct Scenario {
     /// A work-precision study in place of the run; absent means the run.
     #[serde(default)]
     pub cost_study: Option<CostStudy>,
-}
-
-impl Scenario {
-    /// The window of the orbit statistics: what `recording` says, or the last third of the run.
-    pub fn orbit_window(&self) -> TimeWindow {
-        let last_third = TimeWindow { from: self.duration * 2.0 / 3.0, to: self.duration };
-        self.recording.orbit_window.unwrap_or(last_third)
-    }
-
-    /// The windows whose full spectra are summarised: what `recording` says, or the last sixth of the run, from a sample on; none
-    /// where that holds fewer than 8.
-    pub fn spectrum_windows(&self) -> Vec<TimeWindow> {
-        if let Some(given) = &self.recording.spectrum_windows {
-            return given.clone();
-        }
-        let last_sixth = TimeWindow::last(1.0 / 6.0, self.duration, self.recording.rate_hz);
-        let samples = (last_sixth.to - last_sixth.from) * self.recording.rate_hz;
-        if samples >= FEWEST_SAMPLES { vec![last_sixth] } else { Vec::new() }
-    }
 }
 
 /// The well: a survey interpolated by minimum curvature (docs/model/well.md) and one open hole.
@@ -513,16 +496,19 @@ pub struct Recording {
     /// costs storage; with none, and no window, `auto` leaves the run in time out. Rotation speed and torque at the bit are kept beside
     /// them where torsion is solved for.
     pub nodes: Vec<NodeChoice>,
-    /// Half-open windows whose full spectra are summarised, of 8 samples at least, usual 5 to 20 s each; absent means the last sixth
-    /// of the run, an empty list none. Frequencies are resolved to 1 over the length of a window; too long a one smears lines that
-    /// drift. A preset's windows are those of its duration: where a request changes that and gives none, they count as absent.
+    /// Half-open windows whose full spectra are summarised, of 8 samples at least, usual 5 to 20 s each; an empty list none. Absent
+    /// means the settled window where `orbit_window` is `settled`, and the last sixth of the run otherwise. Frequencies are resolved
+    /// to 1 over the length of a window; too long a one smears lines that drift. A preset's windows are those of its duration: if a
+    /// request changes that and gives none, they count as absent.
     #[serde(default)]
     pub spectrum_windows: Option<Vec<TimeWindow>>,
-    /// Half-open window of the orbit statistics, of 8 samples at least; absent means the last third of the run, and so does a
-    /// preset's where a request changes the duration and gives none. It should begin when the start has died away and hold many
-    /// periods of the slowest vibration, some 2 Hz in the base case: statistics over a short one scatter.
+    /// Window of the orbit statistics: `settled`, or a fixed half-open one of 8 samples at least. With `settled` the run ends once
+    /// statistics of consecutive windows agree to half of what the accuracy promises, and the result reports the window. Absent
+    /// means the last third of the run, and so does a preset's fixed one if a request changes the duration and gives none. A fixed
+    /// one should begin when the start has died away and hold many periods of the slowest vibration, some 2 Hz in the base case:
+    /// statistics over a short one scatter.
     #[serde(default)]
-    pub orbit_window: Option<TimeWindow>,
+    pub orbit_window: Option<OrbitWindow>,
     /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which; `false` unless given.
     /// It takes about a second; a run that fails is judged in any case.
     #[serde(default)]

@@ -6,9 +6,9 @@
 use crate::set::{Step, parse};
 use crate::{
     Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Material, Mesh,
-    MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, Outputs, RayleighDamping, Recording, ScaledMesh,
-    Scenario, Section, Snapshots, StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint,
-    UnbalanceMass, Well,
+    MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs, RayleighDamping, Recording,
+    ScaledMesh, Scenario, Section, Snapshots, StudyReference, SurveyStation, TimeStepping, TimeWindow,
+    ToolJoint, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -153,6 +153,22 @@ impl Numbers for Outputs {
         match self {
             Outputs::Orbits(orbits) => orbits.each(visit),
             Outputs::Summary | Outputs::Spectra | Outputs::Full => {}
+        }
+    }
+}
+
+impl Numbers for OrbitWindow {
+    fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
+        match self {
+            OrbitWindow::Named(_) => None,
+            OrbitWindow::Fixed(window) => window.find(steps),
+        }
+    }
+
+    fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        match self {
+            OrbitWindow::Named(_) => {}
+            OrbitWindow::Fixed(window) => window.each(visit),
         }
     }
 }

@@ -66,7 +66,7 @@ pub fn preset(name: &str) -> Option<Scenario> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{StartFriction, TimeWindow};
+    use crate::StartFriction;
 
     #[test]
     fn every_preset_parses_under_its_own_name() {
@@ -86,14 +86,19 @@ mod tests {
     }
 
     #[test]
-    fn the_damped_case_differs_by_its_damping_and_start_alone() {
+    fn the_damped_case_differs_by_damping_wall_start_and_settled_windows_alone() {
         let (printed, mut damped) = (preset("paper-200m").unwrap(), preset("paper-200m-damped").unwrap());
         assert_eq!(
             (printed.damping.stiffness_proportional, damped.damping.stiffness_proportional),
             (0.0, 3e-5)
         );
+        assert!(damped.settles() && damped.spectrum_windows().is_none());
+        assert_eq!((printed.duration, damped.duration), (60.0, 300.0));
         damped.damping = printed.damping;
         damped.statics = printed.statics;
+        damped.contact.law = printed.contact.law;
+        damped.duration = printed.duration;
+        damped.recording = printed.recording.clone();
         damped.name.clone_from(&printed.name);
         assert_eq!(printed, damped);
     }
@@ -106,7 +111,8 @@ mod tests {
         for (name, _) in closed {
             let scene = preset(name).unwrap();
             assert_eq!(scene.damping, damped.damping, "{name}");
-            assert_eq!((scene.duration, scene.orbit_window()), (60.0, TimeWindow { from: 40.0, to: 60.0 }));
+            assert_eq!((scene.duration, scene.settles()), (damped.duration, true), "{name}");
+            assert_eq!(scene.spectrum_windows(), None, "{name}");
             assert_eq!((&scene.operation, &scene.contact), (&damped.operation, &damped.contact), "{name}");
             assert_eq!(scene.recording.nodes.len(), 3, "{name}");
         }

@@ -98,8 +98,8 @@ impl ScenarioRequest {
         Ok(scenario)
     }
 
-    /// Makes the windows of a preset follow the duration (absent windows do), but for those that the request gives itself:
-    /// they were chosen for the preset's own duration.
+    /// Makes the fixed windows of a preset follow the duration (absent windows do), but for those that the request gives itself:
+    /// they were chosen for the preset's own duration. A settled window does not depend on it.
     fn let_windows_follow(&self, scenario: &mut Scenario, swept: &[&str]) {
         if self.preset.is_none() {
             return;
@@ -119,7 +119,7 @@ impl ScenarioRequest {
         if !gives("spectrum_windows") {
             scenario.recording.spectrum_windows = None;
         }
-        if !gives("orbit_window") {
+        if !gives("orbit_window") && !scenario.settles() {
             scenario.recording.orbit_window = None;
         }
     }
@@ -189,7 +189,7 @@ mod tests {
     fn a_presets_windows_follow_the_duration_unless_given() {
         let windows = |set: &str| {
             let scenario = resolve_json(&format!(r#"{{"preset": "paper-200m", "set": {set}}}"#)).unwrap();
-            (scenario.orbit_window(), scenario.spectrum_windows())
+            (scenario.orbit_window().unwrap(), scenario.spectrum_windows().unwrap())
         };
         let window = |from, to| TimeWindow { from, to };
         let own = (window(40.0, 60.0), vec![window(15.0, 25.0), window(50.0, 60.0)]);
@@ -208,6 +208,18 @@ mod tests {
         let edge = r#"{"duration": 61, "recording.orbit_window.to": 61}"#;
         assert_eq!(windows(edge).0, window(40.0, 61.0));
         assert_eq!(windows(r#"{"duration": 6, "recording.spectrum_windows": []}"#).1, []);
+    }
+
+    #[test]
+    fn a_presets_settled_window_stays_when_the_duration_changes() {
+        let resolved =
+            |set: &str| resolve_json(&format!(r#"{{"preset": "paper-200m-damped", "set": {set}}}"#)).unwrap();
+        for set in ["{}", r#"{"duration": 120}"#] {
+            let scenario = resolved(set);
+            assert!(scenario.settles() && scenario.spectrum_windows().is_none(), "{set}");
+        }
+        let following = resolved(r#"{"duration": 120, "recording.orbit_window": null}"#);
+        assert_eq!(following.orbit_window(), Some(TimeWindow { from: 80.0, to: 120.0 }));
     }
 
     #[test]

@@ -3,14 +3,15 @@
 use serde_json::{Map, Value, json};
 
 use crate::format::from_value;
-use crate::{Problem, Scenario};
+use crate::{Problem, Scenario, TimeWindow};
 
 impl Scenario {
     /// The scenario with one field changed. `path` names it with dots and indices: `mud.flow_rate`,
     /// `string.sections[1].count`, `recording.nodes`. An object given for an object changes the fields it
     /// names and leaves the others; `null` removes what is optional (`mud`). A field of a named accuracy may
     /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance;
-    /// a factor on the mesh `auto` that of target lengths. Snapshots come to be by their rate, `recording.snapshots.rate_hz`.
+    /// a factor on the mesh `auto` that of target lengths. Snapshots come to be by their rate, `recording.snapshots.rate_hz`,
+    /// and an end of a settled orbit window makes it a fixed one, the last third otherwise.
     ///
     /// # Errors
     /// A path that names no field (with the fields there are), or a value of the wrong type.
@@ -26,6 +27,10 @@ impl Scenario {
                 if self.recording.snapshots.is_none() =>
             {
                 tree["recording"]["snapshots"] = json!({ "rate_hz": null });
+            }
+            [Step::Field("recording"), Step::Field("orbit_window"), Step::Field(_)] if self.settles() => {
+                let TimeWindow { from, to } = self.last_third();
+                tree["recording"]["orbit_window"] = json!({ "from": from, "to": to });
             }
             [Step::Field("accuracy"), _, ..] => {
                 tree["accuracy"] = serde_json::to_value(self.accuracy.time_stepping())
@@ -144,7 +149,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::{Accuracy, Integrator, NodeChoice, Switch, TimeWindow, preset};
+    use crate::{Accuracy, Integrator, NodeChoice, Switch, preset};
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

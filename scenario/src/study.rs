@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{AccuracyPreset, Effect, Integrator, TimeStepping};
+use crate::{AccuracyPreset, Effect, Integrator, Scenario, TimeStepping};
 
 /// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
 /// different kind both reach.
@@ -11,8 +11,8 @@ use crate::{AccuracyPreset, Effect, Integrator, TimeStepping};
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
     /// Simulated time of each run \[s\], 80 recording intervals or more and a whole number of them. Absent means the scenario's own
-    /// duration and windows; of any other duration orbits are looked at over the last third, and spectra over the last sixth. A
-    /// short one saves time and misses what comes late, such as stick-slip.
+    /// duration and windows, or 60 s at most where its window is settled; of any other duration, and of that, orbits are looked at
+    /// over the last third, and spectra over the last sixth. A short one saves time and misses what comes late, such as stick-slip.
     #[serde(default)]
     pub duration: Option<f64>,
     /// Members of the ensemble that each method runs, 1 to 64, 1 unless given; usual 1, 3 or 5. With 5 or more, bias (difference of
@@ -44,6 +44,23 @@ pub struct CostStudy {
     /// switched off in turn; `false` unless given. It goes with neither `methods` nor `mesh_factors` nor `total`.
     #[serde(default)]
     pub effects: bool,
+}
+
+/// Simulated time of each run of a study of a scenario whose window is settled \[s\], unless it says otherwise.
+const DURATION_OF_SETTLED: f64 = 60.0;
+
+impl Scenario {
+    /// Simulated time of each run of the scenario's cost study \[s\].
+    pub fn study_duration(&self) -> f64 {
+        let Self { duration, recording, cost_study, .. } = self;
+        let rate = recording.rate_hz;
+        let usual = if self.settles() {
+            duration.min((DURATION_OF_SETTLED * rate).round() / rate)
+        } else {
+            *duration
+        };
+        cost_study.as_ref().and_then(|study| study.duration).unwrap_or(usual)
+    }
 }
 
 /// Fixed steps \[s\] that are compared where a study names none.

@@ -2,8 +2,8 @@
 
 use drillsweep_scenario::{
     ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud,
-    NodeChoice, Operation, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots,
-    Statics, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    NodeChoice, Operation, OrbitWindow, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section,
+    Snapshots, Statics, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well, WindowName,
 };
 use serde::Serialize;
 
@@ -50,7 +50,7 @@ impl CanonicalString {
     }
 }
 
-/// What is kept of a run but for its snapshots, which have a place of their own.
+/// What is kept of a run but for its snapshots, which have a place of their own. A window that is absent is the settled one.
 #[derive(Serialize)]
 struct CanonicalRecording {
     rate_hz: f64,
@@ -65,6 +65,10 @@ impl CanonicalRecording {
     fn new(recording: Recording) -> (Self, Option<Snapshots>) {
         let Recording { rate_hz, nodes, spectrum_windows, orbit_window, stability, outputs, snapshots } =
             recording;
+        let orbit_window = match orbit_window {
+            Some(OrbitWindow::Fixed(window)) => Some(window),
+            Some(OrbitWindow::Named(WindowName::Settled)) | None => None,
+        };
         (Self { rate_hz, nodes, spectrum_windows, orbit_window, stability, outputs }, snapshots)
     }
 }
@@ -80,7 +84,7 @@ enum CanonicalMesh {
 /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for the same numbers, however they
 /// are written. They are the postcard encoding (little-endian IEEE doubles, fields in their order, no names) of the scenario without its
 /// `name`, with a named accuracy written out as integrator and step, with the material of every section and tool joint, with what a length
-/// of wall has by default, with windows that follow the duration, with the mesh `auto` as a factor of one, with every effect decided, and
+/// of wall has by default, with windows that follow the duration and none in place of a settled one, with the mesh `auto` as a factor of one, with every effect decided, and
 /// with -0.0 written as 0.0.
 ///
 /// Snapshots, which most scenarios do not ask for, stand behind all else where there are some, and leave no trace where there are none; so
@@ -139,8 +143,8 @@ pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
 }
 
 fn with_windows_written_out(mut scenario: Scenario) -> Scenario {
-    scenario.recording.spectrum_windows = Some(scenario.spectrum_windows());
-    scenario.recording.orbit_window = Some(scenario.orbit_window());
+    scenario.recording.spectrum_windows = scenario.spectrum_windows();
+    scenario.recording.orbit_window = scenario.orbit_window().map(OrbitWindow::Fixed);
     let window = scenario.snapshot_window();
     if let Some(snapshots) = &mut scenario.recording.snapshots {
         snapshots.window = window;
@@ -199,6 +203,20 @@ mod tests {
             .and_then(|scenario| scenario.with("contact.damping_per_length", Value::from(2e4)));
         assert_eq!(canonical_bytes(&written.unwrap()), canonical_bytes(&by_length));
         assert_ne!(canonical_bytes(&by_length), bytes);
+    }
+
+    #[test]
+    fn a_settled_window_is_none_and_differs_from_every_fixed_one() {
+        let with = |window: Value| canonical_bytes(&paper().with("recording.orbit_window", window).unwrap());
+        let settled = with(json!("settled"));
+        assert_ne!(settled, canonical_bytes(&paper()));
+        let mut spectra = paper().with("recording.orbit_window", json!("settled")).unwrap();
+        spectra.recording.spectrum_windows = None;
+        assert_ne!(
+            canonical_bytes(&spectra),
+            settled,
+            "spectra over the settled window are not those of fixed ones"
+        );
     }
 
     #[test]

@@ -221,7 +221,7 @@ impl Computed {
     }
 }
 
-/// Simulated time of all runs of a point \[s\]: of its ensemble and its other start, or of its cost study.
+/// Simulated time of all runs of a point \[s\], the longest that they may take: of its ensemble and its other start, or of its cost study.
 pub fn simulated_time_total(scenario: &Scenario) -> f64 {
     match &scenario.cost_study {
         Some(_) => study_time(scenario),
@@ -293,7 +293,7 @@ pub fn compute_from(
     let mut ensemble = Vec::new();
     let mut histories_part_at: Option<f64> = None;
     if let Some(first) = &records {
-        let window = scenario.orbit_window();
+        let window = first.settling.window;
         let samples = sample_range(window.from, window.to, first.rate_hz, first.histories.samples());
         for member in 1..scenario.ensemble {
             let Outcome::Finished(other) = runs.member(member)? else { return Err(ComputeError::Cancelled) };

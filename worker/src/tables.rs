@@ -11,7 +11,9 @@ use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::ensemble::spread;
 use drillsweep_sim::study::errors::OtherMember;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{EnergyRow, Histories, Records, Series, SnapshotSeries, SnapshotTimes};
+use drillsweep_sim::transient::{
+    EnergyRow, Histories, OrbitInterval, Records, Series, Settling, SnapshotSeries, SnapshotTimes,
+};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::quantity::{self, Variant};
@@ -95,6 +97,13 @@ pub(crate) fn summary_row(
     }
     let Some(transient) = transient else { return row };
     row.0.extend(transient_row(transient).0);
+    for orbit in &transient.orbits {
+        if let Some(OrbitInterval { orbit_radius_rms, radius_deviation }) = orbit.interval {
+            let name = |of: &Quantity| Variant::Confidence.of(&of.at_node(orbit.node));
+            row.put(name(&ORBIT_RADIUS_RMS), orbit_radius_rms);
+            row.put(name(&ORBIT_RADIUS_DEVIATION), radius_deviation);
+        }
+    }
     row.put(&ENSEMBLE_MEMBERS, 1 + ensemble.len());
     if ensemble.is_empty() {
         return row;
@@ -121,7 +130,7 @@ pub(crate) fn summary_row(
 
 /// The scalars of one run in time.
 fn transient_row(transient: &TransientSummary) -> Row {
-    let mut row = Row::default();
+    let mut row = settling_row(transient.simulated_time, &transient.settling);
     for orbit in &transient.orbits {
         let node = orbit.node;
         row.put(ORBIT_OFFSET.at_node(node), orbit.offset);
@@ -151,6 +160,22 @@ fn transient_row(transient: &TransientSummary) -> Row {
     row.put(&ERROR_ESTIMATE_DISPLACEMENT, transient.error_estimate.displacement);
     row.put(&ENERGY_RESIDUAL, transient.energy_residual);
     row.put(&ENERGY_RESIDUAL_RATIO, transient.energy_residual_ratio);
+    row
+}
+
+/// What a run's statistics are over, and whether its motion has settled.
+fn settling_row(simulated_time: f64, settling: &Settling) -> Row {
+    let mut row = Row::default();
+    row.put(&SIMULATED_TIME, simulated_time);
+    row.put(&MOTION_REGIME, settling.regime.name());
+    row.put(&SETTLED_AT, settling.settled_at);
+    row.put(&STATISTICS_FROM, settling.window.from);
+    row.put(&STATISTICS_TO, settling.window.to);
+    row.put(&HALVES_DIFFER, settling.halves_differ);
+    row.put(&GROWING_MODE_HZ, settling.growing_mode.map(|mode| mode.frequency_hz));
+    row.put(&GROWING_MODE_RATE, settling.growing_mode.map(|mode| mode.growth_rate));
+    row.put(&BASE_FREQUENCY_1_HZ, settling.base_frequencies_hz.first());
+    row.put(&BASE_FREQUENCY_2_HZ, settling.base_frequencies_hz.get(1));
     row
 }
 
@@ -324,7 +349,7 @@ fn spectra(
     scratch: &Path,
 ) -> Result<EncodedArtifact, ArtifactError> {
     let histories = &records.histories;
-    let windows = model.scenario.spectrum_windows();
+    let windows = records.spectrum_windows(&model.scenario);
     let piece = |index: usize, node: usize, window: &TimeWindow| {
         let kept = sample_range(window.from, window.to, records.rate_hz, histories.samples());
         let u = histories.read(index, Series::U, kept.clone())?;

@@ -112,7 +112,9 @@ mod tests {
             .points
             .iter()
             .map(|point| sweep.scenario(point))
-            .map(|scenario| (scenario.orbit_window().from, scenario.spectrum_windows()[0].from))
+            .map(|scenario| {
+                (scenario.orbit_window().unwrap().from, scenario.spectrum_windows().unwrap()[0].from)
+            })
             .collect();
         assert_eq!(windows, [(4.0, 5.0), (20.0, 25.0)]);
         let by_points = expansion(
@@ -121,7 +123,7 @@ mod tests {
         assert_eq!(by_points.points[1].key, sweep.points[1].key);
         let swept_window = expansion(json!({"preset": "paper-200m", "axes": {
             "duration": {"values": [50]}, "recording.orbit_window.to": {"values": [45, 50]}}}));
-        let window = swept_window.scenario(&swept_window.points[0]).orbit_window();
+        let window = swept_window.scenario(&swept_window.points[0]).orbit_window().unwrap();
         assert_eq!((window.from, window.to), (40.0, 45.0));
     }
 

@@ -84,7 +84,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         format!("{runs} runs"),
         format!("must have at most {MOST_RUNS} runs, those of the reference and all members included"),
     );
-    let samples = study.duration.unwrap_or(scenario.duration) * rate;
+    let samples = scenario.study_duration() * rate;
     let kept = (lines * scenario.recording.nodes.len()) as f64 * samples;
     report.require(
         !kept.is_finite() || kept <= MOST_KEPT_SAMPLES,

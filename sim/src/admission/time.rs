@@ -1,14 +1,15 @@
 //! Rules of duration, accuracy and recording.
 
 use drillsweep_scenario::{
-    Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, Outputs, Scenario,
-    Starts, TOLERANCES, TimeStepping, TimeWindow,
+    Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, OrbitWindow, Outputs,
+    Scenario, Starts, TOLERANCES, TimeStepping, TimeWindow, WindowName,
 };
 
 use super::report::Report;
 use super::{snapshots, study};
 use crate::effect::active_effects;
 use crate::string::StringMesh;
+use crate::transient::spectrum_windows_at_most;
 
 /// Two times that differ by less than this part of them are the same.
 const SAME_TIME: f64 = 1e-9;
@@ -67,8 +68,15 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
     for (i, window) in recording.spectrum_windows.iter().flatten().take(MOST_WINDOWS).enumerate() {
         check_window(report, scenario, window, &format!("recording.spectrum_windows[{i}]"));
     }
-    if let Some(window) = &recording.orbit_window {
-        check_window(report, scenario, window, "recording.orbit_window");
+    match &recording.orbit_window {
+        Some(OrbitWindow::Fixed(window)) => check_window(report, scenario, window, "recording.orbit_window"),
+        Some(OrbitWindow::Named(WindowName::Settled)) => report.require(
+            !recording.nodes.is_empty() || !active_effects(scenario).transient,
+            "recording.orbit_window",
+            "settled",
+            "needs at least one of recording.nodes, whose motion shows whether it has settled",
+        ),
+        None => {}
     }
     report.warn(
         recording.nodes.is_empty() && active_effects(scenario).transient,
@@ -89,7 +97,10 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
         Outputs::Summary | Outputs::Full => {}
         Outputs::Spectra => {
             for (path, is_empty) in [
-                ("recording.spectrum_windows", scenario.spectrum_windows().is_empty()),
+                (
+                    "recording.spectrum_windows",
+                    scenario.spectrum_windows().is_some_and(|windows| windows.is_empty()),
+                ),
                 ("recording.nodes", recording.nodes.is_empty()),
             ] {
                 report.require(!is_empty, PATH, "spectra", format!("needs at least one of {path}"));
@@ -265,7 +276,8 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         ),
     );
     let of_windows = |window: &TimeWindow| (window.to - window.from).max(0.0) * rate;
-    let in_windows: f64 = scenario.spectrum_windows().iter().take(MOST_WINDOWS).map(of_windows).sum();
+    let windows = spectrum_windows_at_most(scenario);
+    let in_windows: f64 = windows.iter().take(MOST_WINDOWS).map(of_windows).sum();
     report.require(
         scenario.recording.outputs != Outputs::Spectra || nodes * in_windows <= MOST_SAMPLES_OF_NODES,
         "recording.spectrum_windows",

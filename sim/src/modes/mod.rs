@@ -17,7 +17,7 @@ mod walk;
 
 pub use pencil::Pencil;
 pub use stability::{Instability, InstabilityKind, Stability, stability, static_stability};
-pub use torsion::{TorsionalMode, UndampedTorsion, torsional_modes};
+pub use torsion::{TorsionalMode, UndampedTorsion, growing_torsion, torsional_modes};
 
 use std::f64::consts::TAU;
 use std::fmt;

@@ -50,7 +50,8 @@ pub struct UndampedTorsion {
 }
 
 /// One mode of twist.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct TorsionalMode {
     /// Frequency \[Hz\].
     pub frequency_hz: f64,
@@ -89,6 +90,15 @@ impl UndampedTorsion {
 /// of the number of nodes.
 pub fn torsional_modes(model: &Model, equilibrium: &Equilibrium) -> Option<Vec<TorsionalMode>> {
     Some(Chain::about(model, equilibrium)?.modes())
+}
+
+/// The torsional modes of a model about its equilibrium that grow, up to a frequency \[Hz\], by frequency; none as
+/// [`UndampedTorsion::about`]. The time grows with the number of nodes and of modes below that frequency.
+pub fn growing_torsion(model: &Model, equilibrium: &Equilibrium, to_hz: f64) -> Vec<TorsionalMode> {
+    let Some(chain) = Chain::about(model, equilibrium) else { return Vec::new() };
+    let mut modes = chain.modes_below((TAU * to_hz).powi(2));
+    modes.retain(|mode| mode.growth_rate > 0.0);
+    modes
 }
 
 impl fmt::Display for UndampedTorsion {
@@ -231,16 +241,23 @@ impl Chain {
         }
     }
 
-    /// The modes by frequency: eigenvalues enclosed by Sturm sequences, growth -phi^T C phi / (2 phi^T M phi) from their shapes.
+    /// All modes by frequency.
     fn modes(&self) -> Vec<TorsionalMode> {
         let count = self.inertia.len();
         let mut above_all = 1.0;
         while self.below(above_all) < count && above_all < f64::MAX {
             above_all *= 4.0;
         }
+        self.modes_below(above_all)
+    }
+
+    /// The modes of eigenvalues below `highest` by frequency: eigenvalues enclosed by Sturm sequences, growth
+    /// -phi^T C phi / (2 phi^T M phi) from their shapes.
+    fn modes_below(&self, highest: f64) -> Vec<TorsionalMode> {
+        let count = self.below(highest);
         let mut modes = Vec::with_capacity(count);
         // Intervals with the numbers of eigenvalues below their ends, the lowest last.
-        let mut intervals = vec![(0.0, above_all, 0, count)];
+        let mut intervals = vec![(0.0, highest, 0, count)];
         while let Some((low, high, below_low, below_high)) = intervals.pop() {
             if below_low == below_high {
                 continue;

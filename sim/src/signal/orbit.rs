@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::window::Window;
+
 /// Where an orbit lies and how large it is \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -26,19 +28,31 @@ pub struct OrbitStatistics {
     pub peak_to_peak_v: f64,
 }
 
-/// Statistics of the samples (u, v); nothing where there are none.
+/// Statistics of the samples (u, v), all weighted alike; nothing where there are none.
 ///
 /// # Panics
 /// When u and v differ in length.
 pub fn orbit_statistics(u: &[f64], v: &[f64]) -> Option<OrbitStatistics> {
+    weighted_orbit_statistics(u, v, Window::Rectangular)
+}
+
+/// Statistics of the samples (u, v) with the weights of a window; extremes are those of all samples. Nothing where there are none.
+///
+/// # Panics
+/// When u and v differ in length.
+pub fn weighted_orbit_statistics(u: &[f64], v: &[f64], window: Window) -> Option<OrbitStatistics> {
     assert_eq!(u.len(), v.len());
-    if u.is_empty() {
+    let weights: Vec<f64> = (0..u.len()).map(|n| window.weight(n, u.len())).collect();
+    let total: f64 = weights.iter().sum();
+    if total <= 0.0 {
         return None;
     }
-    let count = u.len() as f64;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let mean = |values: &[f64]| {
+        values.iter().zip(&weights).map(|(value, weight)| weight * value).sum::<f64>() / total
+    };
     let mean_square_from = |values: &[f64], centre: f64| {
-        values.iter().map(|value| (value - centre) * (value - centre)).sum::<f64>() / count
+        let squares = values.iter().map(|value| (value - centre) * (value - centre));
+        squares.zip(&weights).map(|(square, weight)| weight * square).sum::<f64>() / total
     };
     let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -7,7 +7,7 @@ use crate::model::{Model, ModelError};
 use crate::signal::sample_range;
 use crate::transient::{
     BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,
-    bit_beside, recorded_nodes,
+    bit_beside, orbit_window_at_most, recorded_nodes, spectrum_windows_at_most,
 };
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
@@ -100,8 +100,8 @@ impl Recorded {
         let samples = (scenario.duration * rate).round();
         let length =
             |window: &TimeWindow| sample_range(window.from, window.to, rate, samples as usize).len() as u64;
-        let spectra = scenario.spectrum_windows();
-        let orbit = length(&scenario.orbit_window());
+        let spectra = spectrum_windows_at_most(scenario);
+        let orbit = length(&orbit_window_at_most(scenario));
         Self {
             nodes: recorded_nodes(model).len() as u64,
             of_bit: bit_beside(model).map_or(0, |_| BIT_COLUMNS),

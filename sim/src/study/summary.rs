@@ -5,9 +5,11 @@ use serde::Serialize;
 
 use crate::effect::contact;
 use crate::model::Model;
-use crate::signal::{FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, orbit_statistics, sample_range};
+use crate::signal::{
+    FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, sample_range, weighted_orbit_statistics,
+};
 use crate::statics::Equilibrium;
-use crate::transient::{ErrorEstimate, Histories, Records, Series};
+use crate::transient::{ErrorEstimate, Histories, OrbitInterval, Records, Series, Settling};
 
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
@@ -46,9 +48,13 @@ pub struct StaticsSummary {
 /// What the run in time showed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TransientSummary {
-    /// Orbits of the recorded nodes over the scenario's orbit window.
+    /// Length of the run \[s\].
+    pub simulated_time: f64,
+    /// What the orbits' statistics are over, and whether the motion has settled.
+    pub settling: Settling,
+    /// Orbits of the recorded nodes over that window.
     pub orbits: Vec<OrbitSummary>,
-    /// Dominant lines of the recorded nodes over the scenario's spectrum windows.
+    /// Dominant lines of the recorded nodes over the scenario's spectrum windows, or the end of that window.
     pub spectra: Vec<SpectrumSummary>,
     /// Frequency \[Hz\] up to which the longest step resolves a vibration.
     pub resolved_hz: f64,
@@ -92,6 +98,8 @@ pub struct OrbitSummary {
     /// Root mean square motion at frequencies above 100 Hz \[m\]: chatter of the contacts or of the method, if any. Absent where the
     /// recording rate is below 250 Hz.
     pub high_frequency_rms: Option<f64>,
+    /// Half widths of the confidence intervals of 95 % of its statistics; absent but for irregular motion.
+    pub interval: Option<OrbitInterval>,
 }
 
 /// Dominant lines of one node in one window.
@@ -153,8 +161,9 @@ impl TransientSummary {
     /// # Errors
     /// When the histories cannot be read.
     pub fn new<H: Histories>(model: &Model, records: &Records<H>) -> Result<Self, H::Error> {
-        let scenario = &model.scenario;
-        let orbit_window = scenario.orbit_window();
+        let settling = &records.settling;
+        let orbit_window = settling.window;
+        let spectrum_windows = records.spectrum_windows(&model.scenario);
         let mut orbits = Vec::new();
         let mut spectra = Vec::new();
         let histories = &records.histories;
@@ -167,7 +176,7 @@ impl TransientSummary {
                 Ok((u, histories.read(index, Series::V, samples)?))
             };
             let (u, v) = motion(orbit_window)?;
-            if let Some(orbit) = orbit_statistics(&u, &v) {
+            if let Some(orbit) = weighted_orbit_statistics(&u, &v, settling.weighting) {
                 orbits.push(OrbitSummary {
                     node,
                     measured_depth,
@@ -178,9 +187,10 @@ impl TransientSummary {
                     orbit_radius_rms: orbit.orbit_radius_rms,
                     radius_deviation: orbit.radius_deviation,
                     high_frequency_rms: high_frequency_rms(&u, &v, records.rate_hz),
+                    interval: settling.intervals.get(index).copied(),
                 });
             }
-            for window in scenario.spectrum_windows() {
+            for &window in &spectrum_windows {
                 let (u, v) = motion(window)?;
                 let band = |shape| {
                     full_spectrum(&u, &v, records.rate_hz, shape).restricted_to(&(-BAND_HZ..=BAND_HZ))
@@ -204,6 +214,8 @@ impl TransientSummary {
         }
         let last = records.energy.last().copied().unwrap_or_default();
         Ok(Self {
+            simulated_time: records.simulated_time,
+            settling: settling.clone(),
             orbits,
             spectra,
             resolved_hz: records.effort.resolved_hz,

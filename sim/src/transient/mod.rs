@@ -22,6 +22,7 @@ mod implicit;
 mod rk4;
 mod run;
 mod segments;
+mod settle;
 mod snapshots;
 mod stability;
 
@@ -36,10 +37,12 @@ pub use histories::{Histories, NodeHistory, Series};
 pub use implicit::SweepMonitor;
 pub(crate) use run::{BLOCK_BYTES, LEDGER_RATE_HZ};
 pub use run::{Block, Keep};
+pub use settle::{MotionRegime, OrbitInterval, Settling, shortest_run};
+pub(crate) use settle::{kept_window_at_most, orbit_window_at_most, spectrum_windows_at_most};
 pub(crate) use snapshots::SNAPSHOT_BLOCK_BYTES;
 pub use snapshots::{SnapshotBlock, SnapshotSeries, SnapshotTimes};
 
-use drillsweep_scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping};
+use drillsweep_scenario::{AccuracyPreset, Integrator, Problem, Scenario, TimeStepping, TimeWindow};
 use grid::Grid;
 use run::{Run, Start};
 use serde::{Deserialize, Serialize};
@@ -49,6 +52,7 @@ use crate::effect::active_effects;
 use crate::freedom::Freedoms;
 use crate::model::Model;
 use crate::modes::UndampedTorsion;
+use crate::signal::Course;
 use crate::statics::Equilibrium;
 
 /// A run under way.
@@ -66,6 +70,13 @@ enum Solved<'m> {
 pub struct Records<H = Vec<NodeHistory>> {
     /// Recording rate \[Hz\].
     pub rate_hz: f64,
+    /// Length of the run \[s\]: the scenario's duration, or where its window is settled at most that.
+    pub simulated_time: f64,
+    /// What the run's statistics are over, and whether its motion has settled.
+    pub settling: Settling,
+    /// Motion of the recorded nodes and of the bit at a lower rate: of the whole run where the window is settled, of the window where it
+    /// is fixed.
+    pub course: Course,
     /// Histories of the recorded nodes.
     pub histories: H,
     /// Contact statistics of every node.
@@ -115,12 +126,42 @@ pub enum Outcome<H = Vec<NodeHistory>> {
     Suspended(Box<Checkpoint>, H),
 }
 
+impl<H> Records<H> {
+    /// The windows whose spectra are summarised: the scenario's fixed ones, or the end of the settled one.
+    pub fn spectrum_windows(&self, scenario: &Scenario) -> Vec<TimeWindow> {
+        scenario.spectrum_windows().unwrap_or_else(|| vec![self.settling.kept_window()])
+    }
+}
+
 impl Records<()> {
     /// The same with the histories that were kept elsewhere.
     pub fn with_histories<H>(self, histories: H) -> Records<H> {
-        let Self { rate_hz, histories: (), contacts, energy, energy_bound, energy_rounding, error, effort } =
-            self;
-        Records { rate_hz, histories, contacts, energy, energy_bound, energy_rounding, error, effort }
+        let Self {
+            rate_hz,
+            simulated_time,
+            settling,
+            course,
+            histories: (),
+            contacts,
+            energy,
+            energy_bound,
+            energy_rounding,
+            error,
+            effort,
+        } = self;
+        Records {
+            rate_hz,
+            simulated_time,
+            settling,
+            course,
+            histories,
+            contacts,
+            energy,
+            energy_bound,
+            energy_rounding,
+            error,
+            effort,
+        }
     }
 }
 
@@ -144,7 +185,7 @@ impl<'m> Transient<'m> {
             *value += at_rest;
         }
         let resolving_step = resolving_step(model, equilibrium);
-        let start = Start { rest, normal_force: &equilibrium.normal_force, resolving_step };
+        let start = Start { rest, equilibrium, resolving_step };
         Ok(Self(match *system.moving() {
             [a, b, c, d] => {
                 Solved::Four(Box::new(Run::new(model, &system, Freedoms::new([a, b, c, d]), start)?))
@@ -210,7 +251,7 @@ impl<'m> Transient<'m> {
         }
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots are passed over.
+    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots are passed over.
     ///
     /// # Errors
     /// When the motion diverges.
@@ -250,7 +291,7 @@ impl<'m> Transient<'m> {
         })
     }
 
-    /// Runs to the end of the scenario's duration, or until `control` stops it; samples and snapshots are handed over to `keep` block by
+    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it; samples and snapshots are handed over to `keep` block by
     /// block, so that the run's memory does not grow with its duration. Before it ends in any way but by an error or a
     /// cancel, all of them are.
     ///

@@ -18,6 +18,7 @@ use super::grid::Grid;
 use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
+use super::settle::{Settle, Settling};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
 use super::{Outcome, Records, TransientEffort, bit_beside, dense, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
@@ -25,7 +26,8 @@ use crate::freedom::{DOFS, Freedoms, U, V};
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
-use crate::signal::sample_range;
+use crate::signal::{Course, sample_range};
+use crate::statics::Equilibrium;
 
 /// How often the longest step of a run that adapts its steps can be halved. The 8 ms of `draft` end at 62 us, where the explicit method
 /// becomes stable in tool joints (6.4e-5 s in the base case): with yet shorter steps an implicit one would have no point.
@@ -77,6 +79,7 @@ pub(super) struct Run<'m, const D: usize> {
     ledger_every: u64,
     /// Recording intervals that count for the contacts' impulse.
     orbit_samples: Range<u64>,
+    settle: Settle,
     subdivisions: u32,
     /// Samples of a block; a step may add some more.
     block_samples: u64,
@@ -109,8 +112,7 @@ pub type Keep<'a> = dyn FnMut(Block<'_>) -> Result<(), String> + 'a;
 pub(super) struct Start<'a> {
     /// Displacements at the start, of all degrees of freedom.
     pub(super) rest: NodalVector,
-    /// Normal forces at the equilibrium \[N\].
-    pub(super) normal_force: &'a [f64],
+    pub(super) equilibrium: &'a Equilibrium,
     /// The longest step that resolves what has to be resolved \[s\].
     pub(super) resolving_step: f64,
 }
@@ -136,6 +138,8 @@ pub(super) struct Progress<const D: usize> {
     pub(super) steps: u64,
     pub(super) contacts: Vec<ContactStatistics>,
     pub(super) energy: Vec<EnergyRow>,
+    /// Motion that shows whether the run has settled.
+    pub(super) course: Course,
 }
 
 /// Motion at a step's end, with what the methods carry from step to step.
@@ -172,11 +176,11 @@ impl<'m, const D: usize> Run<'m, D> {
         model: &'m Model,
         system: &DynamicSystem,
         freedoms: Freedoms<D>,
-        Start { rest, normal_force, resolving_step }: Start<'_>,
+        Start { rest, equilibrium, resolving_step }: Start<'_>,
     ) -> Result<Self, TransientError> {
         let scenario = &model.scenario;
         let stepping = scenario.accuracy.time_stepping();
-        let subdivisions = stability::subdivisions(model, system, normal_force, &stepping)?;
+        let subdivisions = stability::subdivisions(model, system, &equilibrium.normal_force, &stepping)?;
         let rk4_limit = match stepping.integrator {
             Integrator::Rk4 => stability::rk4_limit(model, system)?,
             _ => f64::INFINITY,
@@ -230,8 +234,10 @@ impl<'m, const D: usize> Run<'m, D> {
         let of_a_step = (1_u64 << grid.top()).div_ceil(grid.at_sample(1));
         let block_samples = block_samples(model);
         let block_capacity = (block_samples + of_a_step).min(samples);
+        let settle = Settle::new(model, equilibrium, samples, ledger_every);
         let mut run = Self {
             progress: Progress {
+                course: settle.course(model),
                 ticks: 0,
                 // What happens at once is resolved; after it steps double as long as they may.
                 level: if tolerances.is_some() { grid.top() / 2 } else { grid.top() },
@@ -261,6 +267,7 @@ impl<'m, const D: usize> Run<'m, D> {
             tolerances,
             ledger_every,
             orbit_samples: orbit_samples(scenario, samples),
+            settle,
             subdivisions,
             block_samples,
             fastest: 0,
@@ -282,6 +289,7 @@ impl<'m, const D: usize> Run<'m, D> {
         progress
             .energy
             .reserve(ledger_rows(self.samples - progress.ticks / self.grid.at_sample(1), self.ledger_every));
+        progress.course.reserve(self.settle.course_samples());
         Ok(())
     }
 
@@ -317,6 +325,7 @@ impl<'m, const D: usize> Run<'m, D> {
         keep: &mut Keep<'_>,
     ) -> Result<Outcome<()>, TransientError> {
         let (row, end) = (self.grid.at_sample(self.ledger_every), self.grid.at_sample(self.samples));
+        let mut settling = None;
         self.record_start();
         while self.progress.ticks < end {
             if control.is_cancelled() {
@@ -334,6 +343,10 @@ impl<'m, const D: usize> Run<'m, D> {
                     let checkpoint = Checkpoint::new(&self.model.scenario, &self.progress);
                     return Ok(Outcome::Suspended(Box::new(checkpoint), ()));
                 }
+                settling = self.settled();
+                if settling.is_some() {
+                    break;
+                }
                 self.book()?;
             }
             let next_row = (self.progress.ticks / row + 1) * row;
@@ -348,10 +361,17 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         let energy_bound = self.book()?;
         self.hand_over(keep)?;
+        // A run that has settled is as far as one that was to take all of its time.
+        control.report(self.grid.time(end));
+        let simulated_time = self.time();
+        let settling = settling.unwrap_or_else(|| self.settle.conclude(&self.progress.course, self.samples));
         let scenario = &self.model.scenario;
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
             rate_hz: scenario.recording.rate_hz,
+            simulated_time,
+            settling,
+            course: self.progress.course,
             histories: (),
             contacts: self.progress.contacts,
             energy: self.progress.energy,
@@ -369,6 +389,15 @@ impl<'m, const D: usize> Run<'m, D> {
                 sweeps: self.progress.monitor,
             },
         })))
+    }
+
+    /// What the run shows where it has settled and may end.
+    fn settled(&self) -> Option<Settling> {
+        let sample = self.progress.ticks / self.grid.at_sample(1);
+        if !self.settle.is_due(sample) {
+            return None;
+        }
+        self.settle.judge(&self.progress.course, sample)
     }
 
     /// Hands over what is recorded.
@@ -455,12 +484,13 @@ impl<'m, const D: usize> Run<'m, D> {
                 let of = (&self.forces, self.system.freedoms, &self.rest);
                 snapshots.take(0, self.model, of, motion);
             }
+            self.settle.take(0, &self.block, self.bit.as_ref(), &mut self.progress.course);
         }
     }
 
     /// Records the samples of the step that led from `start` ticks to the present.
     fn record_step(&mut self, start: u64) {
-        let Progress { state, ticks, .. } = &self.progress;
+        let Progress { state, ticks, course, .. } = &mut self.progress;
         let per_sample = self.grid.at_sample(1);
         for sample in start / per_sample + 1..=(*ticks / per_sample).min(self.samples - 1) {
             let at = self.grid.at_sample(sample);
@@ -488,6 +518,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 let of = (&self.forces, self.system.freedoms, &self.rest);
                 snapshots.take(sample, self.model, of, motion);
             }
+            self.settle.take(sample, &self.block, self.bit.as_ref(), course);
         }
     }
 
@@ -633,9 +664,9 @@ impl<const D: usize> State<D> {
     }
 }
 
-/// The recording intervals of the scenario's orbit window, out of so many samples.
+/// The recording intervals of the scenario's fixed orbit window, out of so many samples; none where it is settled.
 fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
-    let window = scenario.orbit_window();
+    let Some(window) = scenario.orbit_window() else { return 0..0 };
     let range = sample_range(window.from, window.to, scenario.recording.rate_hz, samples as usize);
     range.start as u64..range.end as u64
 }

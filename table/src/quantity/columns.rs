@@ -36,6 +36,8 @@ quantities! {
     // Time and frequency.
     /// Simulated time.
     TIME: "time", "t", TIME, "time";
+    /// Simulated time that the run took: the scenario's duration, or less where its statistics settled before.
+    SIMULATED_TIME: "simulated_time", "", TIME, "simulated time";
     /// Start of the spectrum window, included.
     FROM: "from", "", TIME, "from";
     /// End of the spectrum window, not included.
@@ -238,6 +240,24 @@ quantities! {
     PEAK_TO_PEAK_V: "peak_to_peak_v", "", WIDTH, "peak to peak v";
     /// Root mean square motion at frequencies above 100 Hz.
     HIGH_FREQUENCY_RMS: "high_frequency_rms", "", WIDTH, "high frequency rms";
+    /// Kind of motion over the window of the statistics: regular or irregular once it has settled, not_settled by the end of the longest run, fixed where the window was chosen beforehand.
+    MOTION_REGIME: "motion_regime", "", -, "motion regime";
+    /// Time from which on the motion is settled; absent where it has not settled or the window is fixed.
+    SETTLED_AT: "settled_at", "", TIME, "settled at";
+    /// Start of the window of the orbit statistics, included.
+    STATISTICS_FROM: "statistics_from", "", TIME, "statistics from";
+    /// End of the window of the orbit statistics, not included.
+    STATISTICS_TO: "statistics_to", "", TIME, "statistics to";
+    /// Largest relative difference of orbit size or radius deviation between the halves of the window, over the recorded nodes; absent where the motion has settled.
+    HALVES_DIFFER: "halves_differ", "", RATIO, "halves differ";
+    /// Frequency of the torsional mode that still grows at the end of the run; absent where none does.
+    GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "growing mode hz";
+    /// Growth of that mode's amplitude while it is small.
+    GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growing mode rate";
+    /// Lower base frequency of regular motion.
+    BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "base frequency 1 hz";
+    /// Higher base frequency of regular motion; absent where there is one alone.
+    BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "base frequency 2 hz";
     /// Runs of the point, the undisturbed one among them.
     ENSEMBLE_MEMBERS: "ensemble_members", "", -, "ensemble members";
     /// When histories of neighbouring starts first part.

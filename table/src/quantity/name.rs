@@ -30,6 +30,8 @@ pub enum Variant {
     EnsembleMean,
     /// The standard deviation over the members of an ensemble.
     Spread,
+    /// Half the width of the confidence interval of 95 %.
+    Confidence,
     /// The value of the reference run.
     Reference,
     /// The value less that of the reference: relative, but for frequencies.
@@ -38,8 +40,14 @@ pub enum Variant {
 
 impl Variant {
     /// All, the value itself first.
-    pub const ALL: [Variant; 5] =
-        [Variant::Value, Variant::EnsembleMean, Variant::Spread, Variant::Reference, Variant::Bias];
+    pub const ALL: [Variant; 6] = [
+        Variant::Value,
+        Variant::EnsembleMean,
+        Variant::Spread,
+        Variant::Confidence,
+        Variant::Reference,
+        Variant::Bias,
+    ];
 
     /// What stands before the quantity's name.
     pub fn prefix(self) -> &'static str {
@@ -47,6 +55,7 @@ impl Variant {
             Variant::Value => "",
             Variant::EnsembleMean => "ensemble_mean_",
             Variant::Spread => "spread_",
+            Variant::Confidence => "confidence_",
             Variant::Reference => "reference_",
             Variant::Bias => "bias_",
         }

@@ -59,8 +59,8 @@ impl Measure {
     /// Keeps of a run, the `member` of its ensemble, what the study compares.
     pub fn new(model: &Model, equilibrium: &Equilibrium, records: &Records, member: u32) -> Self {
         let scenario = &model.scenario;
-        let orbit_window = scenario.orbit_window();
-        let spectrum_window = scenario.spectrum_windows().last().copied();
+        let orbit_window = records.settling.window;
+        let spectrum_window = scenario.spectrum_windows().unwrap_or_default().last().copied();
         let node = |history: &NodeHistory| {
             let depth = model.mesh.nodes[history.node].measured_depth;
             NodeMeasure::new(depth, history, records.rate_hz, orbit_window, spectrum_window)

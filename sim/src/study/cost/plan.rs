@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use drillsweep_scenario::{
-    Accuracy, AccuracyPreset, CostStudy, Effect, Integrator, MethodSteps, NodeChoice, Outputs, Recording,
-    Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
+    Accuracy, AccuracyPreset, CostStudy, Effect, Integrator, MethodSteps, NodeChoice, OrbitWindow, Outputs,
+    Recording, Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
 };
 
 use super::StudyError;
@@ -62,7 +62,7 @@ pub enum Role {
 pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     let study = scenario.cost_study.clone().unwrap_or_default();
     let model = Model::new(scenario)?;
-    let duration = study.duration.unwrap_or(scenario.duration);
+    let duration = scenario.study_duration();
     let base = Scenario {
         recording: recording(scenario, duration, &model),
         duration,
@@ -148,19 +148,23 @@ fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<P
 }
 
 /// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers, and
-/// where the duration is another one, orbits over its last third and spectra over its last sixth.
+/// where the duration is another one or the windows are settled, orbits over its last third and spectra over its last sixth: methods are
+/// compared over one window.
 fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
     let asked = &scenario.recording;
     let last = |part: f64| TimeWindow::last(part, duration, asked.rate_hz);
-    let is_own = duration == scenario.duration;
-    let spectrum_window =
-        if is_own { scenario.spectrum_windows().last().copied() } else { Some(last(1.0 / 6.0)) };
+    let is_own = duration == scenario.duration && !scenario.settles();
+    let spectrum_window = match scenario.spectrum_windows() {
+        Some(windows) if is_own => windows.last().copied(),
+        _ => Some(last(1.0 / 6.0)),
+    };
+    let orbit_window = scenario.orbit_window().filter(|_| is_own).unwrap_or_else(|| last(1.0 / 3.0));
     let nodes = recorded_nodes(model).into_iter();
     Recording {
         rate_hz: asked.rate_hz,
         nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
         spectrum_windows: Some(spectrum_window.into_iter().collect()),
-        orbit_window: Some(if is_own { scenario.orbit_window() } else { last(1.0 / 3.0) }),
+        orbit_window: Some(OrbitWindow::Fixed(orbit_window)),
         stability: false,
         outputs: Outputs::Full,
         snapshots: None,

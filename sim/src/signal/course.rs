@@ -1,0 +1,443 @@
+//! Motion over a whole run, and whether it has settled.
+//!
+//! Regular motion (a few base frequencies and their combinations) settles when statistics of consecutive windows agree. They are weighted by
+//! Hann's window: weighted means of such motion converge faster than any power of the window's length, plain ones with its inverse (Das,
+//! Saiki, Sander and Yorke 2017, "Quantitative quasiperiodicity"; Duignan and Meiss 2023, "Distinguishing between regular and chaotic orbits
+//! of flows by the weighted Birkhoff average"). Means of irregular motion scatter whatever the weights; their interval is that of batch
+//! means (Law and Kelton, "Simulation modeling and analysis", chapter 9).
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::spectrum::{FullSpectrum, PeakSearch, full_spectrum};
+use super::window::Window;
+
+/// Lengths of windows whose statistics are compared \[s\], the shortest first.
+const LENGTHS: [f64; 3] = [20.0, 40.0, 80.0];
+
+/// The longest of them \[s\].
+pub const LONGEST_WINDOW: f64 = LENGTHS[LENGTHS.len() - 1];
+
+/// Beats of the closest pair of strong lines that a window holds at least.
+const BEATS: f64 = 2.0;
+
+/// The end of the run \[s\] whose lines are looked at for beats: long enough to part lines that beat in 20 s.
+const LINES_OF: f64 = 40.0;
+
+/// Amplitude of a strong line relative to the strongest. A weaker pair moves an orbit's size by less than a per cent in the course of its beat.
+const STRONG: f64 = 0.1;
+
+/// Lines nearer to each other than so many bins are one.
+const APART: f64 = 1.5;
+
+/// Share of the strongest line's power from which a line is one of the base frequencies.
+const BASE_POWER: f64 = 0.01;
+
+/// Largest multiple of a base frequency that a line is taken for.
+const LARGEST_MULTIPLE: i32 = 4;
+
+/// Batches of irregular motion.
+const BATCHES: usize = 8;
+
+/// Student's t of 95 % (two-sided) for the mean of eight batches.
+const STUDENT: f64 = 2.365;
+
+/// The shortest batch \[s\]: several periods of the slowest torsion of long strings, so that neighbouring batches hardly depend on each other.
+const SHORTEST_BATCH: f64 = 10.0;
+
+/// Half widths by which the means of the first and the last four batches may differ. Their difference scatters twice as much as the mean of all,
+/// so that steady motion exceeds two in one of twenty statistics and three in one of a hundred; a run has a dozen.
+const STEADY: f64 = 3.0;
+
+/// Motion of the recorded nodes and rate of twist at the bit, at the recording rate or a whole part of it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Course {
+    rate_hz: f64,
+    /// Samples of the run, at `rate_hz`, before its first.
+    before: usize,
+    /// Lateral displacements u and v of each node \[m\].
+    orbits: Vec<[Vec<f64>; 2]>,
+    /// Rate of twist at the bit \[rad/s\]; empty where torsion is not solved for.
+    twist_rate: Vec<f64>,
+}
+
+/// Relative differences of statistics that count as none, and motion that is too small to be compared with itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Allowed {
+    /// Of orbit sizes, and of the standard deviation of the rotation speed.
+    pub orbit_size: f64,
+    /// Of standard deviations of the radius.
+    pub radius_deviation: f64,
+    /// Smaller orbits and deviations \[m\] count as this large.
+    pub smallest_orbit: f64,
+    /// Smaller standard deviations of the rotation speed \[rad/s\] count as this large.
+    pub smallest_rotation: f64,
+}
+
+/// Three windows whose statistics agree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// The start of the first.
+    pub since: usize,
+    /// The last.
+    pub window: Range<usize>,
+}
+
+/// Batch means over the second half of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Batches {
+    /// All batches together.
+    pub window: Range<usize>,
+    /// Half widths of the intervals of 95 % of orbit size and radius deviation of each node \[m\].
+    pub half_widths: Vec<[f64; 2]>,
+    /// Whether the first and the last batches have the same means within their scatter.
+    pub is_steady: bool,
+    /// Whether all intervals are as narrow as allowed.
+    pub is_narrow: bool,
+}
+
+/// One statistic of a window.
+#[derive(Debug, Clone, Copy)]
+struct Statistic {
+    value: f64,
+    /// Relative difference that counts as none.
+    allowed: f64,
+    /// A smaller value counts as this large.
+    smallest: f64,
+}
+
+impl Statistic {
+    fn scale(&self) -> f64 {
+        self.value.max(self.smallest)
+    }
+}
+
+impl Course {
+    /// An empty course of so many nodes, with or without the bit's rate of twist, that begins `before` samples at `rate_hz` after the start
+    /// and has room for `samples`.
+    pub fn new(rate_hz: f64, before: usize, nodes: usize, has_bit: bool, samples: usize) -> Self {
+        let series = || Vec::with_capacity(samples);
+        Self {
+            rate_hz,
+            before,
+            orbits: (0..nodes).map(|_| [series(), series()]).collect(),
+            twist_rate: if has_bit { series() } else { Vec::new() },
+        }
+    }
+
+    /// Makes room for so many samples in all.
+    pub fn reserve(&mut self, samples: usize) {
+        let has_bit = !self.twist_rate.is_empty();
+        let series = self.orbits.iter_mut().flatten().chain(has_bit.then_some(&mut self.twist_rate));
+        series.for_each(|series| series.reserve_exact(samples.saturating_sub(series.len())));
+    }
+
+    /// Adds a sample: u and v \[m\] of each node, and the rate of twist at the bit \[rad/s\] where the course has it.
+    pub fn push(&mut self, orbits: impl Iterator<Item = [f64; 2]>, twist_rate: Option<f64>) {
+        for ([along_u, along_v], [u, v]) in self.orbits.iter_mut().zip(orbits) {
+            along_u.push(u);
+            along_v.push(v);
+        }
+        self.twist_rate.extend(twist_rate);
+    }
+
+    /// Samples of each series.
+    pub fn samples(&self) -> usize {
+        self.orbits.first().map_or(self.twist_rate.len(), |[u, _]| u.len())
+    }
+
+    /// Samples a second \[Hz\].
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Time of a sample \[s\].
+    pub fn time(&self, sample: usize) -> f64 {
+        (self.before + sample) as f64 / self.rate_hz
+    }
+
+    /// u and v of each node \[m\].
+    pub fn orbits(&self) -> &[[Vec<f64>; 2]] {
+        &self.orbits
+    }
+
+    /// Rate of twist at the bit \[rad/s\]; empty where the course has none.
+    pub fn twist_rate(&self) -> &[f64] {
+        &self.twist_rate
+    }
+
+    /// The three consecutive windows up to sample `end`, each half a window after the one before, whose statistics agree; absent where they
+    /// do not. The shortest windows that agree are taken, and none that holds fewer than two beats of the closest pair of strong lines.
+    pub fn agreement(&self, end: usize, allowed: &Allowed) -> Option<Agreement> {
+        let two_beats = BEATS * self.slowest_beat(end);
+        let long_enough = LENGTHS.iter().position(|length| *length >= two_beats).unwrap_or(LENGTHS.len() - 1);
+        LENGTHS[long_enough..].iter().find_map(|seconds| {
+            let half = self.count(0.5 * seconds);
+            let since = end.checked_sub(4 * half)?;
+            let windows = [0, 1, 2].map(|k| since + k * half..since + (k + 2) * half);
+            let [first, second, last] =
+                windows.clone().map(|window| self.statistics(window, Window::Hann, allowed));
+            let agree = |a: &Statistic, b: &Statistic| {
+                (a.value - b.value).abs() <= a.allowed * a.scale().max(b.scale())
+            };
+            let mut all = first.iter().zip(&second).zip(&last);
+            let has_settled = all.all(|((a, b), c)| agree(a, b) && agree(b, c) && agree(a, c));
+            has_settled.then(|| Agreement { since, window: windows[2].clone() })
+        })
+    }
+
+    /// Batch means over the second half of what is before sample `end`; absent where batches would be shorter than ten seconds.
+    pub fn batches(&self, end: usize, allowed: &Allowed) -> Option<Batches> {
+        let length = end / 2 / BATCHES;
+        if length < self.count(SHORTEST_BATCH) {
+            return None;
+        }
+        let window = end - BATCHES * length..end;
+        let means = self.mean_squares(&window, length, allowed);
+        let intervals: Vec<Interval> =
+            means.iter().map(|(statistic, means)| Interval::of(statistic, means)).collect();
+        let of_orbits = 2 * self.orbits.len();
+        Some(Batches {
+            window,
+            half_widths: intervals[..of_orbits]
+                .chunks(2)
+                .map(|pair| [pair[0].half_width, pair[1].half_width])
+                .collect(),
+            is_steady: intervals.iter().all(|interval| interval.is_steady),
+            is_narrow: intervals.iter().all(|interval| interval.is_narrow),
+        })
+    }
+
+    /// The largest relative difference of orbit sizes and radius deviations between the halves of a window; absent where a half has fewer than
+    /// two samples or no node is recorded.
+    pub fn halves_differ(&self, window: &Range<usize>, allowed: &Allowed) -> Option<f64> {
+        let [first, second] = halves(window)?;
+        let statistics = |half| self.statistics(half, Window::Rectangular, allowed);
+        let (first, second) = (statistics(first), statistics(second));
+        let of_orbits = first.iter().zip(&second).take(2 * self.orbits.len());
+        of_orbits.map(|(a, b)| (a.value - b.value).abs() / a.scale().max(b.scale())).reduce(f64::max)
+    }
+
+    /// Growth \[1/s\] of the bit's rotation at a frequency \[Hz\], from one window to another of the same length that begins `lag` seconds
+    /// later; absent where the course has no bit, the windows are shorter than three periods, or nothing moves at that frequency.
+    pub fn growth(&self, [from, to]: [Range<usize>; 2], frequency_hz: f64) -> Option<f64> {
+        /// Periods of a window in which Hann's window parts the line from the mean.
+        const PERIODS: f64 = 3.0;
+        /// How far the line of a large motion may lie from that of a small one.
+        const SHIFT: f64 = 0.02;
+        let lag = (to.start as f64 - from.start as f64) / self.rate_hz;
+        if from.len() as f64 / self.rate_hz * frequency_hz < PERIODS || lag <= 0.0 {
+            return None;
+        }
+        let amplitude = |window: Range<usize>| {
+            let values = self.twist_rate.get(window)?;
+            let spectrum = full_spectrum(values, &vec![0.0; values.len()], self.rate_hz, Window::Hann);
+            let reach = APART * spectrum.resolution_hz + SHIFT * frequency_hz;
+            let near = spectrum.restricted_to(&(frequency_hz - reach..=frequency_hz + reach));
+            near.amplitude.into_iter().reduce(f64::max).filter(|amplitude| *amplitude > 0.0)
+        };
+        Some((amplitude(to)? / amplitude(from)?).ln() / lag)
+    }
+
+    /// The base frequencies of a window \[Hz\], ascending, two at most: its strongest line, and the strongest that is no combination of small
+    /// multiples of it. Lines of forward and backward whirl count alike.
+    pub fn base_frequencies(&self, window: &Range<usize>) -> Vec<f64> {
+        let spectra = self.spectra(window);
+        let Some(resolution) = spectra.first().map(|spectrum| spectrum.resolution_hz) else {
+            return Vec::new();
+        };
+        let near = |a: f64, b: f64| (a - b).abs() < APART * resolution;
+        // Of all nodes and the bit together, each relative to its own motion.
+        let mut lines: Vec<(f64, f64)> = Vec::new();
+        for spectrum in &spectra {
+            let found = lines_of(spectrum);
+            let power: f64 = found.iter().map(|line| line.1 * line.1).sum();
+            for (frequency, amplitude) in found {
+                let share = amplitude * amplitude / power;
+                match lines.iter_mut().find(|line| near(line.0, frequency)) {
+                    Some((mean, total)) => {
+                        *mean += (frequency - *mean) * share / (*total + share);
+                        *total += share;
+                    }
+                    None => lines.push((frequency, share)),
+                }
+            }
+        }
+        lines.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let Some(&(strongest, most)) = lines.first() else { return Vec::new() };
+        let multiples = 1..=LARGEST_MULTIPLE;
+        let strong = lines.iter().filter(|line| line.1 >= BASE_POWER * most);
+        let other = strong
+            .map(|line| line.0)
+            .find(|&f| !multiples.clone().any(|k| near(f, f64::from(k) * strongest)));
+        let mut base = vec![strongest];
+        if let Some(other) = other {
+            // The strongest may be a harmonic.
+            if multiples.clone().any(|k| near(strongest, f64::from(k) * other)) {
+                base[0] = other;
+            } else {
+                base.push(other);
+            }
+        }
+        base.sort_by(f64::total_cmp);
+        base
+    }
+
+    /// Time of a beat of the closest pair of strong lines before sample `end` \[s\]; 0 where there is none.
+    fn slowest_beat(&self, end: usize) -> f64 {
+        let window = end.saturating_sub(self.count(LINES_OF))..end;
+        let beat_of = |spectrum: &FullSpectrum| {
+            let mut lines = lines_of(spectrum);
+            let strongest = lines.iter().fold(0.0, |most: f64, line| most.max(line.1));
+            lines.retain(|line| line.1 >= STRONG * strongest);
+            lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let distances = lines.windows(2).map(|pair| pair[1].0 - pair[0].0);
+            let apart = distances.filter(|distance| *distance >= APART * spectrum.resolution_hz);
+            apart.map(|distance| 1.0 / distance).fold(0.0, f64::max)
+        };
+        self.spectra(&window).iter().map(beat_of).fold(0.0, f64::max)
+    }
+
+    /// Hann-weighted spectra of all nodes' motion and of the bit's rate of twist.
+    fn spectra(&self, window: &Range<usize>) -> Vec<FullSpectrum> {
+        let spectrum = |u: &[f64], v: &[f64]| full_spectrum(u, v, self.rate_hz, Window::Hann);
+        let orbits = self.orbits.iter().map(|[u, v]| spectrum(&u[window.clone()], &v[window.clone()]));
+        let of_bit = self.twist_rate.get(window.clone()).filter(|rate| !rate.is_empty());
+        orbits.chain(of_bit.map(|rate| spectrum(rate, &vec![0.0; rate.len()]))).collect()
+    }
+
+    /// Statistics of a window: orbit size and radius deviation of each node in turn, then the deviation of the bit's rotation.
+    fn statistics(&self, window: Range<usize>, weighting: Window, allowed: &Allowed) -> Vec<Statistic> {
+        let count = window.len();
+        let total = weighting.sum(count);
+        let weights: Vec<f64> = (0..count).map(|n| weighting.weight(n, count) / total).collect();
+        let squares = |values: &[f64]| {
+            let mean: f64 = values.iter().zip(&weights).map(|(value, weight)| weight * value).sum();
+            values.iter().zip(&weights).map(|(value, weight)| weight * (value - mean).powi(2)).sum::<f64>()
+        };
+        self.mean_square_of(&window, |values| squares(values))
+            .into_iter()
+            .enumerate()
+            .map(|(place, square)| self.statistic(place, square, allowed))
+            .collect()
+    }
+
+    /// Mean squares about the window's mean by batch, of the same statistics, with the statistic of the whole.
+    fn mean_squares(
+        &self,
+        window: &Range<usize>,
+        length: usize,
+        allowed: &Allowed,
+    ) -> Vec<(Statistic, Vec<f64>)> {
+        let by_batch = |values: &[f64]| {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let square = |batch: &[f64]| {
+                batch.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / batch.len() as f64
+            };
+            Squares(values.chunks(length).map(square).collect())
+        };
+        let squares = self.mean_square_of(window, by_batch);
+        squares
+            .into_iter()
+            .enumerate()
+            .map(|(place, Squares(by_batch))| {
+                let whole = by_batch.iter().sum::<f64>() / by_batch.len() as f64;
+                (self.statistic(place, whole, allowed), by_batch)
+            })
+            .collect()
+    }
+
+    /// What `of` makes of the series of each statistic: of u and v together, of the radius, of the bit's rate of twist.
+    fn mean_square_of<T: std::ops::Add<Output = T>>(
+        &self,
+        window: &Range<usize>,
+        of: impl Fn(&[f64]) -> T,
+    ) -> Vec<T> {
+        let mut found = Vec::with_capacity(2 * self.orbits.len() + 1);
+        for [u, v] in &self.orbits {
+            let (u, v) = (&u[window.clone()], &v[window.clone()]);
+            let radius: Vec<f64> = u.iter().zip(v).map(|(u, v)| u.hypot(*v)).collect();
+            found.push(of(u) + of(v));
+            found.push(of(&radius));
+        }
+        if let Some(rate) = self.twist_rate.get(window.clone()).filter(|rate| !rate.is_empty()) {
+            found.push(of(rate));
+        }
+        found
+    }
+
+    fn statistic(&self, place: usize, square: f64, allowed: &Allowed) -> Statistic {
+        let (allowed, smallest) = match place {
+            place if place == 2 * self.orbits.len() => (allowed.orbit_size, allowed.smallest_rotation),
+            place if place.is_multiple_of(2) => (allowed.orbit_size, allowed.smallest_orbit),
+            _ => (allowed.radius_deviation, allowed.smallest_orbit),
+        };
+        Statistic { value: square.sqrt(), allowed, smallest }
+    }
+
+    /// Samples in a time \[s\].
+    fn count(&self, seconds: f64) -> usize {
+        (seconds * self.rate_hz).round() as usize
+    }
+}
+
+/// Mean squares of batches, which add up batch by batch.
+struct Squares(Vec<f64>);
+
+impl std::ops::Add for Squares {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(a, b)| a + b).collect())
+    }
+}
+
+/// What batches show of the root of their mean.
+struct Interval {
+    half_width: f64,
+    is_steady: bool,
+    is_narrow: bool,
+}
+
+impl Interval {
+    fn of(statistic: &Statistic, squares: &[f64]) -> Self {
+        let count = squares.len() as f64;
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        let centre = mean(squares);
+        let variance = squares.iter().map(|square| (square - centre).powi(2)).sum::<f64>() / (count - 1.0);
+        let of_square = STUDENT * (variance / count).sqrt();
+        // A root's error is that of its square over twice the root.
+        let half_width = if statistic.value > 0.0 { 0.5 * of_square / statistic.value } else { 0.0 };
+        let (first, last) = squares.split_at(squares.len() / 2);
+        // Motion below the smallest that counts has no trend to speak of.
+        let trend = (mean(first) - mean(last)).abs();
+        let negligible = 2.0 * statistic.allowed * statistic.scale().powi(2);
+        Self {
+            half_width,
+            is_steady: trend
+                <= (STEADY * of_square).max(if statistic.value < statistic.smallest {
+                    negligible
+                } else {
+                    0.0
+                }),
+            is_narrow: half_width <= statistic.allowed * statistic.scale(),
+        }
+    }
+}
+
+/// The two halves of a window; absent where they have fewer than two samples.
+pub fn halves(window: &Range<usize>) -> Option<[Range<usize>; 2]> {
+    let half = window.len() / 2;
+    (half >= 2).then(|| [window.start..window.start + half, window.end - half..window.end])
+}
+
+/// The highest lines of a spectrum but for the mean: frequency \[Hz\] without the sense of whirl, and amplitude.
+fn lines_of(spectrum: &FullSpectrum) -> Vec<(f64, f64)> {
+    const LINES: usize = 16;
+    let search = PeakSearch { count: LINES, min_separation_hz: 0.0, exclude_mean: true };
+    // Hann's window spreads the mean over the bins next to it.
+    let beyond_mean = 2.0 * spectrum.resolution_hz;
+    let peaks = spectrum.peaks(&search).into_iter().map(|peak| (peak.frequency_hz.abs(), peak.amplitude));
+    peaks.filter(|peak| peak.0 >= beyond_mean).collect()
+}

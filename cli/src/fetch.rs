@@ -16,10 +16,11 @@ use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 
 /// Tables of one point.
-static TABLES: [&Layout; 6] = [
+static TABLES: [&Layout; 7] = [
     &tables::PROFILE,
     &tables::STATICS,
     &tables::HISTORY,
+    &tables::COURSE,
     &tables::SNAPSHOTS,
     &tables::CONTACTS,
     &tables::ENERGY,

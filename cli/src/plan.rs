@@ -87,19 +87,32 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
             study.runs, study.simulated_time
         )?;
     }
-    writeln!(
-        text,
-        "run in time: {} s simulated, {} degrees of freedom a node",
-        plan.simulated_time, plan.degrees_of_freedom
-    )?;
-    writeln!(text, "  {:10} {:18} {:>9} {:>10}  processor time", "accuracy", "method", "step", "steps")?;
-    for (i, PlannedAccuracy { name, integrator, step, steps, cpu_time }) in plan.accuracies.iter().enumerate()
-    {
-        let steps = steps.map_or("adaptive".to_owned(), |steps| steps.to_string());
-        let time = cpu_time.map_or("not known".to_owned(), |time| format!("{time:.2} s"));
-        let chosen = if i == 0 { "  <- as asked for" } else { "" };
+    let simulated = if plan.shortest_simulated_time < plan.simulated_time {
+        format!(
+            "{} to {} s simulated, until statistics have settled",
+            plan.shortest_simulated_time, plan.simulated_time
+        )
+    } else {
+        format!("{} s simulated", plan.simulated_time)
+    };
+    writeln!(text, "run in time: {simulated}, {} degrees of freedom a node", plan.degrees_of_freedom)?;
+    writeln!(text, "  {:10} {:18} {:>9} {:>16}  processor time", "accuracy", "method", "step", "steps")?;
+    for (i, planned) in plan.accuracies.iter().enumerate() {
+        let PlannedAccuracy { name, integrator, step, steps, fewest_steps, cpu_time, least_cpu_time } =
+            planned;
+        let steps = match (fewest_steps, steps) {
+            (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
+            (_, Some(steps)) => steps.to_string(),
+            (_, None) => "adaptive".to_owned(),
+        };
+        let time = match (least_cpu_time, cpu_time) {
+            (Some(least), Some(most)) if least < most => format!("{least:.2} to {most:.2} s"),
+            (_, Some(time)) => format!("{time:.2} s"),
+            (_, None) => "not known".to_owned(),
+        };
+        let chosen = if i == 0 { "  <- as requested" } else { "" };
         let step = format!("{} ms", step * 1e3);
-        writeln!(text, "  {name:10} {:18} {step:>9} {steps:>10}  {time}{chosen}", integrator.name())?;
+        writeln!(text, "  {name:10} {:18} {step:>9} {steps:>16}  {time}{chosen}", integrator.name())?;
     }
     if let (Some(break_away), Some(rotating)) = (plan.torque_top_break_away, plan.torque_top_rotating) {
         let (break_away, rotating) = (break_away / 1e3, rotating / 1e3);

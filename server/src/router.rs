@@ -76,6 +76,7 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
         ("/v1/sweeps/{id}/points/{n}/spectrogram", get(spectrogram::show)),
         ("/v1/sweeps/{id}/points/{n}/contacts", get(results::contacts)),
         ("/v1/sweeps/{id}/points/{n}/energy", get(results::energy)),
+        ("/v1/sweeps/{id}/points/{n}/course", get(results::course)),
         ("/v1/sweeps/{id}/points/{n}/statistics", get(statistics::show)),
         ("/v1/sweeps/{id}/points/{n}/plan", get(scene::plan)),
         ("/v1/sweeps/{id}/points/{n}/modes", get(scene::modes)),

@@ -213,7 +213,7 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
     scenario.contact.damping_per_length = Some(0.0);
     (scenario.duration, scenario.recording.rate_hz) = (5.0, 1000.0);
     scenario.recording.spectrum_windows = Some(Vec::new());
-    scenario.recording.orbit_window = Some(TimeWindow { from: 4.0, to: 5.0 });
+    scenario.recording.orbit_window = Some(TimeWindow { from: 4.0, to: 5.0 }.into());
     scenario.recording.nodes = [4.0, 10.0, 20.0].map(NodeChoice::Depth).to_vec();
     scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
     validate(&scenario).expect("valid");

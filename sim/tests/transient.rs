@@ -372,7 +372,7 @@ fn a_string_at_rest_leans_on_the_wall_with_its_static_normal_forces_over_the_orb
         for effect in [Effect::Friction, Effect::FrictionTorque, Effect::Unbalance] {
             scenario.effects.set(effect, Switch::Off);
         }
-        scenario.recording.orbit_window = Some(TimeWindow { from: 0.01, to: 0.05 });
+        scenario.recording.orbit_window = Some(TimeWindow { from: 0.01, to: 0.05 }.into());
         let model = Model::new(&scenario).expect("valid");
         let at_rest: f64 = Equilibrium::find(&model).expect("rests").normal_force.iter().sum();
         let records = run(&scenario);

@@ -24,6 +24,9 @@ use serde_json::{Map, Value, json};
 use crate::artifact::{ArtifactError, EncodedArtifact};
 use crate::spool::Spool;
 
+/// Rate of the table `course` at most \[Hz\]: several samples in a period of whirl and stick-slip.
+const COURSE_HZ: f64 = 20.0;
+
 /// Bytes of samples that are in memory at once while a table of them is written.
 const PIECE_BYTES: usize = 8 << 20;
 
@@ -49,6 +52,10 @@ pub(crate) fn point_tables(
         Outputs::Orbits(part) => artifacts.push(history(model, records, part, scratch)?),
         Outputs::Spectra => artifacts.push(spectra(model, records, scratch)?),
         Outputs::Summary => {}
+    }
+    let has_motion = matches!(outputs, Outputs::Full | Outputs::Orbits(_));
+    if has_motion && model.scenario.settles() {
+        artifacts.push(small(&tables::COURSE, &course(model, records))?);
     }
     artifacts.extend(snapshots(model, records, scratch)?);
     artifacts.push(small(&tables::CONTACTS, &contacts(model, records))?);
@@ -236,6 +243,26 @@ fn statics(model: &Model, equilibrium: &Equilibrium) -> Table {
     table
 }
 
+/// Motion of the recorded nodes and of the bit over the whole run, in single precision.
+fn course<H: Histories>(model: &Model, records: &Records<H>) -> Table {
+    let course = &records.course;
+    let every = (course.rate_hz() / COURSE_HZ).ceil().max(1.0) as usize;
+    let mut table = Table::default();
+    numbers(&mut table, &TIME, (0..course.samples()).step_by(every).map(|sample| course.time(sample)));
+    let single = |values: &[f64], offset: f64| {
+        Column::Single(values.iter().step_by(every).map(|value| (offset + value) as f32).collect())
+    };
+    for (node, [u, v]) in records.histories.nodes().into_iter().zip(course.orbits()) {
+        table.push(U.at_node(node + 1), single(u, 0.0));
+        table.push(V.at_node(node + 1), single(v, 0.0));
+    }
+    if !course.twist_rate().is_empty() {
+        let name = ROTATION_SPEED.at_node(model.node_count());
+        table.push(name, single(course.twist_rate(), model.rotation_speed));
+    }
+    table
+}
+
 /// Some of the samples of some of the recorded nodes, in single precision; everything was computed in double.
 fn history(
     model: &Model,
@@ -288,7 +315,8 @@ fn history(
         }
         Ok(table)
     };
-    let all = match window {
+    let settled = model.scenario.settles().then(|| records.settling.kept_window());
+    let all = match window.or(settled) {
         Some(window) => sample_range(window.from, window.to, records.rate_hz, histories.samples()),
         None => 0..histories.samples(),
     };

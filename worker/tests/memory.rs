@@ -14,7 +14,7 @@ fn scene(nodes: u32, duration: f64) -> Scenario {
     scenario.duration = duration;
     scenario.recording.nodes = (2..nodes + 2).map(NodeChoice::Node).collect();
     let window = TimeWindow { from: 0.0, to: 1.0 };
-    scenario.recording.orbit_window = Some(window);
+    scenario.recording.orbit_window = Some(window.into());
     scenario.recording.spectrum_windows = Some(vec![window]);
     scenario
 }

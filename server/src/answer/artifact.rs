@@ -250,7 +250,8 @@ impl Recording {
         Ok(of_node(layout, node, measured_depth))
     }
 
-    /// The samples of a half-open window \[from, to) \[s\] of the history; an absent end is open.
+    /// The samples of a half-open window \[from, to) \[s\] of the history; an absent end is open. A window that begins before what is kept,
+    /// or ends there, is refused.
     pub(crate) fn samples(
         &self,
         history: &StoredTable<StoredFile>,
@@ -261,7 +262,20 @@ impl Recording {
             return Ok(0..history.rows());
         }
         let mut times = self.read(history, &[TIME.name], 0..history.rows())?;
-        Ok(window::samples(&take(&mut times, TIME.name)?, from, to))
+        let times = take(&mut times, TIME.name)?;
+        if let [first, .., last] = times[..] {
+            // Starts are rounded as people write them, to a millisecond at most.
+            const ROUNDED: f64 = 1e-3;
+            let before =
+                [from.filter(|from| *from < first - ROUNDED), to.filter(|to| first > 0.0 && *to <= first)];
+            for (name, end) in ["from", "to"].into_iter().zip(before) {
+                if let Some(end) = end {
+                    let valid = format!("the history begins at {first} s and ends at {last} s");
+                    return Err(Error::parameter(name, Some(&end.to_string()), valid));
+                }
+            }
+        }
+        Ok(window::samples(&times, from, to))
     }
 
     /// The lateral motion of one node in such a window.

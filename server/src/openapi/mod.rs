@@ -66,6 +66,7 @@ pub fn openapi_of_annotations() -> String {
         spectrogram::show,
         results::contacts,
         results::energy,
+        results::course,
         statistics::show,
         scene::plan,
         scene::modes,

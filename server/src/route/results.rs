@@ -169,6 +169,27 @@ pub(crate) async fn energy(
     whole_table(&tables::ENERGY, app, path, query, headers).await
 }
 
+/// Motion over the whole of a run that ends once it has settled, at 20 Hz at most
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/points/{n}/course",
+        tag = "points",
+        operation_id = "get_course",
+        params(PointPath, TableQuery, Conditional),
+        responses(TableResponse, Problems)
+    )
+)]
+pub(crate) async fn course(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table(&tables::COURSE, app, path, query, headers).await
+}
+
 /// A table as the worker stored it; Parquet goes out as it lies there.
 async fn whole_table(
     &Layout { name, .. }: &Layout,

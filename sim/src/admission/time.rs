@@ -531,10 +531,23 @@ mod tests {
     #[test]
     fn windows_are_within_the_run() {
         let window = |from, to| TimeWindow { from, to };
-        problem("recording.orbit_window.to", |s| s.recording.orbit_window = Some(window(40.0, 61.0)));
-        problem("recording.orbit_window.from", |s| s.recording.orbit_window = Some(window(-1.0, 20.0)));
+        problem("recording.orbit_window.to", |s| s.recording.orbit_window = Some(window(40.0, 61.0).into()));
+        problem("recording.orbit_window.from", |s| {
+            s.recording.orbit_window = Some(window(-1.0, 20.0).into())
+        });
         problem("recording.spectrum_windows[1].to", |s| spectrum_window(s, 1).to = 60.5);
-        assert_eq!(warnings(|s| s.recording.orbit_window = Some(window(0.0, 60.0))), []);
+        assert_eq!(warnings(|s| s.recording.orbit_window = Some(window(0.0, 60.0).into())), []);
+    }
+
+    #[test]
+    fn a_settled_window_needs_motion_to_be_judged_by() {
+        let settle = |s: &mut Scenario| s.recording.orbit_window = Some(OrbitWindow::SETTLED);
+        assert_eq!(warnings(settle), []);
+        let found = problem("recording.orbit_window", |s| {
+            settle(s);
+            s.recording.nodes.clear();
+        });
+        assert!(found.message.contains("recording.nodes"), "{found}");
     }
 
     #[test]

@@ -247,7 +247,8 @@ mod tests {
     use drillsweep_scenario::TimeWindow;
 
     use super::*;
-    use crate::transient::ErrorEstimate;
+    use crate::signal::Window;
+    use crate::transient::{ErrorEstimate, MotionRegime, Settling};
 
     /// A run with orbits of 1 mm and an error of the history of 10 um.
     fn run() -> TransientSummary {
@@ -261,8 +262,20 @@ mod tests {
             orbit_radius_rms: 1e-3,
             radius_deviation: 1e-4,
             high_frequency_rms: None,
+            interval: None,
         };
         TransientSummary {
+            simulated_time: 1.0,
+            settling: Settling {
+                regime: MotionRegime::Fixed,
+                settled_at: None,
+                window: TimeWindow { from: 0.0, to: 1.0 },
+                weighting: Window::Rectangular,
+                base_frequencies_hz: Vec::new(),
+                intervals: Vec::new(),
+                halves_differ: None,
+                growing_mode: None,
+            },
             orbits: vec![orbit(1), orbit(2)],
             spectra: vec![],
             resolved_hz: 40.0,

@@ -7,7 +7,8 @@ use crate::model::{Model, ModelError};
 use crate::signal::sample_range;
 use crate::transient::{
     BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,
-    bit_beside, orbit_window_at_most, recorded_nodes, spectrum_windows_at_most,
+    bit_beside, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
+    spectrum_windows_at_most,
 };
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
@@ -32,6 +33,9 @@ const HISTORY_COLUMNS: u64 = Series::ALL.len() as u64 + 1;
 
 /// Those of the bit where it is recorded beside the nodes: rotation speed and torque.
 const BIT_COLUMNS: u64 = 2;
+
+/// Rows of the table `course` a second at most.
+const COURSE_TABLE_HZ: f64 = 20.0;
 
 /// Memory and storage of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -76,6 +80,10 @@ struct Recorded {
     /// Series of the bit, where it is recorded beside them.
     of_bit: u64,
     samples: u64,
+    /// Samples whose histories are kept where nothing else is asked for.
+    kept_samples: u64,
+    /// Samples of the motion by which the run is judged.
+    course_samples: u64,
     /// Samples of the longest window.
     longest_window: u64,
     /// Samples of all spectrum windows together.
@@ -91,6 +99,8 @@ impl Recorded {
                 nodes: 0,
                 of_bit: 0,
                 samples: 0,
+                kept_samples: 0,
+                course_samples: 0,
                 longest_window: 0,
                 spectrum_samples: 0,
                 ledger_rows: 0,
@@ -106,6 +116,12 @@ impl Recorded {
             nodes: recorded_nodes(model).len() as u64,
             of_bit: bit_beside(model).map_or(0, |_| BIT_COLUMNS),
             samples: samples as u64,
+            kept_samples: if scenario.settles() {
+                length(&kept_window_at_most(scenario))
+            } else {
+                samples as u64
+            },
+            course_samples: course_samples(scenario),
             longest_window: spectra.iter().map(length).fold(orbit, u64::max),
             spectrum_samples: spectra.iter().map(length).sum(),
             ledger_rows: (scenario.duration * LEDGER_RATE_HZ) as u64 + 2,
@@ -123,7 +139,9 @@ impl Recorded {
         let window = if self.nodes > 0 { PER_WINDOW_SAMPLE * self.longest_window } else { 0 };
         // The rows are there once as they are made and once as columns.
         let ledger = 2 * self.ledger_rows * size_of::<EnergyRow>() as u64;
-        2 * block + window.max(row_group + columns * row_groups * PER_COLUMN_CHUNK) + ledger
+        // Twice, while one that was suspended is read.
+        let course = 2 * (2 * self.nodes + 1) * self.course_samples * size_of::<f64>() as u64;
+        course + 2 * block + window.max(row_group + columns * row_groups * PER_COLUMN_CHUNK) + ledger
     }
 
     /// Bytes that the runs of a cost study take beside that: the one under way, and the lateral motion of what is kept.
@@ -179,19 +197,24 @@ fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
     let ledger = recorded.ledger_rows * size_of::<EnergyRow>() as u64;
     let history = |columns: u64, samples: u64| samples * (8 + columns * 4);
     let Recorded { nodes, of_bit, samples, .. } = *recorded;
+    let course = if model.scenario.settles() {
+        history(2 * nodes + of_bit / BIT_COLUMNS, (model.scenario.duration * COURSE_TABLE_HZ) as u64)
+    } else {
+        0
+    };
     let all = nodes * HISTORY_COLUMNS + of_bit;
     let of_motion = match &model.scenario.recording.outputs {
         Outputs::Summary => return 0,
         // Node, window and frequency, and two amplitudes in single precision.
         Outputs::Spectra => nodes * recorded.spectrum_samples * 40,
-        Outputs::Full => history(all, samples),
+        Outputs::Full => history(all, recorded.kept_samples) + course,
         Outputs::Orbits(part) => {
-            let kept = part.window.map_or(samples, |window| {
+            let kept = part.window.map_or(recorded.kept_samples, |window| {
                 let rate = model.scenario.recording.rate_hz;
                 sample_range(window.from, window.to, rate, samples as usize).len() as u64
             });
             let columns = part.nodes.as_ref().map_or(all, |nodes| nodes.len() as u64 * HISTORY_COLUMNS);
-            history(columns, kept.div_ceil(u64::from(part.decimation)))
+            history(columns, kept.div_ceil(u64::from(part.decimation))) + course
         }
     };
     small as u64 + ledger + of_motion

@@ -14,7 +14,7 @@ use crate::statics::Equilibrium;
 use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
 use crate::study::summary::StaticsSummary;
-use crate::transient::{longest_step, resolved_hz, step_count, torsion_step};
+use crate::transient::{longest_step, resolved_hz, shortest_run, step_count, torsion_step};
 
 /// The plan of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,8 +32,11 @@ pub struct Plan {
     pub nodes: usize,
     /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
     pub degrees_of_freedom: usize,
-    /// Simulated time of all runs of the point together \[s\], without a cost study; 0 where there is no run in time.
+    /// Simulated time of all runs of the point together \[s\], without a cost study: the most that they may take where the window is
+    /// settled. 0 where there is no run in time.
     pub simulated_time: f64,
+    /// The least that they can take \[s\]: where the window is settled, runs end once their motion has.
+    pub shortest_simulated_time: f64,
     /// Memory and storage.
     pub footprint: Footprint,
     /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
@@ -70,11 +73,16 @@ pub struct PlannedAccuracy {
     pub integrator: Integrator,
     /// Step \[s\]; the longest one where the step adapts itself.
     pub step: f64,
-    /// Steps of all runs of the point together; an estimate where the step adapts itself, and absent for `rk4` with a tolerance.
+    /// Steps of all runs of the point together, the most where the window is settled; an estimate where the step adapts itself, and
+    /// absent for `rk4` with a tolerance.
     pub steps: Option<u64>,
-    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included; absent where the
-    /// machine's speed is not known or steps are.
+    /// The fewest, as `steps`.
+    pub fewest_steps: Option<u64>,
+    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included, the most where the window is
+    /// settled; absent where the machine's speed is not known or steps are.
     pub cpu_time: Option<f64>,
+    /// The least, as `cpu_time` \[s\].
+    pub least_cpu_time: Option<f64>,
 }
 
 /// What a cost study takes.
@@ -147,7 +155,8 @@ impl Plan {
         let nodes = model.node_count();
         let lengths = || model.mesh.elements.iter().map(|element| element.length);
         let in_time = model.effects.transient;
-        let simulated_time = if in_time { scenario.duration * f64::from(scenario.runs()) } else { 0.0 };
+        let of_members = if in_time { f64::from(scenario.runs()) } else { 0.0 };
+        let shortest_part = shortest_run(scenario) / scenario.duration;
         let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
         let degrees_of_freedom = degrees_of_freedom(&model);
         let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
@@ -160,12 +169,15 @@ impl Plan {
                 let step = speed.step(method, degrees_of_freedom, nodes);
                 Some(statics_cpu_time? + start + step * steps as f64)
             };
+            let fewest_steps = steps.map(|steps| (steps as f64 * shortest_part).round() as u64);
             PlannedAccuracy {
                 name: name.to_owned(),
                 integrator: stepping.integrator,
                 step: longest_step(&model, stepping),
                 steps,
+                fewest_steps,
                 cpu_time: steps.and_then(cost),
+                least_cpu_time: fewest_steps.and_then(cost),
             }
         };
         let study = scenario.cost_study.as_ref().and_then(|_| PlannedStudy::new(scenario, speed));
@@ -176,7 +188,8 @@ impl Plan {
             longest_element: lengths().fold(0.0, f64::max),
             nodes,
             degrees_of_freedom: if in_time { degrees_of_freedom } else { 0 },
-            simulated_time,
+            simulated_time: scenario.duration * of_members,
+            shortest_simulated_time: shortest_run(scenario) * of_members,
             footprint: Footprint::of_model(&model),
             statics_cpu_time,
             accuracies: accuracies.into_iter().map(planned).collect(),
@@ -210,8 +223,12 @@ impl Plan {
             let more = planned.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
             if more > 1.0 {
                 planned.step /= more;
-                planned.steps = planned.steps.map(|steps| (steps as f64 * more).round() as u64);
-                planned.cpu_time = planned.cpu_time.map(|time| time * more);
+                for steps in [&mut planned.steps, &mut planned.fewest_steps].into_iter().flatten() {
+                    *steps = (*steps as f64 * more).round() as u64;
+                }
+                for time in [&mut planned.cpu_time, &mut planned.least_cpu_time].into_iter().flatten() {
+                    *time *= more;
+                }
             }
         }
         if let (Some(torsion), Some(own)) = (self.undamped_torsion, self.accuracies.first()) {
@@ -220,7 +237,8 @@ impl Plan {
         self
     }
 
-    /// Processor time that the point is expected to take \[s\], at its own accuracy or with its cost study; absent where it is not known.
+    /// Processor time that the point is expected to take \[s\] at most, at its own accuracy or with its cost study; absent where it is not
+    /// known.
     pub fn cpu_time(&self) -> Option<f64> {
         if self.is_study {
             return self.study.as_ref().filter(|study| study.lines_not_known == 0)?.cpu_time;

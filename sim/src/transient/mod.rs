@@ -38,7 +38,9 @@ pub use implicit::SweepMonitor;
 pub(crate) use run::{BLOCK_BYTES, LEDGER_RATE_HZ};
 pub use run::{Block, Keep};
 pub use settle::{MotionRegime, OrbitInterval, Settling, shortest_run};
-pub(crate) use settle::{kept_window_at_most, orbit_window_at_most, spectrum_windows_at_most};
+pub(crate) use settle::{
+    course_samples, kept_window_at_most, orbit_window_at_most, spectrum_windows_at_most,
+};
 pub(crate) use snapshots::SNAPSHOT_BLOCK_BYTES;
 pub use snapshots::{SnapshotBlock, SnapshotSeries, SnapshotTimes};
 

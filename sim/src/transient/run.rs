@@ -18,7 +18,7 @@ use super::grid::Grid;
 use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
-use super::settle::{Settle, Settling};
+use super::settle::{Settle, Settling, course_samples};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
 use super::{Outcome, Records, TransientEffort, bit_beside, dense, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
@@ -289,7 +289,7 @@ impl<'m, const D: usize> Run<'m, D> {
         progress
             .energy
             .reserve(ledger_rows(self.samples - progress.ticks / self.grid.at_sample(1), self.ledger_every));
-        progress.course.reserve(self.settle.course_samples());
+        progress.course.reserve(course_samples(&self.model.scenario) as usize);
         Ok(())
     }
 

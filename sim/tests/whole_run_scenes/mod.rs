@@ -47,7 +47,7 @@ pub fn reduced() -> Scenario {
     scenario.recording.rate_hz = 500.0;
     scenario.recording.nodes = vec![NodeChoice::Depth(40.0), NodeChoice::Depth(150.0)];
     scenario.recording.spectrum_windows = Some(Vec::new());
-    scenario.recording.orbit_window = Some(WINDOW);
+    scenario.recording.orbit_window = Some(WINDOW.into());
     scenario
 }
 

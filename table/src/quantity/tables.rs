@@ -74,6 +74,10 @@ pub static HISTORY: Layout = Layout {
     by_node: &[&U, &V, &W, &THETA_Z, &U_RATE, &V_RATE, &W_RATE, &THETA_Z_RATE, &ROTATION_SPEED, &TORQUE],
 };
 
+/// Lateral motion of the recorded nodes and rotation of the bit over the whole of a run that ends once it has settled, at 20 Hz at most; its
+/// `history` is of the window of its statistics.
+pub static COURSE: Layout = Layout { name: "course", columns: &[&TIME], by_node: &[&U, &V, &ROTATION_SPEED] };
+
 /// Snapshots of the whole string: a row a node, snapshot after snapshot; only what was solved for.
 pub static SNAPSHOTS: Layout = Layout {
     name: "snapshots",
@@ -155,10 +159,11 @@ pub static SPECTROGRAM: Layout =
     Layout { name: "spectrogram", columns: &[&TIME, &FREQUENCY, &AMPLITUDE], by_node: &[] };
 
 /// All of them.
-pub static ALL: [&Layout; 11] = [
+pub static ALL: [&Layout; 12] = [
     &PROFILE,
     &STATICS,
     &HISTORY,
+    &COURSE,
     &SNAPSHOTS,
     &SPECTRA,
     &CONTACTS,

@@ -269,6 +269,10 @@ class Point:
         """The energy ledger over the run."""
         return self.view("energy")
 
+    def course(self) -> Table:
+        """Motion over the whole of a run that ends once it has settled, at 20 Hz at most."""
+        return self.view("course")
+
     def cost(self) -> dict[str, Any]:
         """What accuracy costs, where the scenario has a `cost_study`."""
         return self._client.get_json(f"{self.path}/cost")

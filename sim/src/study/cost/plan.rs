@@ -222,7 +222,10 @@ mod tests {
         for row in &rows {
             assert_eq!(row.scenario.duration, own.duration);
             assert_eq!(row.scenario.orbit_window(), own.orbit_window());
-            assert_eq!(row.scenario.spectrum_windows().last(), own.spectrum_windows().last());
+            assert_eq!(
+                row.scenario.spectrum_windows().unwrap().last(),
+                own.spectrum_windows().unwrap().last()
+            );
             assert_eq!((row.scenario.recording.rate_hz, row.members.clone()), (1000.0, 0..1));
         }
         let names: Vec<_> = rows.iter().map(|row| row.name.as_str()).collect();
@@ -239,8 +242,21 @@ mod tests {
     fn a_shorter_study_looks_at_its_end() {
         let rows = planned(|s| s.cost_study.as_mut().unwrap().duration = Some(6.0));
         let recording = &rows[0].scenario.recording;
-        assert_eq!(recording.orbit_window, Some(TimeWindow { from: 4.0, to: 6.0 }));
+        assert_eq!(recording.orbit_window, Some(TimeWindow { from: 4.0, to: 6.0 }.into()));
         assert_eq!(recording.spectrum_windows, Some(vec![TimeWindow { from: 5.0, to: 6.0 }]));
+    }
+
+    #[test]
+    fn a_study_of_a_settled_window_looks_at_the_last_third_of_a_minute() {
+        let rows = planned(|s| {
+            s.duration = 300.0;
+            s.recording.orbit_window = Some(OrbitWindow::SETTLED);
+            s.recording.spectrum_windows = None;
+        });
+        let scenario = &rows[0].scenario;
+        assert_eq!((scenario.duration, scenario.settles()), (60.0, false));
+        assert_eq!(scenario.orbit_window(), Some(TimeWindow { from: 40.0, to: 60.0 }));
+        assert_eq!(scenario.spectrum_windows(), Some(vec![TimeWindow { from: 50.0, to: 60.0 }]));
     }
 
     #[test]

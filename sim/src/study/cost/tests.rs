@@ -69,7 +69,7 @@ fn report_with(rows: Vec<Row>, change: impl Fn(&mut Scenario)) -> CostReport {
     change(&mut scenario);
     scenario.duration = DURATION;
     scenario.recording.rate_hz = RATE_HZ;
-    scenario.recording.orbit_window = Some(WINDOW);
+    scenario.recording.orbit_window = Some(WINDOW.into());
     scenario.recording.spectrum_windows = Some(vec![WINDOW]);
     let (planned, runs): (Vec<_>, Vec<_>) = rows
         .into_iter()

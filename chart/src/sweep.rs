@@ -10,6 +10,9 @@ use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
 use crate::place::{Place, at_place};
 use crate::shown::{Shown, amount, axis, numbers, with_unit, words};
 
+/// The motion regime of a run that has not settled.
+const NOT_SETTLED: &str = "not_settled";
+
 /// What of a sweep is shown, and how.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SweepView {
@@ -25,7 +28,7 @@ pub struct SweepView {
 /// over two a map. Over more, a map over the first two that the view's slice does not hold; further ones are held at the first value that
 /// they have, and the picture says so. Those of a design that is no grid cannot be held: all points are shown, which it says as
 /// well. Texts have a colour each, the most frequent eight or, with others, seven. Points that are verified are marked on a map, and
-/// what that shows stands below the title.
+/// what that shows stands below the title; points that have not settled have crosses.
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them, or none is given; or the values that there are, where
@@ -55,6 +58,9 @@ pub fn sweep(
         _ => None,
     };
     let verified = findings.caption(first);
+    let is_doubtful = unsettled_rows(table);
+    let count = rows.iter().filter(|row| is_doubtful[**row]).count();
+    let unsettled = (count > 0).then(|| format!("crosses: {count} of {} points NOT SETTLED", rows.len()));
     if axes.len() < 2 && texts.is_none() {
         let names: Vec<&str> = fields.iter().map(String::as_str).collect();
         let shown = Shown::of(table, &names)?;
@@ -65,12 +71,17 @@ pub fn sweep(
             points.sort_by(|a, b| a[0].total_cmp(&b[0]));
             Line { name: at_place(name, &view.places), points, is_marked: true }
         };
+        let lines: Vec<Line> = shown.columns.into_iter().map(line).collect();
+        let doubtful: Vec<f64> =
+            xs.iter().zip(&rows).filter(|(_, row)| is_doubtful[**row]).map(|(x, _)| *x).collect();
+        let is_at = |point: &&[f64; 2]| doubtful.contains(&point[0]);
         let plot = LinePlot {
             title: title.to_owned(),
-            subtitle: notes.into_iter().chain(verified).collect::<Vec<_>>().join("; "),
+            subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
             x_label: with_unit(x),
             y_label,
-            lines: shown.columns.into_iter().map(line).collect(),
+            crosses: lines.iter().flat_map(|line| &line.points).filter(is_at).copied().collect(),
+            lines,
             ..LinePlot::default()
         };
         return Ok(plot.drawing());
@@ -94,12 +105,17 @@ pub fn sweep(
     };
     let is_marked = verified_rows(table);
     let points = xs.iter().zip(ys).zip(values).zip(&rows);
-    let points =
-        points.map(|(((x, y), value), row)| MapPoint { x: *x, y, value, is_marked: is_marked[*row] });
+    let points = points.map(|(((x, y), value), row)| MapPoint {
+        x: *x,
+        y,
+        value,
+        is_marked: is_marked[*row],
+        is_doubtful: is_doubtful[*row],
+    });
     let verified = verified.map(|verified| format!("diamonds: {verified}"));
     let plot = SweepMap {
         title: title.to_owned(),
-        subtitle: notes.into_iter().chain(verified).collect::<Vec<_>>().join("; "),
+        subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
         x_label: with_unit(x),
         y_label: axes.get(1).map(|y| with_unit(y)).unwrap_or_default(),
         value_label,
@@ -225,6 +241,21 @@ fn verified_rows(table: &Table) -> Vec<bool> {
     is_verified
 }
 
+/// The rows whose motion has not settled, or still grows, so that their statistics may be those of the start alone.
+fn unsettled_rows(table: &Table) -> Vec<bool> {
+    let mut is_unsettled = vec![false; table.rows()];
+    if let Some(Column::Text(regimes)) = table.columns.get(MOTION_REGIME.name) {
+        for (is_unsettled, regime) in is_unsettled.iter_mut().zip(regimes) {
+            *is_unsettled |= regime.as_deref() == Some(NOT_SETTLED);
+        }
+    }
+    let growing = table.columns.get(GROWING_MODE_HZ.name).and_then(Column::numbers);
+    for (is_unsettled, growing) in is_unsettled.iter_mut().zip(growing.unwrap_or_default()) {
+        *is_unsettled |= growing.is_finite();
+    }
+    is_unsettled
+}
+
 fn numeric(table: &Table) -> impl Iterator<Item = &str> {
     table
         .columns
@@ -273,6 +304,31 @@ mod tests {
         let problem =
             sweep(&table(&[1200.0; 4]), &parameters, None, &none, "", &SweepView::default()).unwrap_err();
         assert!(problem.detail.contains("orbit_radius_rms_49"), "{}", problem.detail);
+    }
+
+    #[test]
+    fn points_that_have_not_settled_have_crosses_in_lines_and_maps() {
+        let parameters: IndexSet<String> = ["flow_rate".to_owned(), "mud_density".to_owned()].into();
+        let picture = |density: [f64; 4], regimes: [&str; 4], growing: [f64; 4]| {
+            let table = Table::default()
+                .with("ordinal", Column::Integer((1..=4).map(Some).collect()))
+                .with("flow_rate", column(&[0.01, 0.02, 0.03, 0.04]))
+                .with("mud_density", column(&density))
+                .with("orbit_offset_49", column(&[0.001, 0.002, 0.003, 0.004]))
+                .with("motion_regime", Column::Text(regimes.map(|regime| Some(regime.to_owned())).to_vec()))
+                .with("growing_mode_hz", column(&growing));
+            let fields = ["orbit_offset_49".to_owned()];
+            let (none, view) = (Findings::default(), SweepView::default());
+            sweep(&table, &parameters, Some(&fields), &none, "", &view).unwrap().svg()
+        };
+        let (regimes, growing) =
+            (["regular", "not_settled", "irregular", "fixed"], [f64::NAN, f64::NAN, f64::NAN, 2.1]);
+        for density in [[1200.0; 4], [1200.0, 1500.0, 1200.0, 1500.0]] {
+            assert!(picture(density, regimes, growing).contains("2 of 4 points NOT SETTLED"));
+            let settled = picture(density, ["regular"; 4], [f64::NAN; 4]);
+            assert!(!settled.contains("SETTLED") && !settled.contains(r#"class="doubtful""#));
+        }
+        assert!(picture([1200.0; 4], regimes, growing).contains(r#"class="doubtful""#));
     }
 
     /// A sweep over 3 by 3 by 2 values with a number and a text each.

@@ -153,7 +153,7 @@ const ahead = (() => {
     const [answer, requests] = await Promise.all([received(point), import(new URL("motion-requests.js", folder).href)]);
     if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
     const { scenario } = answer;
-    const tables = [...requests.windowTables(scenario, query, requests.chosenWindow(scenario, query)), ...requests.nodeTables(scenario, query)];
+    const tables = [...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)), ...requests.nodeTables(scenario, query)];
     for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
   }
 

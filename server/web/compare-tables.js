@@ -52,7 +52,7 @@ export async function drawStatistics(place, comparison) {
     const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
     const [node] = columns.node;
     noteNode(comparison, point, node, columns.measured_depth[0]);
-    const beside = biasOver(point.detail.scenario, window, (name) => bias.beside(`${name}_${node}`, point.ordinal));
+    const beside = biasOver(point.detail, window, (name) => bias.beside(`${name}_${node}`, point.ordinal));
     /** @type {[string, string][]} */
     const facts = STATISTICS.map(([name, text]) => [text, say(name, columns[name][0]) + beside(name)]);
     return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);

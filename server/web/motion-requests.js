@@ -64,25 +64,39 @@ export function selectedNode({ recording: { nodes } }, query) {
 }
 
 /**
- * The window that a link names, or the scenario's own.
- * @param {any} scenario
+ * The window that a link names, or the one of the point's statistics.
+ * @param {any} point
  * @param {URLSearchParams} query of the link
  * @returns {{from: number, to: number}} [s]
  */
-export function chosenWindow(scenario, query) {
-  const usual = verifiedWindow(scenario);
+export function chosenWindow(point, query) {
+  const { scenario } = point;
+  const usual = verifiedWindow(point);
   const from = Number(query.get("from") ?? usual.from);
   const to = Number(query.get("to") ?? usual.to);
   return from >= 0 && to > from ? { from, to: Math.min(to, scenario.duration) } : { from: usual.from, to: usual.to };
 }
 
+/** The longest window of which the histories of a run that settles are kept [s]. */
+const LONGEST_KEPT = 80;
+
 /**
- * The window of a scenario's statistics, which verifying looks at: its own, or the last third of the run.
- * @param {any} scenario
+ * The window of a point's statistics, which verifying looks at: what its result reports, the scenario's own, or the last third of the run.
+ * @param {any} point
  * @returns {{from: number, to: number}} [s]
  */
-export function verifiedWindow({ recording, duration }) {
-  return recording.orbit_window ?? { from: (duration * 2) / 3, to: duration };
+export function verifiedWindow({ scenario: { recording, duration }, summary }) {
+  if (recording.orbit_window === "settled" && summary?.statistics_to !== undefined) return { from: Math.max(summary.statistics_from, summary.statistics_to - LONGEST_KEPT), to: summary.statistics_to };
+  return recording.orbit_window?.to !== undefined ? recording.orbit_window : { from: (duration * 2) / 3, to: duration };
+}
+
+/**
+ * The part of a run of which histories are kept: all of it, or of a run that settles the window of its statistics.
+ * @param {any} point
+ * @returns {{from: number, to: number}} [s]
+ */
+export function keptWindow(point) {
+  return point.scenario.recording.orbit_window === "settled" ? verifiedWindow(point) : { from: 0, to: point.scenario.duration };
 }
 
 /** How the samples of a spectrum are weighted, as the link says. @param {URLSearchParams} query */

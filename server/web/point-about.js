@@ -96,7 +96,7 @@ export function costFacts(point) {
   /** @type {[string, string][]} */
   const facts = [];
   const add = (/** @type {string} */ name, /** @type {any} */ value, /** @type {(value: any) => string} */ write = String) => value !== undefined && value !== null && facts.push([name, write(value)]);
-  add("Simulated time", point.scenario.duration, (value) => say("time", value));
+  add("Simulated time", point.summary?.simulated_time ?? point.scenario.duration, (value) => say("time", value));
   add("Processor time of the run", provenance.transient_cpu_time, duration);
   add("Processor time of the equilibrium", provenance.statics_cpu_time, duration);
   add("Wall time of the run", provenance.transient_wall_time, duration);

@@ -4,7 +4,7 @@ import { get, Problem } from "./api.js";
 import { Brush, dragWindow, orbitStatistics } from "./brush.js";
 import { choice, debounced, fill, h } from "./dom.js";
 import { pythonNode } from "./lines.js";
-import { chosenWindow, nodeTables, rangesOf, rotationTable, selectedNode, spectrumRange, spectrumWeighting, windowTables } from "./motion-requests.js";
+import { chosenWindow, keptWindow, nodeTables, rangesOf, rotationTable, selectedNode, spectrumRange, spectrumWeighting, windowTables } from "./motion-requests.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
@@ -23,7 +23,8 @@ const REST_MS = 100;
  */
 export function motion(context) {
   const { point, query, signal } = context;
-  const { recording, duration, operation } = point.scenario;
+  const { recording, operation } = point.scenario;
+  const kept = keptWindow(point);
   /** @type {any[]} */
   const nodes = recording.nodes;
   const history = canvas("History of the node", "history", "low");
@@ -46,7 +47,7 @@ export function motion(context) {
   const beginWindow = generations();
 
   const selector = () => selectedNode(point.scenario, query);
-  const span = () => chosenWindow(point.scenario, query);
+  const span = () => chosenWindow(point, query);
   const isZoomed = () => (query.get("zoom") ?? "motion") === "motion";
   const isLog = () => query.get("amplitude") === "log";
   const range = () => spectrumRange(query, recording.rate_hz);
@@ -58,7 +59,7 @@ export function motion(context) {
   const set = (name, value) => context.keep({ [name]: value });
 
   /** The fields of the window; they stay, so that the keyboard's focus goes on from them. */
-  const [fromBox, toBox] = ["From", "To"].map((name) => h("input", { type: "number", min: 0, max: duration, step: "any", style: "width:7rem", "aria-label": `${name} [s]`, onchange: () => choose(Number(fromBox.value), Number(toBox.value)) }));
+  const [fromBox, toBox] = ["From", "To"].map((name) => h("input", { type: "number", min: kept.from, max: kept.to, step: "any", style: "width:7rem", "aria-label": `${name} [s]`, onchange: () => choose(Number(fromBox.value), Number(toBox.value)) }));
 
   function fillWindow() {
     const { from, to } = span();
@@ -93,7 +94,7 @@ export function motion(context) {
         set("window", value);
         attend(drawWindow(), signal);
       }),
-      h("button", { onclick: () => choose(0, duration) }, "Whole run"),
+      h("button", { onclick: () => choose(kept.from, kept.to) }, point.scenario.recording.orbit_window === "settled" ? "All that is kept" : "Whole run"),
     );
   }
 
@@ -105,8 +106,8 @@ export function motion(context) {
 
   /** @param {number} from @param {number} to */
   function choose(from, to) {
-    const first = Math.max(0, Math.min(from, to));
-    const last = Math.min(duration, Math.max(from, to));
+    const first = Math.max(kept.from, Math.min(from, to));
+    const last = Math.min(kept.to, Math.max(from, to));
     if ((last - first) * recording.rate_hz < FEWEST) return void drawOrbit();
     context.keep({ from: String(Number(first.toFixed(4))), to: String(Number(last.toFixed(4))) });
     fillWindow();
@@ -158,7 +159,7 @@ export function motion(context) {
       { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
     ];
     history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
-    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()] }, signal);
+    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [kept.from, kept.to] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()] }, signal);
     if (shape !== history || isDraggable || signal.aborted) return;
     isDraggable = true;
     dragWindow(history, follow, release, signal);
@@ -187,7 +188,7 @@ export function motion(context) {
         { type: "scatter", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
         { type: "scatter", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
       ],
-      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [0, duration] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false, tickmode: "auto" } },
+      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [kept.from, kept.to] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false, tickmode: "auto" } },
       signal,
     );
   }
@@ -289,7 +290,7 @@ export function motion(context) {
   function drawStatistics() {
     const { from, to } = span();
     const { columns, attributes } = windowed.statistics;
-    const bias = biasOver(point.scenario, span(), context.bias);
+    const bias = biasOver(point, span(), context.bias);
     showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${columns.node[0]}`), String(attributes.samples));
   }
 
@@ -314,7 +315,7 @@ export function motion(context) {
    * @returns {(name: string) => string}
    */
   function biasOf(frequency) {
-    const suffix = `_${windowed.lines.attributes.node}_w${spectrumWindow(point.scenario, span())}`;
+    const suffix = `_${windowed.lines.attributes.node}_w${spectrumWindow(point, span())}`;
     const summarised = point.summary[`line_frequency_hz${suffix}`];
     // The summary weights by Hann's window.
     const isIt = weighting() === "hann" && typeof summarised === "number" && Math.abs(frequency - summarised) < windowed.lines.attributes.resolution / 2;

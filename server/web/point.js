@@ -6,6 +6,7 @@ import { waysToCompare } from "./comparison.js";
 import { fill, h } from "./dom.js";
 import { lines, requestLines } from "./lines.js";
 import { keep, link } from "./router.js";
+import { isUnsettled } from "./statistics.js";
 import { say, sayParameters } from "./units.js";
 
 /**
@@ -77,7 +78,7 @@ export async function show(main, route, signal) {
       h(
         "div",
         { class: "head" },
-        h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, sayParameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "")),
+        h("div", {}, h("h1", {}, `Point ${ordinal}`), h("p", {}, sayParameters(current.parameters)), h("p", {}, h("span", { class: `state ${current.state}` }, current.state), current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "", isUnsettled(current.summary?.motion_regime, current.summary?.growing_mode_hz) && h("span", { class: "wrong" }, " not settled: its statistics may be those of the start"))),
         h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), waysToCompare(`${id}:${ordinal}`).map(({ text, href }) => h("a", { class: "button", href }, text))),
       ),
       current.error && h("div", { class: "panel", role: "alert" }, h("h2", { class: "wrong" }, `Failed: ${current.error.class}`), h("p", {}, current.error.reason), h("p", { class: "soft" }, [typeof current.error.time === "number" && `at ${say("time", current.error.time)}`, current.error.node && `node ${current.error.node}`].filter(Boolean).join(", "))),

@@ -16,15 +16,29 @@ export const STATISTICS = [
 /** Part of a run within which the ends of two windows count as the same: the link rounds them. */
 const SAME = 1e-4;
 
+/** Columns that show whether a point has settled. */
+export const SETTLING = ["motion_regime", "growing_mode_hz"];
+
+/**
+ * Whether a point's statistics may be those of its start alone: it has not settled, or a mode still grows.
+ * @param {any} regime
+ * @param {any} growing
+ */
+export function isUnsettled(regime, growing) {
+  return regime === "not_settled" || typeof growing === "number";
+}
+
 /** Samples that a spectrum needs. */
 export const FEWEST = 8;
 
 /**
- * The number of the scenario's window of spectra that a window is, from 1; 0 of any other.
- * @param {any} scenario
+ * The number of a point's window of spectra that a window is, from 1; 0 of any other.
+ * @param {any} point
  * @param {{from: number, to: number}} window [s]
  */
-export function spectrumWindow({ recording, duration }, window) {
+export function spectrumWindow(point, window) {
+  const { recording, duration } = point.scenario;
+  if (recording.orbit_window === "settled" && !recording.spectrum_windows) return isSame(window, verifiedWindow(point), duration) ? 1 : 0;
   const first = Math.round(((duration * 5) / 6) * recording.rate_hz) / recording.rate_hz;
   const usual = (duration - first) * recording.rate_hz >= FEWEST ? [{ from: first, to: duration }] : [];
   return 1 + (recording.spectrum_windows ?? usual).findIndex((/** @type {{from: number, to: number}} */ known) => isSame(window, known, duration));
@@ -32,13 +46,13 @@ export function spectrumWindow({ recording, duration }, window) {
 
 /**
  * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
- * @param {any} scenario
+ * @param {any} point
  * @param {{from: number, to: number}} window [s]
  * @param {(name: string) => string} bias
  */
-export function biasOver(scenario, { from, to }, bias) {
-  const verified = verifiedWindow(scenario);
-  return isSame({ from, to }, verified, scenario.duration) ? bias : () => "";
+export function biasOver(point, { from, to }, bias) {
+  const verified = verifiedWindow(point);
+  return isSame({ from, to }, verified, point.scenario.duration) ? bias : () => "";
 }
 
 /**

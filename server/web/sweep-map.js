@@ -5,6 +5,7 @@ import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "./plots.js";
 import { link } from "./router.js";
+import { isUnsettled, SETTLING } from "./statistics.js";
 import { keyboard } from "./sweep-cursor.js";
 import { finer } from "./sweep-finer.js";
 import { ends, layered } from "./sweep-layers.js";
@@ -62,8 +63,12 @@ export function map(context) {
       fill(element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
       return;
     }
-    const [ordinals, states, xs, ys, values, ...others] = await table.columns("ordinal", "state", x, y ?? x, colour, ...held);
+    const present = SETTLING.filter((name) => table.names.includes(name));
+    const [ordinals, states, xs, ys, values, ...others] = await table.columns("ordinal", "state", x, y ?? x, colour, ...held, ...present);
     if (!isNewest()) return;
+    const settling = others.slice(held.length);
+    const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) => settling[present.indexOf(name)]?.[index];
+    const doubts = (/** @type {number} */ index) => isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
       context.keep({ [name]: value });
       attend(redraw(), context.signal);
@@ -136,12 +141,12 @@ export function map(context) {
       return (/** @type {any} */ value) => `${called} ${words(value)}`;
     };
     const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
-    const texts = rows.map((index) => `point ${ordinals[index]}: ${states[index]}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${typeof values[index] === "number" ? context.biases.beside(colour, Number(ordinals[index])) : ""}`);
+    const texts = rows.map((index) => `point ${ordinals[index]}: ${states[index]}${doubts(index) ? ", not settled" : ""}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${typeof values[index] === "number" ? context.biases.beside(colour, Number(ordinals[index])) : ""}`);
     const axisLayout = (/** @type {string} */ name) => ({ title: title(name), quantity: name, type: context.spans[name]?.scale === "log" ? "log" : "linear" });
 
     if (!y) {
       const order = rows.map((_, position) => position).sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
-      const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0] }, line: { color: LINES[0] } };
+      const trace = { type: "scatter", mode: "lines+markers", x: order.map((position) => at(x, xs[rows[position]])), y: order.map((position) => at(colour, values[rows[position]])), text: order.map((position) => texts[position]), customdata: order.map((position) => ordinals[rows[position]]), hoverinfo: "text", marker: { size: 8, color: LINES[0], symbol: order.map((position) => (doubts(rows[position]) ? "x" : "circle")) }, line: { color: LINES[0] } };
       cursor.over(order.map((position, column) => ({ x: at(x, xs[rows[position]]), y: at(colour, values[rows[position]]), column, row: 0, ordinal: Number(ordinals[rows[position]]), text: texts[position] })).filter((point) => typeof point.y === "number"));
       const shape = await draw(place, [trace], { xaxis: axisLayout(x), yaxis: { title: context.depths.title(colour), quantity: colour, type: isLog ? "log" : "linear" }, dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);
       listen(shape, chooseRegion);
@@ -180,6 +185,8 @@ export function map(context) {
     }
     const failed = rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });
+    const doubtful = rows.filter(doubts);
+    if (doubtful.length) traces.push({ type: "scatter", mode: "markers", name: "not settled", x: doubtful.map((index) => at(x, xs[index])), y: doubtful.map((index) => at(y, ys[index])), customdata: doubtful.map((index) => ordinals[index]), text: doubtful.map((index) => `point ${ordinals[index]}: not settled`), hoverinfo: "text", marker: { symbol: "x-thin", size: 9, line: { width: 2, color: "#d55e00" } }, showlegend: true });
     const [columnOf, rowOf] = [xs, ys].map((column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])));
     cursor.over(rows.map((index, position) => ({ x: at(x, xs[index]), y: at(y, ys[index]), column: columnOf.get(/** @type {number} */ (xs[index])) ?? 0, row: rowOf.get(/** @type {number} */ (ys[index])) ?? 0, ordinal: Number(ordinals[index]), text: texts[position] })));
     const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y), dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);

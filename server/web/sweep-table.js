@@ -4,6 +4,7 @@ import { choice, debounced, fill, h } from "./dom.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { link } from "./router.js";
+import { isUnsettled, SETTLING } from "./statistics.js";
 import { preferred } from "./sweep-map.js";
 import { label, meaning, number, title, unit } from "./units.js";
 
@@ -45,6 +46,8 @@ export function table(context) {
   let columns = [];
   /** @type {string[]} */
   let names = [];
+  /** @type {(index: number) => boolean} */
+  let doubts = () => false;
   const begin = generations();
 
   async function redraw() {
@@ -53,12 +56,16 @@ export function table(context) {
     const { by, isDown } = sorting();
     const { tests, problem } = conditions(filter.value, data.names);
     wrong.textContent = problem;
-    const needed = [...asked, by, ...tests.map((test) => test.name)];
+    const present = SETTLING.filter((name) => data.names.includes(name));
+    const needed = [...asked, by, ...tests.map((test) => test.name), ...present];
     const found = await data.columns(...needed);
     if (!isNewest()) return;
     names = asked;
     columns = found.slice(0, names.length);
     const key = found[names.length];
+    const settling = found.slice(found.length - present.length);
+    const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) => settling[present.indexOf(name)]?.[index];
+    doubts = (index) => isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
     rows = Array.from({ length: data.rows }, (_, index) => index).filter((index) => tests.every((test, order) => test.holds(found[names.length + 1 + order][index])));
     // Gaps stand at the end, whatever the order.
     rows.sort((a, b) => {
@@ -97,7 +104,7 @@ export function table(context) {
     return h("tr", { onclick: () => context.open(Number(ordinal)) }, names.map((name, order) => {
       const value = columns[order][index];
       if (name === "ordinal") return h("td", { class: "number" }, h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, ordinal));
-      if (name === "state") return h("td", {}, h("span", { class: `state ${value}` }, value));
+      if (name === "state") return h("td", {}, h("span", { class: `state ${value}` }, value), doubts(index) && h("span", { class: "wrong small" }, " not settled"));
       if (typeof value === "number") return h("td", { class: "number" }, number(value / unit(name).size, 5), context.biases.at(name, Number(ordinal)) && h("span", { class: "soft small" }, ` ${context.biases.at(name, Number(ordinal))}`));
       return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
     }));

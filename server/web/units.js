@@ -21,7 +21,7 @@ export async function loadQuantities() {
   registry = await getNeeded("/v1/quantities").catch(() => registry);
 }
 
-const VARIANT = /^(spread|ensemble_mean|reference|bias)_(.+)$/;
+const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
 const NUMBERS = /(?:_(\d+))?(?:_w(\d+))?$/;
 
 /**

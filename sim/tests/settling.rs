@@ -3,6 +3,7 @@
 use drillsweep_scenario::{Accuracy, AccuracyPreset, OrbitWindow, Scenario, TimeWindow, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
+use drillsweep_sim::modes::{ModeKind, ModeSearch, modes};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::summary::TransientSummary;
 use drillsweep_sim::transient::{Checkpoint, MotionRegime, Outcome, Records, Transient, shortest_run};
@@ -85,27 +86,37 @@ fn no_run_ends_before_its_fixed_windows_do() {
     let ends = run(&scenario).0.simulated_time;
     scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: ends, to: ends + 15.0 }]);
     let (records, summary) = run(&scenario);
-    assert_eq!(records.simulated_time, ends + 20.0);
+    assert!(records.simulated_time >= ends + 15.0, "{} after {ends}", records.simulated_time);
     assert_eq!(summary.spectra[0].window.to, ends + 15.0);
 }
 
-/// Torsion of the reduced string grows slowly at this speed: a window of [20, 30) s shows a quiet string, the settled one stick-slip.
+/// Torsion of the reduced string grows with 0.05 1/s at this speed: over [20, 30) s the string is quiet, and settled it sticks and slips in
+/// orbits more than ten times as large. Two runs of 160 s together, since what has to be shown comes late: 3 s.
 #[test]
 fn a_mode_that_grows_keeps_a_run_going_until_it_sticks_and_slips() {
     let mut quiet = whole_run_scenes::reduced();
     quiet.operation.rotation_speed_rpm = 170.0;
     quiet.mud.as_mut().expect("mud").density = 1500.0;
     quiet.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
-    let started = std::time::Instant::now();
-    let (fixed, early) = run(&quiet);
-    println!("{:?} {:?}", fixed.settling, started.elapsed());
-    let (records, late) = run(&settled(quiet, 300.0));
-    println!("{:?} {:?}", records.settling, started.elapsed());
+    let (_, early) = run(&quiet);
+    assert_eq!((early.settling.regime, early.capture_count), (MotionRegime::Fixed, 0));
+    let growing = early.settling.growing_mode.expect("still grows");
+    assert!(growing.growth_rate > 0.04 && growing.growth_rate < 0.06, "{growing:?}");
+    let (model, equilibrium) = at_rest(&quiet);
+    let search = ModeSearch { from_hz: 1.9, to_hz: 2.4, most: 100 };
+    let all = modes(&model, &equilibrium, &search).expect("found").modes;
+    let torsional = all.iter().find(|mode| mode.kind == ModeKind::Torsional && mode.growth_rate > 0.0);
+    let shift = torsional.expect("torsion grows").frequency_hz - growing.frequency_hz;
+    assert!(shift.abs() < 0.02, "{shift} Hz");
+    assert!(early.settling.halves_differ.expect("has halves") > 0.2);
+
+    let (_, late) = run(&settled(quiet, 300.0));
+    assert_eq!((late.settling.regime, late.settling.growing_mode), (MotionRegime::Regular, None));
+    assert!(late.simulated_time > 100.0 && late.capture_count > 1000, "{:?}", late.settling);
     for (early, late) in early.orbits.iter().zip(&late.orbits) {
-        println!(
-            "{} {} {} {}",
-            early.orbit_radius_rms, late.orbit_radius_rms, early.radius_deviation, late.radius_deviation
-        );
+        assert!(late.orbit_radius_rms > 10.0 * early.orbit_radius_rms, "{early:?} {late:?}");
     }
-    println!("captures {} {}", early.capture_count, late.capture_count);
+    // The limit cycle turns at the frequency of the mode that it has grown from.
+    let [base] = late.settling.base_frequencies_hz[..] else { panic!("{:?}", late.settling) };
+    assert!((base - growing.frequency_hz).abs() < 0.02, "{base}");
 }

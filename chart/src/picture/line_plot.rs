@@ -42,6 +42,8 @@ pub struct LinePlot {
     pub y_label: String,
     /// The lines, in the order of the legend. A single line without a name has no legend.
     pub lines: Vec<Line>,
+    /// Points of the lines whose values cannot be trusted: they get crosses.
+    pub crosses: Vec<[f64; 2]>,
     /// What the vertical axis shows.
     pub vertical: VerticalAxis,
     /// Places that are named, the most important first; those that find no room are left out.
@@ -191,6 +193,11 @@ impl LinePlot {
                 members.extend(places.map(|at| Shape::Marker(at, marker, colour)));
             }
             shapes.push(Shape::Group("series", members));
+        }
+        let crosses = self.crosses.iter().filter(|point| is_finite(point)).filter_map(position);
+        let crosses: Vec<_> = crosses.map(|at| Shape::Marker(at, Marker::Cross, Colour::TEXT)).collect();
+        if !crosses.is_empty() {
+            shapes.push(Shape::Group("doubtful", crosses));
         }
         let labels = self.labels.iter().filter_map(|label| Some((position(&label.at)?, &label.text)));
         let labels = labels.filter_map(|(at, text)| place_label(&mut room, at, text)).flatten().collect();

@@ -89,6 +89,8 @@ pub struct MapPoint {
     pub value: f64,
     /// Whether the point stands out among the others: it gets a diamond.
     pub is_marked: bool,
+    /// Whether the value cannot be trusted: it gets a cross.
+    pub is_doubtful: bool,
 }
 
 impl SweepMap {
@@ -335,6 +337,12 @@ impl Places {
                         let at = [cell.left + x, cell.top + y];
                         marks.push(Shape::Marker(at, Marker::Diamond, Colour::TEXT));
                     }
+                    if point.is_doubtful {
+                        let (x, y) =
+                            (MARK_INSET.min(0.5 * cell.width()), MARK_INSET.min(0.5 * cell.height()));
+                        let at = [cell.left + cell.width() - x, cell.top + y];
+                        marks.push(Shape::Marker(at, Marker::Cross, Colour::TEXT));
+                    }
                 }
                 // Above all cells, which small ones would else cover.
                 shapes.append(&mut marks);
@@ -346,6 +354,7 @@ impl Places {
                     shapes.push(match scale.of(point.value) {
                         Some(colour) => {
                             let marker = if point.is_marked { Marker::Diamond } else { Marker::Circle };
+                            let marker = if point.is_doubtful { Marker::Cross } else { marker };
                             Shape::Marker(at, marker, colour)
                         }
                         None => Shape::Marker(at, Marker::Cross, Colour::FRAME),
@@ -408,13 +417,17 @@ impl Places {
         }
     }
 
-    /// Diamonds at marked points, but for those that would cover another.
+    /// Diamonds at marked points and crosses at doubtful ones, but for those that would cover another.
     fn distant_marks(&self, area: &Rectangle, points: &[&MapPoint]) -> Vec<Shape> {
         let mut taken = HashSet::new();
-        let marked = points.iter().filter(|point| point.is_marked);
-        let places = marked.filter_map(|point| self.position(area, point));
-        let clear = places.filter(|at| taken.insert(at.map(|place| (place / MARK_DISTANCE) as i64)));
-        clear.map(|at| Shape::Marker(at, Marker::Diamond, Colour::TEXT)).collect()
+        let mark = |point: &MapPoint| match (point.is_doubtful, point.is_marked) {
+            (true, _) => Some(Marker::Cross),
+            (false, true) => Some(Marker::Diamond),
+            (false, false) => None,
+        };
+        let marked = points.iter().filter_map(|point| Some((self.position(area, point)?, mark(point)?)));
+        let clear = marked.filter(|(at, _)| taken.insert(at.map(|place| (place / MARK_DISTANCE) as i64)));
+        clear.map(|(at, marker)| Shape::Marker(at, marker, Colour::TEXT)).collect()
     }
 }
 
@@ -494,6 +507,7 @@ mod tests {
                     y: f64::from(j),
                     value: (10 * i as i32 + j).into(),
                     is_marked: false,
+                    is_doubtful: false,
                 })
             })
             .collect()
@@ -543,7 +557,7 @@ mod tests {
     fn a_design_without_a_grid_is_scattered() {
         let points: Vec<MapPoint> = (0..40)
             .map(|k| (f64::from(k), f64::from(k * 17 % 40)))
-            .map(|(x, y)| MapPoint { x, y, value: x + y, is_marked: false })
+            .map(|(x, y)| MapPoint { x, y, value: x + y, ..MapPoint::default() })
             .collect();
         let svg = map(points).svg();
         let document = Document::parse(&svg).expect("well-formed XML");
@@ -575,9 +589,9 @@ mod tests {
         let cases = [
             vec![],
             vec![MapPoint { x: f64::NAN, value: 1.0, ..MapPoint::default() }],
-            vec![MapPoint { x: 1.0, y: 1.0, value: f64::NAN, is_marked: true }],
+            vec![MapPoint { x: 1.0, y: 1.0, value: f64::NAN, is_marked: true, is_doubtful: true }],
             vec![
-                MapPoint { x: f64::MAX, y: f64::MIN, value: 1e300, is_marked: true },
+                MapPoint { x: f64::MAX, y: f64::MIN, value: 1e300, is_marked: true, is_doubtful: true },
                 MapPoint { value: -1e300, ..MapPoint::default() },
             ],
             vec![MapPoint::default(); 3],
@@ -654,6 +668,7 @@ mod tests {
             y,
             value: if index % 10 == 3 { f64::NAN } else { (noise(index) * 7919.0).fract() },
             is_marked: index.is_multiple_of(10),
+            is_doubtful: index.is_multiple_of(7),
         };
         let grid = |columns: usize| -> Vec<MapPoint> {
             let at = |index: usize| point(index, (index % columns) as f64 + 1.0, (index / columns) as f64);
@@ -674,7 +689,7 @@ mod tests {
     fn a_mosaic_shows_the_colours_of_its_cells_at_their_places() {
         let points: Vec<MapPoint> = (0..60 * 50)
             .map(|index| (f64::from(index % 60), f64::from(index / 60)))
-            .map(|(x, y)| MapPoint { x, y, value: x + 100.0 * y, is_marked: false })
+            .map(|(x, y)| MapPoint { x, y, value: x + 100.0 * y, ..MapPoint::default() })
             .collect();
         let map = map(points.clone());
         let drawing = map.drawing();

@@ -46,9 +46,9 @@ const STUDENT: f64 = 2.365;
 /// The shortest batch \[s\]: several periods of the slowest torsion of long strings, so that neighbouring batches hardly depend on each other.
 const SHORTEST_BATCH: f64 = 10.0;
 
-/// Half widths by which the means of the first and the last four batches may differ. Their difference scatters twice as much as the mean of all,
-/// so that steady motion exceeds two in one of twenty statistics and three in one of a hundred; a run has a dozen.
-const STEADY: f64 = 3.0;
+/// Student's t of 99 % (two-sided) for the difference between the means of the first and of the last four batches: one of a hundred statistics of
+/// steady motion exceeds it, and a run has up to a dozen. A straight trend alone has 4.4.
+const STEADY: f64 = 3.707;
 
 /// Motion of the recorded nodes and rate of twist at the bit, at the recording rate or a whole part of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -405,22 +405,21 @@ impl Interval {
         let count = squares.len() as f64;
         let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         let centre = mean(squares);
-        let variance = squares.iter().map(|square| (square - centre).powi(2)).sum::<f64>() / (count - 1.0);
-        let of_square = STUDENT * (variance / count).sqrt();
+        let about =
+            |part: &[f64], centre: f64| part.iter().map(|square| (square - centre).powi(2)).sum::<f64>();
+        let of_square = STUDENT * (about(squares, centre) / (count - 1.0) / count).sqrt();
         // A root's error is that of its square over twice the root.
         let half_width = if statistic.value > 0.0 { 0.5 * of_square / statistic.value } else { 0.0 };
         let (first, last) = squares.split_at(squares.len() / 2);
-        // Motion below the smallest that counts has no trend to speak of.
-        let trend = (mean(first) - mean(last)).abs();
-        let negligible = 2.0 * statistic.allowed * statistic.scale().powi(2);
+        let [first_mean, last_mean] = [mean(first), mean(last)];
+        let pooled = (about(first, first_mean) + about(last, last_mean)) / (count - 2.0);
+        let is_trend = (first_mean - last_mean).abs() > STEADY * (pooled * 4.0 / count).sqrt();
+        // Motion below the smallest that counts has no trend to speak of, nor has one that rounding alone makes.
+        let counts = statistic.value > statistic.smallest
+            && (first_mean - last_mean).abs() > statistic.allowed * statistic.value.powi(2);
         Self {
             half_width,
-            is_steady: trend
-                <= (STEADY * of_square).max(if statistic.value < statistic.smallest {
-                    negligible
-                } else {
-                    0.0
-                }),
+            is_steady: !(is_trend && counts),
             is_narrow: half_width <= statistic.allowed * statistic.scale(),
         }
     }
@@ -494,11 +493,11 @@ mod tests {
 
     #[test]
     fn slow_beats_take_longer_windows() {
-        // A beat of 16 s: two of them take 40 s, and the three windows 80 s.
+        // A beat of 12 s: two of them take a window of 40 s, and the three windows 80 s.
         let course = course(
             160.0,
             |time| {
-                let (a, b) = (TAU * 2.0 * time, TAU * 2.0625 * time);
+                let (a, b) = (TAU * 2.0 * time, TAU * (2.0 + 1.0 / 12.0) * time);
                 [1e-3 * a.cos() + 8e-4 * b.cos(), 1e-3 * a.sin() + 8e-4 * b.sin()]
             },
             |_| 0.0,
@@ -512,12 +511,10 @@ mod tests {
     #[test]
     fn growth_and_drift_never_settle() {
         let growing = course(300.0, |time| beating(time).map(|x| 0.1 * x * (0.008 * time).exp()), |_| 0.0);
+        // Ten seconds hold whole turns: nothing but the drift moves the batches.
         let drifting = course(
             300.0,
-            |time| {
-                let [u, v] = beating(time);
-                [u, v * (1.0 + 0.01 * time)]
-            },
+            |time| [1e-3 * (TAU * 2.0 * time).cos(), 1e-3 * (1.0 + 0.01 * time) * (TAU * 2.0 * time).sin()],
             |_| 0.0,
         );
         let swinging = course(300.0, beating, |time| 3.0 * (0.01 * time).exp() * (TAU * 0.3 * time).sin());

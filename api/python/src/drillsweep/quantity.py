@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-_VARIANT = re.compile(r"^(?:spread|ensemble_mean|reference|bias)_(.+)$")
+_VARIANT = re.compile(r"^(?:spread|ensemble_mean|confidence|reference|bias)_(.+)$")
 _NUMBERS = re.compile(r"(?:_\d+)?(?:_w\d+)?$")
 
 

@@ -60,6 +60,19 @@ class Table(Mapping[str, "numpy.ndarray[Any, Any]"]):
         """The number of rows."""
         return len(next(iter(self.columns.values()), ()))
 
+    @property
+    def unsettled(self) -> numpy.ndarray[Any, Any]:
+        """Which rows of a sweep's table have not settled or have a mode that still grows.
+
+        Their statistics may be those of the start alone, so that they are no values for a map or a fit.
+        """
+        np = require("numpy", "numpy")
+        regimes = self.columns.get("motion_regime", [None] * self.rows)
+        growing = self.columns.get("growing_mode_hz", [None] * self.rows)
+        doubts = [regime == "not_settled" or hz is not None for regime, hz in zip(regimes, growing, strict=True)]
+        array: numpy.ndarray[Any, Any] = np.array(doubts, dtype=bool)
+        return array
+
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas data frame; units and attributes are in its `attrs`."""
         pd = require("pandas", "pandas")

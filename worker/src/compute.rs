@@ -663,6 +663,37 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_settles_keeps_histories_of_its_window_and_the_course_of_all() {
+        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        scenario.duration = 0.6;
+        assert!(scenario.settles());
+        let computed = compute(&scenario, &Control::new()).expect("runs");
+        let row = computed.summary_row();
+        assert_eq!((&row["motion_regime"], &row["settled_at"]), (&json!("not_settled"), &Value::Null));
+        assert_eq!(row["simulated_time"], 0.6);
+        assert!(row["halves_differ"].is_number() && row["band_rms_49_w1"].is_number());
+        let table =
+            |name: &str| read(computed.artifacts.iter().find(|artifact| artifact.name == name).expect(name));
+        let (history, course) = (table("history"), table("course"));
+        let Column::Number(times) = &history.columns["time"] else { panic!("{:?}", history.columns["time"]) };
+        assert_eq!((times.len(), times[0]), (200, 0.4), "the last third at full rate");
+        let names: Vec<&str> = course.columns.keys().map(String::as_str).collect();
+        assert_eq!(names, ["time", "u_10", "v_10", "u_49", "v_49", "u_282", "v_282", "rotation_speed_297"]);
+        assert_eq!(course.rows(), 12, "the whole run at 20 Hz");
+        let single = |table: &Table, name: &str| match &table.columns[name] {
+            Column::Single(values) => values.clone(),
+            other => panic!("{name}: {other:?}"),
+        };
+        for name in &names[1..] {
+            let same: Vec<f32> = single(&history, name).into_iter().step_by(50).collect();
+            assert_eq!(single(&course, name)[8..], same, "{name}");
+        }
+        for name in row.keys() {
+            assert!(Name::parse(name).is_some(), "{name} is not in the vocabulary");
+        }
+    }
+
+    #[test]
     fn the_bits_rotation_and_torque_are_recorded_whatever_nodes_are() {
         let of_bit = ["rotation_speed_297", "torque_297"];
         let history = |nodes: &[u32], outputs: Outputs, torsion: bool| {

@@ -51,7 +51,6 @@ pub struct UndampedTorsion {
 
 /// One mode of twist.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct TorsionalMode {
     /// Frequency \[Hz\].
     pub frequency_hz: f64,

@@ -37,7 +37,6 @@ const SMALLEST_ROTATION: f64 = 0.1;
 
 /// What is known of a run's motion over the window of its statistics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Settling {
     /// Kind of motion.
     pub regime: MotionRegime,
@@ -61,7 +60,6 @@ pub struct Settling {
 
 /// Kind of motion over the window of a run's statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum MotionRegime {
     /// Settled: statistics of consecutive windows agree.
@@ -88,7 +86,6 @@ impl MotionRegime {
 
 /// Half widths of the confidence intervals of 95 % of a node's statistics \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct OrbitInterval {
     /// Of the orbit size.
     pub orbit_radius_rms: f64,

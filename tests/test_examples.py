@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
@@ -12,8 +13,10 @@ from pathlib import Path
 
 import nbclient
 import nbformat
+import numpy as np
 import pytest
 
+from drillsweep import Client
 from service import REPOSITORY, Service
 
 SHORTER = {
@@ -22,6 +25,7 @@ SHORTER = {
     "time=(40, 60)": "time=(0.1, 0.5)",
     "time=(50, 60)": "time=(0.1, 0.5)",
     "from=50&to=60": "from=0.1&to=0.5",
+    "(15.0, 25.0), (14.5, 26.0), (50.0, 60.0)": "(0.1, 1.1), (0.1, 1.2), (0.2, 1.2)",
 }
 
 
@@ -33,15 +37,20 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     service.stop()
 
 
-def run(name: str, interpreter: str, server: str, directory: Path) -> str:
+def shortened(name: str, directory: Path) -> Path:
     text = (REPOSITORY / "examples" / name).read_text()
     for long, short in SHORTER.items():
         text = text.replace(long, short)
     script = directory / name
     script.write_text(text)
+    return script
+
+
+def run(name: str, interpreter: str, server: str, directory: Path, *arguments: str) -> str:
+    script = shortened(name, directory)
     environment = {**os.environ, "DRILLSWEEP_SERVER": server, "MPLBACKEND": "Agg"}
     done = subprocess.run(
-        [interpreter, script], cwd=directory, env=environment, capture_output=True, text=True, check=False
+        [interpreter, script, *arguments], cwd=directory, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -82,3 +91,42 @@ def test_the_notebook_draws_the_papers_figures(server: str, tmp_path: Path, monk
         assert values == sorted(values, reverse=True)
         assert values[0] > values[-1]
     assert friction["flow_rate"][-1] < friction["mud_density"][-1]
+
+
+def test_the_scorecard_shows_what_the_runs_have(server: str, tmp_path: Path) -> None:
+    shortened("paper_search.py", tmp_path)
+    printed = run("paper_scorecard.py", sys.executable, server, tmp_path, "--quick", "--accuracy", "draft")
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in printed.splitlines() if "[0.1" in line]
+    names = ("section 4.3, without mud", "section 4.3, with mud")
+    with Client(server) as client:
+        points = {sweep.name: sweep.point(1) for sweep in client.sweeps() if sweep.name in names}
+        orbits = [points[name].orbit(node=node, time=(0.1, 1.1)) for name in names for node in (10, 49, 282)]
+    assert [row[0] for row in rows] == ["10", "49", "282"] * 2
+    for orbit, (_, _, offset, size, _, _, _, line) in zip(orbits, rows, strict=True):
+        # Straight from the samples, by NumPy.
+        position = 1e3 * (orbit["u"] + 1j * orbit["v"])
+        assert float(offset) == pytest.approx(abs(position.mean()), abs=0.005)
+        assert float(size) == pytest.approx(np.std(position), abs=0.005)
+        window = np.hanning(len(position) + 1)[:-1]
+        spectrum = np.abs(np.fft.fft(position * window)) / window.sum()
+        frequency, amplitude = (float(part) for part in re.findall(r"[\d.]+", line))
+        # Lines lie between bins, where Hann's weights lower the highest of them by up to 15 %.
+        highest = spectrum[round(frequency)]
+        assert 0.84 * amplitude - 0.005 <= highest <= amplitude + 0.005
+
+
+def test_the_search_puts_the_best_first(server: str, tmp_path: Path) -> None:
+    size = "--readings 2 --surveys 2 --rounds 1 --draws 1 --confirmed 1 --neighbours 1"
+    run("paper_search.py", sys.executable, server, tmp_path, *size.split())
+    with (tmp_path / "paper_search.csv").open() as file:
+        candidates = list(csv.DictReader(file))
+    # Two readings, each with the preset's survey, one of the two drawn, and one drawn around its best.
+    assert [candidate["motion"] for candidate in candidates].count("free twist") == len(candidates) / 2 == 3
+    costs = [float(candidate["cost"]) for candidate in candidates]
+    assert costs == sorted(costs)
+    for candidate in candidates:
+        # The hole leaves a drillpipe's body 44.45 mm, and a run that leaves it by millimetres is wrong.
+        for mud in ("dry", "wet"):
+            assert 0.0 < float(candidate[f"{mud}_offset"]) < 0.04445 + 2e-3
+            assert float(candidate[f"{mud}_gap"]) >= 0.0
+        assert 0.0 < float(candidate["cost"]) < 1.0

@@ -1,4 +1,4 @@
-"""What section 4 of the paper behind the base case states, measured in runs of a service, as tables in Markdown.
+"""Results of section 4 of the paper behind the base case, measured in runs of a service, as tables in Markdown.
 
 The equilibrium; three nodes with and without mud, in four runs each whose weight on bit differs by a newton; and the
 sweep of section 4.4. docs/validation.md compares the numbers with those of Tran et al. 2019 (Journal of Sound and
@@ -20,7 +20,7 @@ DENSITIES = (1200.0, 1500.0, 1800.0, 2100.0)  # kg/m3
 FLOW_RATES = (0.01, 0.04, 0.06)  # m3/s
 ORBIT_WINDOW = (40.0, 60.0)  # s, figure 19
 MEASURES = ("offset mm", "size mm", "off the wall mm", "contacts", "backward line Hz (mm)", "forward line Hz (mm)")
-"""Of an orbit: distance of its mean from the hole's axis, size about it, gap to the wall, contacts, strongest lines."""
+"""Columns of an orbit: distance of its mean from the hole's axis, size about it, gap to the wall, contacts, lines."""
 
 
 def equilibrium(point: Point) -> Iterable[Sequence[object]]:

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from drillsweep import Client, Point, Range, Sweep, Table
 
 PRESET = "paper-200m-damped"
 NODE = 49
-RANGES = {
+SURVEY = {
     "well.survey[0].inclination_deg": (40.0, 80.0),
     "well.survey[1].inclination_deg": (50.0, 90.0),
     "well.survey[2].inclination_deg": (60.0, 100.0),
@@ -36,10 +37,11 @@ RANGES = {
     "well.survey[2].azimuth_deg": (-30.0, 30.0),
     "well.survey[3].azimuth_deg": (-45.0, 45.0),
     "well.survey[4].azimuth_deg": (-60.0, 60.0),
-    "operation.weight_on_bit": (-1.5e5, -5e4),
-    "operation.torque_on_bit": (-7500.0, -2500.0),
 }
-"""What is drawn, and between what [deg, N, N m]."""
+"""Ranges of the survey [deg]."""
+
+LOADS = {"operation.weight_on_bit": (-1.5e5, -5e4), "operation.torque_on_bit": (-7500.0, -2500.0)}
+"""Ranges of the loads [N, N m]; the paper prints -1e5 and -5000."""
 
 WELLS: dict[str, dict[str, Any]] = {
     "straight pipe": {},
@@ -47,7 +49,9 @@ WELLS: dict[str, dict[str, Any]] = {
     "weight as in air": {"effects.buoyancy": "off"},
     "both": {"effects.well_bending": "off", "effects.buoyancy": "off"},
 }
-"""How the text can be read about the string at rest."""
+"""Readings of the text about the string at rest."""
+
+Ranges = Mapping[str, tuple[float, float]]
 
 SLIDING = {"contact.static_friction": 0.216, "contact.dynamic_friction": 0.216}
 """Friction of sliding at 120 rpm, at rest too: a start from sliding, and no velocity weakening."""
@@ -59,7 +63,7 @@ MOTIONS: dict[str, dict[str, Any]] = {
     "sliding friction": SLIDING,
     "sliding friction, held twist": {**SLIDING, "effects.torsion": "off"},
 }
-"""How the text can be read about friction and twist."""
+"""Readings of the text about friction and twist."""
 
 SEATED_RADIUS = 0.07521 / 2  # m, section 4.3: half of the peak at 0 Hz
 DRY_LINE, WET_LINE = 3.532, -2.781  # Hz, section 4.3
@@ -193,26 +197,41 @@ def contact_count(point: Point, node: int, clearance: float, window: tuple[float
     return int(np.sum(np.diff(touch, prepend=-np.inf) > 0.1))
 
 
-def seated(client: Client, well: str, surveys: int, kept: int, seed: int) -> list[dict[str, float]]:
-    """Return the points whose equilibria are seated best, of a Sobol design over all of RANGES."""
+def seated(
+    client: Client, well: str, ranges: Ranges, surveys: int, doglegs: float, kept: int, seed: int
+) -> list[dict[str, float]]:
+    """Return the points whose equilibria are seated best, of a Sobol design over the ranges."""
     sweep = client.submit(
         PRESET,
         set={"effects.transient": "off", **WELLS[well]},
-        axes={path: Range(*interval) for path, interval in RANGES.items()},
+        axes={path: Range(*interval) for path, interval in ranges.items()},
         design="sobol",
         samples=surveys,
         seed=seed,
         name=f"equilibria, {well}",
     ).wait()
-    ranked = sorted((seat_misfit(point), point.ordinal, point) for point in sweep.points("succeeded"))
+    buildable = (point for point in sweep.points("succeeded") if sharpest_dogleg(drawn(point)) <= doglegs)
+    ranked = sorted((seat_misfit(point), point.ordinal, point) for point in buildable)
     for found, _, point in ranked[:kept]:
         print(f"{well}: point {point.ordinal} misses the seat by {found:.2f}")
     return [drawn(point) for _, _, point in ranked[:kept]]
 
 
+def sharpest_dogleg(parameters: dict[str, float]) -> float:
+    """Return the sharpest dogleg of a survey whose stations are 50 m apart [deg per 30 m]."""
+    tangents = []
+    for station in range(5):
+        inclination = np.radians(parameters[f"well.survey[{station}].inclination_deg"])
+        azimuth = np.radians(parameters.get(f"well.survey[{station}].azimuth_deg", 0.0))
+        horizontal = np.sin(inclination)
+        tangents.append((horizontal * np.cos(azimuth), horizontal * np.sin(azimuth), np.cos(inclination)))
+    cosines = [np.dot(above, below) for above, below in itertools.pairwise(tangents)]
+    return float(np.degrees(np.arccos(min(cosines)))) * 30.0 / 50.0
+
+
 def drawn(point: Point) -> dict[str, float]:
     """Return the parameters of a point that are drawn."""
-    return {path: point.parameters[path] for path in RANGES}
+    return {path: value for path, value in point.parameters.items() if path in SURVEY or path in LOADS}
 
 
 def submitted(
@@ -257,12 +276,14 @@ def compared(client: Client, asked: Iterable[tuple[Reading, Sequence[dict[str, f
     return sorted(candidates, key=lambda candidate: candidate.cost)
 
 
-def around(candidate: Candidate, size: float, count: int, rng: np.random.Generator) -> list[dict[str, float]]:
-    """Draw points in a box around a candidate, of `size` times RANGES and within them."""
+def around(
+    candidate: Candidate, ranges: Ranges, size: float, count: int, rng: np.random.Generator
+) -> list[dict[str, float]]:
+    """Draw points in a box around a candidate, of `size` times the ranges and within them."""
     points = []
     for _ in range(count):
         point = {}
-        for path, (low, high) in RANGES.items():
+        for path, (low, high) in ranges.items():
             value = candidate.parameters[path] + size * (high - low) * rng.uniform(-0.5, 0.5)
             point[path] = float(np.clip(value, low, high))
         points.append(point)
@@ -273,10 +294,8 @@ def confirm(client: Client, candidate: Candidate, neighbours: int) -> None:
     """Print runs of 60 s of a candidate and its neighbours by a newton of weight on bit, without and with mud."""
     print(f"\n{candidate.reading.well}, {candidate.reading.motion}, cost {candidate.cost:.3f}")
     print("  " + ", ".join(f"{path} {value:.6g}" for path, value in candidate.parameters.items()))
-    points = [
-        {**candidate.parameters, "operation.weight_on_bit": candidate.parameters["operation.weight_on_bit"] + newton}
-        for newton in range(neighbours)
-    ]
+    weight = candidate.parameters.get("operation.weight_on_bit", -1e5)
+    points = [{**candidate.parameters, "operation.weight_on_bit": weight + newton} for newton in range(neighbours)]
     muds: dict[str, dict[str, Any]] = {
         "without mud": {"mud": None},
         "1200 kg/m3": {},
@@ -322,12 +341,12 @@ def show(title: str, candidates: Sequence[Candidate]) -> None:
         print(f"       with mud {described(candidate.wet)}", flush=True)
 
 
-def save(candidates: Iterable[Candidate], file: Path) -> None:
+def save(candidates: Sequence[Candidate], file: Path) -> None:
     """Write a row a candidate."""
     with file.open("w", newline="") as opened:
         table = csv.writer(opened)
         measures = [f"{mud}_{name}" for mud in ("dry", "wet") for name in Motion.__dataclass_fields__]
-        table.writerow(["cost", "well", "motion", *RANGES, *measures])
+        table.writerow(["cost", "well", "motion", *candidates[0].parameters, *measures])
         for candidate in candidates:
             values = [
                 getattr(run, name) for run in (candidate.dry, candidate.wet) for name in Motion.__dataclass_fields__
@@ -340,19 +359,22 @@ def arguments() -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--whole", action="store_true", help="the numbers of the whole search: some 25 CPU minutes")
-    parser.add_argument("--readings", type=int, default=3, help="readings of the text, from the first in the list")
+    parser.add_argument("--printed-loads", action="store_true", help="draw surveys only")
+    parser.add_argument("--wells", nargs="+", choices=list(WELLS), default=list(WELLS)[:1], help="readings at rest")
+    parser.add_argument("--motions", nargs="+", choices=list(MOTIONS), default=list(MOTIONS)[:3], help="in motion")
     parser.add_argument("--surveys", type=int, default=16, help="equilibria to draw for each reading of the well")
+    parser.add_argument("--doglegs", type=float, default=float("inf"), help="sharpest dogleg of them, deg per 30 m")
     parser.add_argument("--kept", type=int, default=1, help="of them, how many run in time")
     parser.add_argument("--rounds", type=int, default=0, help="rounds of draws around the best")
     parser.add_argument("--draws", type=int, default=4, help="points of a round")
     parser.add_argument("--confirmed", type=int, default=0, help="candidates to run for 60 s")
     parser.add_argument("--neighbours", type=int, default=4, help="runs of each of these")
-    parser.add_argument("--seed", type=int, default=1, help="what all draws start from")
+    parser.add_argument("--seed", type=int, default=1, help="seed of all draws")
     parser.add_argument("--output", type=Path, default=Path("paper_search.csv"), help="table of all candidates")
     chosen = parser.parse_args()
     if chosen.whole:
-        chosen.readings = len(WELLS) * len(MOTIONS)
-        chosen.surveys, chosen.kept, chosen.rounds, chosen.draws, chosen.confirmed = 512, 16, 3, 12, 3
+        chosen.wells, chosen.motions = list(WELLS), list(MOTIONS)
+        chosen.surveys, chosen.kept, chosen.rounds, chosen.draws, chosen.confirmed = 512, 8, 2, 12, 2
     return chosen
 
 
@@ -362,15 +384,17 @@ def main() -> None:
     client = Client()
     rng = np.random.default_rng(chosen.seed)
     preset = client.run(PRESET, set={"effects.transient": "off"}, name="the preset's survey").wait().point(1).scenario
-    as_shipped = {path: number(preset, path) for path in RANGES}
-    readings = [Reading(well, name) for well in WELLS for name in MOTIONS][: chosen.readings]
-    wells = dict.fromkeys(reading.well for reading in readings)
-    points = {well: [as_shipped, *seated(client, well, chosen.surveys, chosen.kept, chosen.seed)] for well in wells}
-    candidates = compared(client, [(reading, points[reading.well]) for reading in readings])
+    ranges = SURVEY if chosen.printed_loads else {**SURVEY, **LOADS}
+    as_shipped = {path: number(preset, path) for path in ranges}
+    asked = []
+    for well in chosen.wells:
+        points = [as_shipped, *seated(client, well, ranges, chosen.surveys, chosen.doglegs, chosen.kept, chosen.seed)]
+        asked += [(Reading(well, name), points) for name in chosen.motions]
+    candidates = compared(client, asked)
     show("drawn over the whole ranges", candidates)
-    for size in (0.3, 0.15, 0.08)[: chosen.rounds]:
+    for size in (0.3, 0.1)[: chosen.rounds]:
         leaders = best_by_reading(candidates)[:4]
-        draws = [(leader.reading, around(leader, size, chosen.draws, rng)) for leader in leaders]
+        draws = [(leader.reading, around(leader, ranges, size, chosen.draws, rng)) for leader in leaders]
         candidates = sorted([*candidates, *compared(client, draws)], key=lambda candidate: candidate.cost)
         show(f"with draws within {size:g} of the ranges around the best of four readings", candidates)
     save(candidates, chosen.output)

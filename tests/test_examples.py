@@ -116,8 +116,8 @@ def test_the_scorecard_shows_what_the_runs_have(server: str, tmp_path: Path) -> 
 
 
 def test_the_search_puts_the_best_first(server: str, tmp_path: Path) -> None:
-    size = "--readings 2 --surveys 2 --rounds 1 --draws 1 --confirmed 1 --neighbours 1"
-    run("paper_search.py", sys.executable, server, tmp_path, *size.split())
+    size = ["--surveys", "2", "--rounds", "1", "--draws", "1", "--confirmed", "1", "--neighbours", "1"]
+    run("paper_search.py", sys.executable, server, tmp_path, *size, "--motions", "free twist", "held twist")
     with (tmp_path / "paper_search.csv").open() as file:
         candidates = list(csv.DictReader(file))
     # Two readings, each with the preset's survey, one of the two drawn, and one drawn around its best.

@@ -185,7 +185,7 @@ impl<const D: usize> Esdirk<D> {
         let (x, v) = (&end.displacement, &end.velocity);
         friction = forces.largest_friction_change_along(contact, x, v, &velocity_error).max(friction);
         StepError {
-            displacement: (self.local_error / values).sqrt(),
+            displacement: ((self.local_error + 2.0 * self.surface_error(h, forces, state)) / values).sqrt(),
             friction: friction.to_array().into_iter().fold(0.0, f64::max),
             sweep: self.solver.change(),
         }
@@ -202,6 +202,17 @@ impl<const D: usize> Esdirk<D> {
             }
         }
         sums[0].sum() + sums[1].sum()
+    }
+
+    /// Sum of the squares of the local errors of the surface's displacement by the twist \[m2\], at the radius that would touch the wall.
+    fn surface_error(&self, h: f64, forces: &Forces<D>, state: &State<D>) -> f64 {
+        let Some(twist) = forces.twist() else { return 0.0 };
+        let error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
+        let squares = forces.contact_radii().enumerate().map(|(group, radius)| {
+            let error = error(group, twist) * radius;
+            error * error
+        });
+        squares.fold(Four::splat(0.0), |sum, square| sum + square).sum()
     }
 
     /// Local errors of the velocities, by group and degree of freedom.

@@ -230,6 +230,16 @@ impl<const D: usize> Forces<D> {
         &self.segments
     }
 
+    /// Where the twist stands among the degrees of freedom; absent where it is not solved for.
+    pub(super) fn twist(&self) -> Option<usize> {
+        self.freedoms.twist()
+    }
+
+    /// Radii of the nodes' surfaces at the wall \[m\], four side by side; zero where a node cannot touch.
+    pub(super) fn contact_radii(&self) -> impl Iterator<Item = Four> {
+        self.sites.iter().map(|site| site.contact_radius)
+    }
+
     /// How nodes and elements give way to their own contact forces, from blocks of a stage matrix' inverse.
     pub(super) fn compliance(&self, bands: &InverseBands<D>) -> Compliance {
         let inverse = &bands.diagonal;

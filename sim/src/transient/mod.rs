@@ -360,7 +360,10 @@ pub(crate) fn torsion_step(stepping: &TimeStepping, torsion: Option<&UndampedTor
 
 fn resolves_torsion(stepping: &TimeStepping) -> bool {
     stepping.integrator == Integrator::Esdirk4
-        && stepping.tolerance.is_some_and(|tolerance| tolerance <= AccuracyPreset::Reference.tolerance())
+        && stepping.tolerance.is_some_and(|tolerance| {
+            tolerance
+                <= TimeStepping::promising(AccuracyPreset::Reference.tolerance()).tolerance.unwrap_or(0.0)
+        })
 }
 
 /// Shortest step \[s\] that torsion alone is a reason for. ESDIRK4 damps torsion above a kilohertz there; with shorter ones single elements, at

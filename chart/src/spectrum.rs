@@ -64,6 +64,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetail
         vertical: VerticalAxis::FromZero,
         labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
         shade,
+        ..LinePlot::default()
     };
     Ok(plot.drawing())
 }

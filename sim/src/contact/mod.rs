@@ -27,7 +27,8 @@ pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
 pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
 pub use segment::{
-    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dynamic_segment, implicit_segment,
+    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dot, dynamic_segment,
+    implicit_segment,
 };
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;

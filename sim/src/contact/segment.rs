@@ -398,10 +398,9 @@ impl<L: Lane> ContactSegment<L> {
             force.friction[0][k] = shape.mul_add(rubbed_u, force.friction[0][k]);
             force.friction[1][k] = shape.mul_add(rubbed_v, force.friction[1][k]);
         }
-        let shares = [L::splat(1.0) - point.place.at, point.place.at];
-        for end in 0..2 {
-            force.torque[end] = force.torque[end] - torque * shares[end];
-            force.ends[end] = normal.mul_add(shares[end], force.ends[end]);
+        for (end, share) in [L::splat(1.0) - point.place.at, point.place.at].into_iter().enumerate() {
+            force.torque[end] = force.torque[end] - torque * share;
+            force.ends[end] = normal.mul_add(share, force.ends[end]);
         }
     }
 }
@@ -540,9 +539,9 @@ impl<L: Lane> SegmentCompliance<L> {
     }
 }
 
-/// Sum of products.
+/// Work of loads on the motion of an element's ends in one plane, or displacement at a place by its shape functions.
 #[inline(always)]
-pub(super) fn dot<L: Lane>(a: &Plane<L>, b: &Plane<L>) -> L {
+pub fn dot<L: Lane>(a: &Plane<L>, b: &Plane<L>) -> L {
     let halves = [a[0].mul_add(b[0], a[1] * b[1]), a[2].mul_add(b[2], a[3] * b[3])];
     halves[0] + halves[1]
 }

@@ -6,7 +6,7 @@
 use super::forces::SweepChange;
 use crate::contact::{
     ContactNode, ContactParameters, ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion,
-    Surface,
+    Surface, dot,
 };
 use crate::freedom::{Freedoms, THETA_X, THETA_Y, U, V};
 use crate::linalg::{Four, InverseBands, Lane, NodalField, next_lane};
@@ -249,11 +249,9 @@ impl<const D: usize> Segments<D> {
         for (group, force) in forces.touching() {
             let rates = self.planes(group, &|group, dof| value(velocity, group, dof));
             let [upper, lower] = self.twists(group, &|group, dof| value(velocity, group, dof));
-            for plane in 0..2 {
-                for k in 0..4 {
-                    power.normal = force.normal[plane][k].mul_add(rates[plane][k], power.normal);
-                    power.friction = force.friction[plane][k].mul_add(rates[plane][k], power.friction);
-                }
+            for (plane, rates) in rates.iter().enumerate() {
+                power.normal = power.normal + dot(&force.normal[plane], rates);
+                power.friction = power.friction + dot(&force.friction[plane], rates);
             }
             power.friction = force.torque[0].mul_add(upper, force.torque[1].mul_add(lower, power.friction));
             power.torque = power.torque + (force.torque[0] + force.torque[1]);

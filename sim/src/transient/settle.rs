@@ -327,7 +327,7 @@ impl Settle {
         let found = course.agreement(end, &half)?;
         let length = found.window.len();
         let first = found.since..found.since + length;
-        if self.growing_mode(course, [first, found.window.clone()]).is_some() {
+        if self.growing_mode(course, &[first, found.window.clone()]).is_some() {
             return None;
         }
         Some(Settling {
@@ -343,7 +343,7 @@ impl Settle {
     }
 
     fn irregular(&self, course: &Course, batches: Batches) -> Option<Settling> {
-        if self.growing_mode(course, halves(&batches.window)?).is_some() {
+        if self.growing_mode(course, &halves(&batches.window)?).is_some() {
             return None;
         }
         let window = window_of(course, &batches.window);
@@ -376,12 +376,12 @@ impl Settle {
             base_frequencies_hz: Vec::new(),
             intervals: Vec::new(),
             halves_differ: course.halves_differ(&samples, &self.promise),
-            growing_mode: halves(&samples).and_then(|halves| self.growing_mode(course, halves)),
+            growing_mode: halves(&samples).and_then(|halves| self.growing_mode(course, &halves)),
         }
     }
 
     /// The mode that has not saturated by its growth from one window to another, the fastest where there are several.
-    fn growing_mode(&self, course: &Course, windows: [Range<usize>; 2]) -> Option<TorsionalMode> {
+    fn growing_mode(&self, course: &Course, windows: &[Range<usize>; 2]) -> Option<TorsionalMode> {
         let lag = (windows[1].start as f64 - windows[0].start as f64) / course.rate_hz();
         let grows = |mode: &&TorsionalMode| {
             course

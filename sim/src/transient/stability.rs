@@ -14,7 +14,6 @@ use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{Model, add_element_vector, element_values};
 use crate::motion::DynamicSystem;
 use crate::statics::Equilibrium;
-use crate::string::MeshNode;
 
 /// Where RK4's region of stability ends on the negative real axis, times the step; on the imaginary one it ends at 2 sqrt 2 = 2.828 (Hairer
 /// and Wanner 1996, section IV.2).
@@ -212,11 +211,13 @@ fn sweep_factor(
             );
         }
         // Twist counts by the way of the surface. Displacements count where something pushes.
-        let of_node = |((x, node), site): ((&[f64; DOFS], &MeshNode), &[(f64, f64); 2])| {
-            let size = x[U].hypot(x[V]).max(node.contact_radius * x[THETA_Z].abs());
-            if site[0].0 > 0.0 { size } else { 0.0 }
+        let of_node = |(node, x): (usize, &[f64; DOFS])| {
+            let [(slope, _), _] = sites[node];
+            let radius = model.mesh.nodes[node].contact_radius;
+            let size = x[U].hypot(x[V]).max(radius * x[THETA_Z].abs());
+            (node, if slope > 0.0 { size } else { 0.0 })
         };
-        let nodes = x.iter().zip(&model.mesh.nodes).zip(&sites).map(of_node).enumerate();
+        let nodes = x.iter().enumerate().map(of_node);
         let of_segment = |(x, segment): (&[[f64; 3]; 2], &ClosedSegment)| {
             let size = |x: &[f64; 3]| x[0].hypot(x[1]).max(segment.radius * x[2].abs());
             (segment.element, size(&x[0]).max(size(&x[1])))
@@ -311,10 +312,10 @@ impl ClosedSegment {
 
     /// Takes out of displacements what the forces of both points make of them.
     fn subtract_own(&self, force: &[[f64; 3]; 2], x: &mut [[f64; 3]; 2]) {
-        for i in 0..2 {
-            for dof in 0..3 {
-                let own = if dof < 2 { &self.lateral[i] } else { &self.twist[i] };
-                x[i][dof] -= own[0] * force[0][dof] + own[1] * force[1][dof];
+        for ((x, lateral), twist) in x.iter_mut().zip(&self.lateral).zip(&self.twist) {
+            for (dof, x) in x.iter_mut().enumerate() {
+                let own = if dof < 2 { lateral } else { twist };
+                *x -= own[0] * force[0][dof] + own[1] * force[1][dof];
             }
         }
     }

@@ -206,7 +206,10 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             "error of a lateral displacement: {:.1e} of the motion ({:.1e} m), estimated, as long as histories do not part",
             transient.error_estimate.relative, transient.error_estimate.displacement
         )?;
-        if let Some(ResultErrors { time, mesh, spread }) = &computed.errors {
+        if let Some(ResultErrors { time, mesh, spread, sensitivity, .. }) = &computed.errors {
+            if let Some(sensitivity) = sensitivity {
+                writeln!(text, "{sensitivity}")?;
+            }
             writeln!(text, "{time}\n{mesh}\n{spread}")?;
         }
         if let Some(starts) = computed.starts.as_ref().filter(|starts| !starts.differ) {

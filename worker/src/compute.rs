@@ -16,9 +16,12 @@ use drillsweep_sim::study::cost::{CostReport, Recommendation, StudyError};
 use drillsweep_sim::study::ensemble::{distances, parting_time};
 use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
+use drillsweep_sim::study::sensitivity::{Sensitivity, SensitivityError};
 use drillsweep_sim::study::starts::StartsCompared;
 use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{Block, Histories, Outcome, Transient, TransientError, recorded_nodes};
+use drillsweep_sim::transient::{
+    Block, CheckpointError, Histories, Outcome, Records, Transient, TransientError, recorded_nodes, twin_time,
+};
 use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
@@ -194,8 +197,16 @@ impl Computed {
             row.put(&UNDAMPED_TORSION_HZ, torsion.highest_hz);
             row.put(&UNDAMPED_TORSION_GROWTH, torsion.highest_growth);
         }
-        if let Some(ResultErrors { time, mesh, spread }) = &self.errors {
-            row.put(&TIME_ERROR, time.statistics());
+        if let Some(ResultErrors { time, mesh, spread, sensitivity, histories_part }) = &self.errors {
+            row.put(&TIME_ERROR, time.unconditional());
+            if let Some(sensitivity) = sensitivity {
+                row.put(&AMPLIFICATION, sensitivity.amplification);
+                row.put(&AMPLIFICATION_GROWTH, sensitivity.growth_rate);
+            }
+            if *histories_part {
+                row.put(&ERROR_ESTIMATE, None::<f64>);
+                row.put(&ERROR_ESTIMATE_DISPLACEMENT, None::<f64>);
+            }
             row.put(&RELATIVE_SPREAD, spread.orbit_size());
             let errors = mesh.estimate();
             row.put(&MESH_ERROR_MEAN_RADIUS, errors.and_then(|errors| errors.mean_radius));
@@ -225,7 +236,13 @@ impl Computed {
 pub fn simulated_time_total(scenario: &Scenario) -> f64 {
     match &scenario.cost_study {
         Some(_) => study_time(scenario),
-        None => scenario.duration * f64::from(scenario.runs()),
+        None => {
+            // The twin's time counts from the start of the run that it goes on from.
+            let twin = scenario
+                .orbit_window()
+                .map_or(scenario.duration, |window| window.from + twin_time(window, scenario.duration));
+            scenario.duration * f64::from(scenario.runs()) + twin
+        }
     }
 }
 
@@ -242,8 +259,8 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
 }
 
 /// Simulates one point from its start, or from where the same point was suspended; temporary files are made in the directory
-/// `scratch`. What does not fit the point is passed over: it begins again. The other members of an ensemble, the run from the other start
-/// and the runs of a cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
+/// `scratch`. What does not fit the point is passed over: it begins again. A run's twin, the other members of an ensemble, the run from the
+/// other start and the runs of a cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
 ///
 /// # Errors
 /// As [`compute`].
@@ -317,11 +334,12 @@ pub fn compute_from(
         starts = Some(StartsCompared::new(run, &summary(&other)?, friction, &scenario.accuracy));
     }
     let left = static_stability(&model, &equilibrium);
+    let sensitivity = records.as_ref().map(|records| runs.sensitivity(records)).transpose()?.flatten();
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let errors = transient.as_ref().map(|transient| {
         let mesh = MeshEstimate::of(&model, &equilibrium);
-        ResultErrors::new(transient, &ensemble, undamped_torsion.as_ref(), mesh)
+        ResultErrors::new(transient, &ensemble, sensitivity.clone(), undamped_torsion.as_ref(), mesh)
     });
     let mut warnings: Vec<String> = left.iter().filter_map(Stability::warning).collect();
     warnings.extend(starts.iter().filter(|starts| starts.differ).map(StartsCompared::to_string));
@@ -408,6 +426,19 @@ impl<'a> Runs<'a> {
             Outcome::Finished(records) => Outcome::Finished(Box::new(records.with_histories(spool))),
             Outcome::Cancelled => Outcome::Cancelled,
             Outcome::Suspended(checkpoint, ()) => Outcome::Suspended(checkpoint, spool),
+        })
+    }
+
+    /// By how much the scenario amplifies a disturbance of a finished run.
+    fn sensitivity(&self, run: &Records<Spool>) -> Result<Option<Sensitivity>, ComputeError> {
+        Sensitivity::of(self.model, self.equilibrium, run, self.control).map_err(|error| match error {
+            SensitivityError::Stopped => ComputeError::Cancelled,
+            SensitivityError::Run(error) | SensitivityError::Checkpoint(CheckpointError::Run(error)) => {
+                ComputeError::Transient(error)
+            }
+            SensitivityError::Checkpoint(error) => {
+                ComputeError::Transient(TransientError::Histories(error.to_string()))
+            }
         })
     }
 

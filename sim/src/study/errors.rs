@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::ensemble::{PARTED, spread};
 use crate::modes::UndampedTorsion;
 use crate::study::mesh_estimate::MeshEstimate;
+use crate::study::sensitivity::Sensitivity;
 use crate::study::summary::{OrbitSummary, TransientSummary};
 use crate::transient::DISTURBANCE;
 
@@ -20,19 +21,24 @@ pub struct ResultErrors {
     pub mesh: MeshEstimate,
     /// Between runs that start next to each other.
     pub spread: SpreadError,
+    /// By how much the scenario amplifies a disturbance over the orbit window; absent where no twin was run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensitivity: Option<Sensitivity>,
+    /// Whether the run's histories part from those next to them, so that their error is not known.
+    #[serde(default)]
+    pub histories_part: bool,
 }
 
 /// The error of the steps of a run in orbit size and in the standard deviation of the radius, relative to them.
 ///
 /// Each step leaves an error, which the embedded method estimates, and the scene amplifies it until the end of the run as it amplifies any
-/// other disturbance. The local errors are known in every run, the amplification in an ensemble only, from the distance at the end between
-/// members that start a micrometre apart. Scenes differ in it by three orders of magnitude, so an estimate without an ensemble is
-/// conditional.
+/// other disturbance. The amplification is measured by the distance from a twin that starts a micrometre away at the start of the orbit window,
+/// or from the members of an ensemble. Scenarios differ in it by three orders of magnitude, so an estimate without either is conditional.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum TimeError {
-    /// Estimated with what the ensemble shows of the scene.
+    /// Estimated with what a twin or an ensemble shows of the scenario.
     Estimated {
         /// Relative error, the worst node.
         statistics: f64,
@@ -100,20 +106,32 @@ const SOUND_RESIDUAL: f64 = 0.05;
 const LARGEST_ESTIMATE: f64 = 0.5;
 
 impl ResultErrors {
-    /// The errors of a run, given its ensemble, the torsion that friction feeds and the mesh's part.
+    /// The errors of a run, given its ensemble, its twin, the torsion that friction feeds and the mesh's part.
     pub fn new(
         run: &TransientSummary,
         others: &[OtherMember],
+        sensitivity: Option<Sensitivity>,
         torsion: Option<&UndampedTorsion>,
         mesh: MeshEstimate,
     ) -> Self {
-        Self { time: TimeError::new(run, others, torsion), mesh, spread: SpreadError::new(run, others) }
+        Self {
+            time: TimeError::new(run, others, sensitivity.as_ref(), torsion),
+            mesh,
+            spread: SpreadError::new(run, others),
+            histories_part: sensitivity.as_ref().is_some_and(|twin| twin.parted(&run.orbits).is_some()),
+            sensitivity,
+        }
     }
 }
 
 impl TimeError {
-    /// That of a run, given its ensemble and the torsion that friction feeds.
-    pub fn new(run: &TransientSummary, others: &[OtherMember], torsion: Option<&UndampedTorsion>) -> Self {
+    /// The error of a run, given its ensemble, its twin and the torsion that friction feeds.
+    pub fn new(
+        run: &TransientSummary,
+        others: &[OtherMember],
+        twin: Option<&Sensitivity>,
+        torsion: Option<&UndampedTorsion>,
+    ) -> Self {
         let unknown = |reason: String| TimeError::Unknown { reason };
         if let Some(warning) = torsion.and_then(|torsion| torsion.warning(run.resolved_hz)) {
             return unknown(warning);
@@ -131,8 +149,16 @@ impl TimeError {
                 100.0 * residual
             ));
         }
+        if let Some((twin, orbit)) = twin.and_then(|twin| Some((twin, twin.parted(&run.orbits)?))) {
+            return unknown(format!(
+                "{twin}, which is comparable with the orbit at {} m: the errors of the steps are amplified in the same way",
+                orbit.measured_depth
+            ));
+        }
         let distance = |node: usize| {
-            others.iter().filter_map(|other| other.distances.get(node)).copied().fold(0.0, f64::max)
+            let of_members = others.iter().filter_map(|other| other.distances.get(node));
+            let of_twin = twin.and_then(|twin| twin.distances.get(node));
+            of_members.chain(of_twin).copied().fold(0.0, f64::max)
         };
         let parted =
             |(node, orbit): &(usize, &OrbitSummary)| distance(*node) > PARTED * orbit.orbit_radius_rms;
@@ -159,11 +185,19 @@ impl TimeError {
                  size or more; a smaller tolerance reduces them"
             ));
         }
-        if others.is_empty() {
+        if others.is_empty() && twin.is_none() {
             let condition = "the scene amplifies disturbances no more than most scenes do; one run cannot tell, ensemble=2 measures it";
             return TimeError::Conditional { statistics, condition: condition.into() };
         }
         TimeError::Estimated { statistics, amplification }
+    }
+
+    /// The estimate where its condition is known to hold; absent elsewhere.
+    pub fn unconditional(&self) -> Option<f64> {
+        match self {
+            TimeError::Estimated { statistics, .. } => Some(*statistics),
+            TimeError::Conditional { .. } | TimeError::Unknown { .. } => None,
+        }
     }
 
     /// The estimate, conditional or not; absent where it is not known.
@@ -299,23 +333,43 @@ mod tests {
     #[test]
     fn an_ensemble_scales_the_estimate_by_its_largest_amplification() {
         let run = run();
-        let alone = TimeError::new(&run, &[], None);
+        let alone = TimeError::new(&run, &[], None, None);
         assert!(
             matches!(alone, TimeError::Conditional { statistics, .. } if (statistics - 0.01).abs() < 1e-12)
         );
         let others = [other([1e-6, 2e-6], 1e-3), other([3e-6, 2e-5], 1e-3)];
-        let TimeError::Estimated { statistics, amplification } = TimeError::new(&run, &others, None) else {
+        let TimeError::Estimated { statistics, amplification } = TimeError::new(&run, &others, None, None)
+        else {
             panic!("members stay together")
         };
         assert!((amplification - 20.0).abs() < 1e-9 && (statistics - 0.04).abs() < 1e-12);
-        let parted = TimeError::new(&run, &[other([0.0, 1.1e-4], 1e-3)], None);
+        let parted = TimeError::new(&run, &[other([0.0, 1.1e-4], 1e-3)], None, None);
         assert!(matches!(parted, TimeError::Unknown { .. }), "{parted:?}");
+    }
+
+    #[test]
+    fn a_twin_makes_an_estimate_unconditional_and_one_that_parts_unknown() {
+        let run = run();
+        let twin = |distances: Vec<f64>| Sensitivity {
+            window: TimeWindow { from: 0.0, to: 1.0 },
+            amplification: distances.iter().copied().reduce(f64::max).map(|distance| distance / DISTURBANCE),
+            growth_rate: None,
+            distances,
+        };
+        let near = twin(vec![1e-6, 2e-5]);
+        let told = TimeError::new(&run, &[], Some(&near), None);
+        assert!((told.unconditional().unwrap() - 0.04).abs() < 1e-12, "{told:?}");
+        assert_eq!(TimeError::new(&run, &[], None, None).unconditional(), None);
+        for parted in [twin(vec![0.0, 1.1e-4]), twin(Vec::new())] {
+            let told = TimeError::new(&run, &[], Some(&parted), None);
+            assert!(matches!(told, TimeError::Unknown { .. }), "{told:?}");
+        }
     }
 
     #[test]
     fn what_steps_did_not_resolve_has_no_estimate() {
         let sound = TransientSummary { energy_residual_of_bound: Some(0.04), ..run() };
-        assert!(TimeError::new(&sound, &[], None).statistics().is_some());
+        assert!(TimeError::new(&sound, &[], None, None).statistics().is_some());
         for unsound in [
             TransientSummary { energy_residual_of_bound: Some(0.06), ..run() },
             TransientSummary { unresolved_steps: 1, ..run() },
@@ -326,7 +380,7 @@ mod tests {
             },
             TransientSummary { error_estimate: ErrorEstimate { displacement: 1e-3, relative: 1.0 }, ..run() },
         ] {
-            let told = TimeError::new(&unsound, &[], None);
+            let told = TimeError::new(&unsound, &[], None, None);
             assert!(matches!(told, TimeError::Unknown { .. }), "{told:?}");
         }
     }

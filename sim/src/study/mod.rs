@@ -7,6 +7,7 @@ pub mod finer;
 pub mod footprint;
 pub mod mesh_estimate;
 pub mod plan;
+pub mod sensitivity;
 pub mod soak;
 pub mod starts;
 pub mod summary;

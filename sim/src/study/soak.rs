@@ -86,7 +86,7 @@ pub fn run_and_refine(scenario: &Scenario, control: &Control) -> (SceneEnd, Opti
     let own = Measure::new(&model, &equilibrium, &records, 0);
     let torsion = UndampedTorsion::about(&model, &equilibrium);
     let Ok(summary) = TransientSummary::new(&model, &records);
-    let told = TimeError::new(&summary, &[], torsion.as_ref());
+    let told = TimeError::new(&summary, &[], None, torsion.as_ref());
     let verdict = finer::ask(&own, &model, &equilibrium, control);
     (end, Some(Refined { verdict, told }))
 }

@@ -99,7 +99,8 @@ mod tests {
     use drillsweep_scenario::{AccuracyPreset, TimeWindow};
 
     use super::*;
-    use crate::transient::ErrorEstimate;
+    use crate::signal::Window;
+    use crate::transient::{ErrorEstimate, MotionRegime, Settling};
 
     /// A run with orbits of the given sizes and deviations of the radius at nodes 10, 20, ...
     fn run(orbits: &[[f64; 2]]) -> TransientSummary {
@@ -113,10 +114,22 @@ mod tests {
             orbit_radius_rms: *size,
             radius_deviation: *deviation,
             high_frequency_rms: None,
+            interval: None,
         };
         TransientSummary {
             orbits: orbits.iter().enumerate().map(orbit).collect(),
             spectra: Vec::new(),
+            simulated_time: 1.0,
+            settling: Settling {
+                regime: MotionRegime::Fixed,
+                settled_at: None,
+                window: TimeWindow { from: 0.0, to: 1.0 },
+                weighting: Window::Rectangular,
+                base_frequencies_hz: Vec::new(),
+                intervals: Vec::new(),
+                halves_differ: None,
+                growing_mode: None,
+            },
             resolved_hz: 0.0,
             unresolved_steps: 0,
             contact_count: 0,

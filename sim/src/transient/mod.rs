@@ -37,7 +37,7 @@ pub use histories::{Histories, NodeHistory, Series};
 pub use implicit::SweepMonitor;
 pub(crate) use run::{BLOCK_BYTES, LEDGER_RATE_HZ};
 pub use run::{Block, Keep};
-pub use settle::{MotionRegime, OrbitInterval, Settling, shortest_run};
+pub use settle::{MotionRegime, OrbitInterval, Settling, shortest_run, twin_time};
 pub(crate) use settle::{
     course_samples, kept_window_at_most, orbit_window_at_most, spectrum_windows_at_most,
 };
@@ -81,6 +81,8 @@ pub struct Records<H = Vec<NodeHistory>> {
     pub course: Course,
     /// Histories of the recorded nodes.
     pub histories: H,
+    /// The run at the start of its orbit window, or a tenth of a second after it; absent where that is the end.
+    pub window_start: Option<Box<Checkpoint>>,
     /// Contact statistics of every node.
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
@@ -144,6 +146,7 @@ impl Records<()> {
             settling,
             course,
             histories: (),
+            window_start,
             contacts,
             energy,
             energy_bound,
@@ -157,6 +160,7 @@ impl Records<()> {
             settling,
             course,
             histories,
+            window_start,
             contacts,
             energy,
             energy_bound,
@@ -213,6 +217,27 @@ impl<'m> Transient<'m> {
             Solved::Six(run) => run.go_on_from(checkpoint)?,
             Solved::Five(run) => run.go_on_from(checkpoint)?,
             Solved::Four(run) => run.go_on_from(checkpoint)?,
+        }
+        Ok(transient)
+    }
+
+    /// A run that goes on from a checkpoint of the same scenario as the first member of an ensemble starts: beside it by [`DISTURBANCE`]; for
+    /// `time` \[s\] or to its end.
+    ///
+    /// # Errors
+    /// As [`Transient::resume`].
+    pub fn twin(
+        model: &'m Model,
+        equilibrium: &Equilibrium,
+        checkpoint: &Checkpoint,
+        time: f64,
+    ) -> Result<Self, CheckpointError> {
+        let mut transient = Self::new(model, equilibrium)?;
+        let away = disturbance(model, 1);
+        match &mut transient.0 {
+            Solved::Six(run) => run.go_on_beside(checkpoint, &away, time)?,
+            Solved::Five(run) => run.go_on_beside(checkpoint, &away, time)?,
+            Solved::Four(run) => run.go_on_beside(checkpoint, &away, time)?,
         }
         Ok(transient)
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use drillsweep_scenario::{Integrator, Scenario};
+use drillsweep_scenario::{Integrator, Scenario, TimeWindow};
 use serde::{Deserialize, Serialize};
 
 use super::adaptive::{self, Tolerances};
@@ -18,7 +18,7 @@ use super::grid::Grid;
 use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
 use super::rk4::{self, Rk4};
-use super::settle::{Settle, Settling, course_samples};
+use super::settle::{Settle, Settling, course_samples, twin_time};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
 use super::{Outcome, Records, TransientEffort, bit_beside, dense, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
@@ -26,7 +26,7 @@ use crate::freedom::{DOFS, Freedoms, U, V};
 use crate::linalg::{Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
 use crate::motion::DynamicSystem;
-use crate::signal::{Course, sample_range};
+use crate::signal::{Course, LONGEST_WINDOW, sample_range};
 use crate::statics::Equilibrium;
 
 /// How often the longest step of a run that adapts its steps can be halved. The 8 ms of `draft` end at 62 us, where the explicit method
@@ -140,6 +140,9 @@ pub(super) struct Progress<const D: usize> {
     pub(super) energy: Vec<EnergyRow>,
     /// Motion that shows whether the run has settled.
     pub(super) course: Course,
+    /// Places to set the run's twin off from, with their ticks, the earliest first: at the start of a fixed orbit window, or every ten seconds of the longest
+    /// that a settled one may have.
+    pub(super) twin_starts: Vec<(u64, Checkpoint)>,
 }
 
 /// Motion at a step's end, with what the methods carry from step to step.
@@ -196,14 +199,14 @@ impl<'m, const D: usize> Run<'m, D> {
         let ledger_every = (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64;
         let longest = (stepping.step / f64::from(subdivisions)).min(resolving_step);
         let hole_radius = 0.5 * scenario.well.hole_diameter;
-        let tolerances = stepping.tolerance.map(|tolerance| Tolerances::new(tolerance, hole_radius));
-        let (longest, halvings) = match (stepping.integrator, tolerances) {
+        let (longest, halvings) = match (stepping.integrator, stepping.tolerance) {
             // RK4 makes steps of its own within a recording interval.
             (Integrator::Rk4, _) => (interval, 0),
             (_, Some(_)) => (longest, HALVINGS),
             (_, None) => (longest, 0),
         };
         let grid = Grid::new(interval, longest, halvings);
+        let tolerances = stepping.tolerance.map(|tolerance| Tolerances::new(tolerance, hole_radius));
         let stepper = match stepping.integrator {
             Integrator::GeneralizedAlpha => Stepper::GeneralizedAlpha(Box::new(GeneralizedAlpha::new(
                 &system,
@@ -252,6 +255,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 steps: 0,
                 contacts: vec![ContactStatistics::default(); model.node_count()],
                 energy: Vec::with_capacity(ledger_rows(samples, ledger_every)),
+                twin_starts: Vec::new(),
             },
             model,
             system,
@@ -290,6 +294,28 @@ impl<'m, const D: usize> Run<'m, D> {
             .energy
             .reserve(ledger_rows(self.samples - progress.ticks / self.grid.at_sample(1), self.ledger_every));
         progress.course.reserve(course_samples(&self.model.scenario) as usize);
+        Ok(())
+    }
+
+    /// Goes on beside the run of a checkpoint, `away` from it, for `time` \[s\].
+    pub(super) fn go_on_beside(
+        &mut self,
+        checkpoint: &Checkpoint,
+        away: &NodalVector,
+        time: f64,
+    ) -> Result<(), CheckpointError> {
+        self.go_on_from(checkpoint)?;
+        let freedoms = self.system.freedoms;
+        let displacement = &mut self.progress.state.displacement;
+        for (node, away) in away.iter().enumerate() {
+            for (dof, away) in freedoms.of(away).into_iter().enumerate() {
+                displacement[(node, dof)] += away;
+            }
+        }
+        self.accelerate()?;
+        self.settle.close();
+        let samples = (time * self.model.scenario.recording.rate_hz).round() as u64;
+        self.samples = self.samples.min(self.recorded() + samples);
         Ok(())
     }
 
@@ -343,6 +369,7 @@ impl<'m, const D: usize> Run<'m, D> {
                     let checkpoint = Checkpoint::new(&self.model.scenario, &self.progress);
                     return Ok(Outcome::Suspended(Box::new(checkpoint), ()));
                 }
+                self.keep_twin_start();
                 settling = self.settled();
                 if settling.is_some() {
                     break;
@@ -366,6 +393,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let simulated_time = self.time();
         let settling = settling.unwrap_or_else(|| self.settle.conclude(&self.progress.course, self.samples));
         let scenario = &self.model.scenario;
+        let window_start = self.twin_start(settling.window, simulated_time);
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
             rate_hz: scenario.recording.rate_hz,
@@ -373,6 +401,7 @@ impl<'m, const D: usize> Run<'m, D> {
             settling,
             course: self.progress.course,
             histories: (),
+            window_start,
             contacts: self.progress.contacts,
             energy: self.progress.energy,
             energy_bound,
@@ -400,6 +429,46 @@ impl<'m, const D: usize> Run<'m, D> {
         self.settle.judge(&self.progress.course, sample)
     }
 
+    /// The place that the twin of a finished run starts from, of those that were kept.
+    fn twin_start(&mut self, window: TimeWindow, simulated_time: f64) -> Option<Box<Checkpoint>> {
+        let from =
+            if self.settle.is_open() { window.to - twin_time(window, simulated_time) } else { window.from };
+        let from = self.grid.at_sample((from * self.model.scenario.recording.rate_hz).round() as u64);
+        let starts = std::mem::take(&mut self.progress.twin_starts).into_iter();
+        starts
+            .filter(|(ticks, _)| *ticks < self.progress.ticks)
+            .fold(None, |found, (ticks, start)| match found {
+                Some((earlier, found)) if earlier >= from => Some((earlier, found)),
+                _ => Some((ticks, start)),
+            })
+            .map(|(_, start)| Box::new(start))
+    }
+
+    /// Keeps the run as it is, without what only its own end is about, if its twin may start here.
+    fn keep_twin_start(&mut self) {
+        let ticks = self.progress.ticks;
+        if self.settle.is_open() {
+            if ticks == 0 || !self.settle.is_block(ticks / self.grid.at_sample(1)) {
+                return;
+            }
+            let reach = self.grid.at_sample((LONGEST_WINDOW * self.model.scenario.recording.rate_hz) as u64);
+            self.progress.twin_starts.retain(|(start, _)| start + reach >= ticks);
+        } else if !self.progress.twin_starts.is_empty()
+            || ticks < self.grid.at_sample(self.orbit_samples.start)
+        {
+            return;
+        }
+        self.progress.work = self.ledger.work();
+        let empty = self.settle.empty_course(self.model);
+        let course = std::mem::replace(&mut self.progress.course, empty);
+        let last_row = self.progress.energy.last().copied().into_iter().collect();
+        let energy = std::mem::replace(&mut self.progress.energy, last_row);
+        let starts = std::mem::take(&mut self.progress.twin_starts);
+        let start = Checkpoint::new(&self.model.scenario, &self.progress);
+        (self.progress.course, self.progress.energy, self.progress.twin_starts) = (course, energy, starts);
+        self.progress.twin_starts.push((ticks, start));
+    }
+
     /// Hands over what is recorded.
     fn hand_over(&mut self, keep: &mut Keep<'_>) -> Result<(), TransientError> {
         let snapshots = self.snapshots.as_ref().map(Recorder::block);
@@ -420,26 +489,37 @@ impl<'m, const D: usize> Run<'m, D> {
 
     /// Acceleration and powers at t = 0, with the dynamic friction law: most of the static friction vanishes there.
     fn start(&mut self) -> Result<(), TransientError> {
+        self.accelerate()?;
+        self.observe([0.0; 2]);
+        Ok(())
+    }
+
+    /// Acceleration and powers of the present displacements and velocities, by the equations of motion.
+    fn accelerate(&mut self) -> Result<(), TransientError> {
+        let time = self.time();
         let state = &mut self.progress.state;
         let n = state.displacement.nodes();
-        let (mut forces, mut linear) = (NodalField::zeros(n), vec![[0.0; D]; n]);
+        let (mut forces, mut linear, mut damped) =
+            (NodalField::zeros(n), vec![[0.0; D]; n], vec![[0.0; D]; n]);
         let contact = &mut self.contact;
         let mut external = self.forces.load.clone();
-        self.forces.unbalance.add(0.0, &mut external);
+        self.forces.unbalance.add(time, &mut external);
         let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
         self.forces.contact_into(&state.displacement, rates, contact, &external, &mut forces);
         let mut right = forces.to_nodes();
         self.system.stiffness.multiply_into(&state.displacement.to_nodes(), &mut linear);
-        for ((right, linear), held) in right.iter_mut().zip(&linear).zip(&self.system.held) {
+        self.system.damping.multiply_into(&state.velocity.to_nodes(), &mut damped);
+        for (((right, linear), damped), held) in
+            right.iter_mut().zip(&linear).zip(&damped).zip(&self.system.held)
+        {
             for dof in 0..D {
-                right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] };
+                right[dof] = if held[dof] { 0.0 } else { right[dof] - linear[dof] - damped[dof] };
             }
         }
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
         state.acceleration.copy_from_nodes(&right);
         state.stage_power =
-            self.ledger.power(&state.velocity, &state.displacement, contact, &self.forces, 0.0);
-        self.observe([0.0; 2]);
+            self.ledger.power(&state.velocity, &state.displacement, contact, &self.forces, time);
         Ok(())
     }
 

@@ -148,6 +148,12 @@ pub fn shortest_run(scenario: &Scenario) -> f64 {
     scenario.duration.min(latest_end(scenario).max(4.0 * BLOCK))
 }
 
+/// Simulated time \[s\] over which the twin of a run of `duration` \[s\] with statistics over `window` is compared with it: a third of the run at
+/// most.
+pub fn twin_time(window: TimeWindow, duration: f64) -> f64 {
+    (window.to - window.from).clamp(0.0, duration / 3.0)
+}
+
 /// The longest window that a scenario's orbit statistics can be over.
 pub(crate) fn orbit_window_at_most(scenario: &Scenario) -> TimeWindow {
     scenario.orbit_window().unwrap_or_else(|| {
@@ -266,6 +272,29 @@ impl Settle {
             has_bit,
             course_samples(&model.scenario) as usize,
         )
+    }
+
+    /// A course of the same kind without room.
+    pub(super) fn empty_course(&self, model: &Model) -> Course {
+        let rate = model.scenario.recording.rate_hz / self.every as f64;
+        Course::new(rate, 0, recorded_nodes(model).len(), self.bit.is_some(), 0)
+    }
+
+    /// Ends judgement: the run that follows is compared with another one.
+    pub(super) fn close(&mut self) {
+        self.fixed = Some(self.last_third);
+        self.kept = 0..0;
+        self.growing.clear();
+    }
+
+    /// Whether the window is to be settled.
+    pub(super) fn is_open(&self) -> bool {
+        self.fixed.is_none()
+    }
+
+    /// Whether a recorded sample is at the end of a block.
+    pub(super) fn is_block(&self, sample: u64) -> bool {
+        sample.is_multiple_of(self.block)
     }
 
     /// Takes into the course what was recorded last, if that sample belongs to it.

@@ -268,11 +268,15 @@ quantities! {
     RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "resolved hz";
     /// Steps of the shortest length that left more than the tolerance.
     UNRESOLVED_STEPS: "unresolved_steps", "", -, "unresolved steps";
-    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion.
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion; absent where histories part.
     ERROR_ESTIMATE: "error_estimate", "", RATIO, "error estimate";
-    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes.
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes; absent where histories part.
     ERROR_ESTIMATE_DISPLACEMENT: "error_estimate_displacement", "", WIDTH, "error estimate displacement";
-    /// Estimated relative error of orbit statistics by the time steps.
+    /// By how much a start 1e-6 m away at the start of the orbit window is amplified until its end, or for a third of the run; absent where that run diverges.
+    AMPLIFICATION: "amplification", "", RATIO, "amplification";
+    /// Growth of the distance from such a run, from the first half of that time to the second.
+    AMPLIFICATION_GROWTH: "amplification_growth", "", RATE, "amplification growth";
+    /// Estimated relative error of orbit statistics by the time steps; absent where histories part.
     TIME_ERROR: "time_error", "", RATIO, "time error";
     /// Standard deviation of orbit size over the ensemble, relative to its mean.
     RELATIVE_SPREAD: "relative_spread", "", RATIO, "relative spread";

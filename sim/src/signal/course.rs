@@ -46,9 +46,9 @@ const STUDENT: f64 = 2.365;
 /// The shortest batch \[s\]: several periods of the slowest torsion of long strings, so that neighbouring batches hardly depend on each other.
 const SHORTEST_BATCH: f64 = 10.0;
 
-/// Student's t of 99 % (two-sided) for the difference between the means of the first and of the last four batches: one of a hundred statistics of
-/// steady motion exceeds it, and a run has up to a dozen. A straight trend alone has 4.4.
-const STEADY: f64 = 3.707;
+/// Student's t of 98 % (two-sided) for the difference between the means of the first and of the last four batches: one of fifty statistics of
+/// steady motion exceeds it. A straight trend alone has 4.4, one that grows by half in a window's quarter 3.2.
+const STEADY: f64 = 3.143;
 
 /// Motion of the recorded nodes and rate of twist at the bit, at the recording rate or a whole part of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -510,7 +510,15 @@ mod tests {
 
     #[test]
     fn growth_and_drift_never_settle() {
-        let growing = course(300.0, |time| beating(time).map(|x| 0.1 * x * (0.008 * time).exp()), |_| 0.0);
+        let growing = course(
+            300.0,
+            |time| {
+                let [u, v] = beating(time);
+                let factor = 0.1 * (0.008 * time).exp();
+                [0.03 + factor * (u - 0.03), factor * v]
+            },
+            |_| 0.0,
+        );
         // Ten seconds hold whole turns: nothing but the drift moves the batches.
         let drifting = course(
             300.0,
@@ -576,7 +584,7 @@ mod tests {
             assert!(!batches.is_narrow, "one per cent takes a hundred times as long");
         }
         assert!((270..=298).contains(&covered), "{covered} of {RUNS}");
-        assert!(steady >= 285, "{steady} of {RUNS} are steady");
+        assert!(steady >= 276, "{steady} of {RUNS} are steady");
         assert!(
             Course::new(RATE, 0, 1, false, 0).batches(7999, &ALLOWED).is_none(),
             "batches are of ten seconds"

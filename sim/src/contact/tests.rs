@@ -877,7 +877,7 @@ fn a_lane_has_the_bits_of_an_element_alone() {
             let pairs = [of(0), of(1), of(2), of(3)];
             [pairs.map(|[x, _]| x), pairs.map(|[_, rate]| rate)]
         };
-        let ([x_u, r_u], [x_v, r_v]) = (plane(0).into(), plane(1).into());
+        let ([x_u, r_u], [x_v, r_v]) = (plane(0), plane(1));
         let motion = SegmentMotion {
             planes: [x_u, x_v],
             rates: [r_u, r_v],
@@ -925,8 +925,8 @@ fn implicit_loads_agree_with_the_motion_that_they_lead_to() {
             let mut motion = motion_of(&free, &ElementVector::zeros());
             for plane in 0..2 {
                 let load = force.load(plane);
-                for k in 0..4 {
-                    let by_load: f64 = (0..4).map(|j| lateral[k][j] * load[j]).sum();
+                for (k, row) in lateral.iter().enumerate() {
+                    let by_load: f64 = row.iter().zip(load).map(|(g, load)| g * load).sum();
                     motion.planes[plane][k] += by_load;
                     motion.rates[plane][k] += speed * by_load;
                 }

@@ -468,7 +468,7 @@ mod tests {
         for decay in [0.7, 0.8, 0.94, 1.0, 1.05] {
             let limit = largest_stable_step(1.0, decay);
             assert!(growth(1.0, decay, 1.002 * limit) > 1.0, "{decay}");
-            assert!(limit >= 2.616 && limit < 2.785, "{decay}: {limit}");
+            assert!((2.616..2.785).contains(&limit), "{decay}: {limit}");
         }
         for decay in [0.0, 0.1, 0.6] {
             assert!((largest_stable_step(1.0, decay) - RK4_REACH).abs() < 1e-6);

@@ -10,7 +10,6 @@ csv = weboptions(ContentType="table", Timeout=90, HeaderFields=header);
 
 request = struct();
 request.preset = "paper-200m-damped";
-request.set.duration = 60;
 request.axes.flow_rate.values = [0.01 0.04 0.06];    % a single value would have to be a cell: {0.01}
 request.axes.mud_density = struct("from", 1200, "to", 2100, "count", 4);
 sweep = webwrite(server + "/v1/sweeps", request, json);
@@ -24,7 +23,7 @@ path = server + "/v1/sweeps/" + sweep.id;
 results = webread(path + "/table", "format", "csv", csv);
 disp(results(:, ["flow_rate", "mud_density", "friction_coefficient_max", "orbit_radius_rms_49"]));
 
-orbit = webread(path + "/points/1/orbit", "depth", 57.7, "from", 40, "to", 60, "format", "csv", csv);
-spectrum = webread(path + "/points/1/spectrum", "node", 49, "from", 50, "to", 60, "window", "hann", "format", "csv", csv);
+orbit = webread(path + "/points/1/orbit", "depth", 57.7, "format", "csv", csv);
+spectrum = webread(path + "/points/1/spectrum", "node", 49, "window", "hann", "format", "csv", csv);
 figure; plot(1e3 * orbit.u, 1e3 * orbit.v); axis equal; xlabel("u [mm]"); ylabel("v [mm]");
 figure; plot(spectrum.frequency, 1e3 * spectrum.amplitude); xlabel("frequency [Hz]"); ylabel("amplitude [mm]");

@@ -9,7 +9,7 @@ call() { # the token goes through a file, so that it is not in the list of proce
 }
 
 sweep=$(call "$server/v1/sweeps" --header 'content-type: application/json' --data '{
-    "preset": "paper-200m-damped", "set": {"duration": 60},
+    "preset": "paper-200m-damped",
     "axes": {"flow_rate": {"values": [0.01, 0.04, 0.06]}, "mud_density": {"from": 1200, "to": 2100, "count": 4}}}' | jq -r .id)
 
 # Every answer is held back until something changes.
@@ -17,5 +17,5 @@ until call "$server/v1/sweeps/$sweep?wait=30s" | jq -er 'if .finished then true 
 
 call "$server/v1/sweeps/$sweep/table" |
     jq -r '.columns | [.flow_rate, .mud_density, .friction_coefficient_max, .orbit_radius_rms_49] | transpose[] | @tsv'
-call "$server/v1/sweeps/$sweep/points/1/spectrum?node=49&from=50&to=60&window=hann" |
+call "$server/v1/sweeps/$sweep/points/1/spectrum?node=49&window=hann" |
     jq -c '.attributes.peaks[:3][] | {frequency, amplitude, whirl}'

@@ -19,12 +19,13 @@ import pytest
 from drillsweep import Client
 from service import REPOSITORY, Service
 
+SHORT = (
+    '"duration": 0.5, "accuracy": "draft", "recording.spectrum_windows": [], '
+    '"recording.orbit_window": {"from": 0.1, "to": 0.5}'
+)
 SHORTER = {
-    '"duration": 60': '"duration": 0.5, "accuracy": "draft", "recording.spectrum_windows": [], '
-    '"recording.orbit_window.from": 0.1, "recording.orbit_window.to": 0.5',
-    "time=(40, 60)": "time=(0.1, 0.5)",
-    "time=(50, 60)": "time=(0.1, 0.5)",
-    "from=50&to=60": "from=0.1&to=0.5",
+    'client.submit("paper-200m-damped", axes': f'client.submit("paper-200m-damped", set={{{SHORT}}}, axes',
+    '"preset": "paper-200m-damped",': f'"preset": "paper-200m-damped", "set": {{{SHORT}}},',
     "(15.0, 25.0), (14.5, 26.0), (50.0, 60.0)": "(0.1, 1.1), (0.1, 1.2), (0.2, 1.2)",
 }
 

@@ -1,7 +1,7 @@
 //! The time loop lives in the memory that it was given at its start.
 
 use allocation_counter::measure;
-use drillsweep_scenario::{Accuracy, Integrator, Snapshots, TimeStepping, preset};
+use drillsweep_scenario::{Accuracy, Integrator, OrbitWindow, Snapshots, TimeStepping, TimeWindow, preset};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
@@ -22,7 +22,9 @@ fn steps_allocate_nothing() {
             scenario.duration = duration;
             scenario.accuracy = Accuracy::Explicit(stepping);
             scenario.recording.spectrum_windows = Some(Vec::new());
-            scenario.recording.orbit_window = None;
+            // The state that a twin starts from is kept once, at the start of the window.
+            let whole = TimeWindow { from: 0.0, to: duration };
+            scenario.recording.orbit_window = Some(OrbitWindow::Fixed(whole));
             scenario.recording.snapshots = Some(Snapshots { rate_hz: 50.0, window: None });
             let model = Model::new(&scenario).expect("the preset has a model");
             let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");

@@ -7,7 +7,9 @@ use drillsweep_scenario::{
     preset,
 };
 use drillsweep_sim::beam::BeamSection;
-use drillsweep_sim::contact::{LateralMotion, dynamic_contact};
+use drillsweep_sim::contact::{
+    LateralMotion, SegmentForce, SegmentMotion, dynamic_contact, dynamic_segment, planes,
+};
 use drillsweep_sim::model::{GRAVITY, Model, element_values};
 use drillsweep_sim::mud::element_flow;
 use drillsweep_sim::statics::Equilibrium;
@@ -314,7 +316,7 @@ fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
 #[test]
 fn strings_under_strong_friction_rest_in_balance() {
     // Random scenes in which no path from the unloaded string or from a wall without friction leads to an equilibrium.
-    for index in [4, 14, 155, 207, 265, 308, 390, 841, 993] {
+    for index in [4, 14, 155, 207, 265, 308, 390, 993] {
         let model = Model::new(&soak::scene(1, index)).unwrap();
         let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
         assert!(rest.normal_force.iter().any(|force| *force > 0.0), "scene {index}");
@@ -413,6 +415,25 @@ fn unbalanced_at_the_start(scenario: &Scenario) -> f64 {
             forces[node][dof] += force;
         }
         largest = largest.max(contact.normal);
+    }
+    for (e, segment) in model.wall.segments().iter().enumerate() {
+        let still = SegmentMotion {
+            planes: planes(&element_values(&rest.displacement, e)),
+            rates: [[0.0; 4]; 2],
+            twist_rates: [0.0; 2],
+        };
+        let mut contact = SegmentForce::none();
+        if !dynamic_segment(model.wall.law(), segment, &still, model.rotation_speed, &mut contact) {
+            continue;
+        }
+        let (in_u, in_v) = (contact.load(0), contact.load(1));
+        for (end, node) in [(0, e), (2, e + 1)] {
+            let loads = [in_u[end], in_v[end], 0.0, -in_v[end + 1], in_u[end + 1], contact.torque[end / 2]];
+            for (force, load) in forces[node].iter_mut().zip(loads) {
+                *force += load;
+            }
+            largest = largest.max(contact.ends[end / 2]);
+        }
     }
     let places = forces.as_flattened().iter().zip(system.held.as_flattened());
     places.filter(|(_, held)| !**held).fold(0.0_f64, |most, (force, _)| most.max(force.abs())) / largest

@@ -13,7 +13,6 @@ use drillsweep_sim::modes::{
     InstabilityKind, ModeKind, ModeSearch, Stability, UndampedTorsion, modes, stability,
 };
 use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::string::MeshElement;
 use drillsweep_sim::study::cost::Measure;
 use drillsweep_sim::study::finer::{Verdict, ask};
 use drillsweep_sim::transient::{EnergyRow, NodeHistory, Outcome, Records, Transient};
@@ -54,16 +53,11 @@ impl Scene {
             );
         }
         let contact = &scenario.contact;
-        let elements = &scene.model.mesh.elements;
-        let nodes = scene.model.mesh.nodes.iter().zip(&scene.records.contacts).enumerate();
-        for (i, (node, contacts)) in nodes.skip(1) {
-            // Half the stiffness at least, and the damper's part of the force is on the way in. Of a wall along the elements a node carries half of each
-            // adjoining one, or less next to an end of the contact.
-            let half = |element: Option<&MeshElement>| element.map_or(0.0, |element| 0.5 * element.length);
-            let along =
-                contact.stiffness_of_a_metre() * 0.5 * (half(elements.get(i - 1)) + half(elements.get(i)));
-            let stiffness = if node.stiffness_share > 0.0 { contact.stiffness } else { along };
-            let deepest = contacts.largest_normal_force / (0.5 * stiffness);
+        let nodes = scene.model.mesh.nodes.iter().zip(&scene.records.contacts).skip(1);
+        // Along an element the penetration at an end is not bounded by the end's share of the force.
+        for (node, contacts) in nodes.filter(|(node, _)| node.stiffness_share > 0.0) {
+            // Half the stiffness at least, and the damper's part of the force is on the way in.
+            let deepest = contacts.largest_normal_force / (0.5 * contact.stiffness * node.stiffness_share);
             let penetration = contacts.largest_radius() - node.clearance;
             assert!(penetration <= deepest + 1e-9, "{}: {penetration} m for {contacts:?}", scenario.name);
         }

@@ -3,7 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::law::ContactParameters;
-use super::segment::{ContactSegment, Place, Plane};
+use super::segment::{ContactSegment, Place, Plane, Stretch};
 use super::{ContactNode, sliding_tangent, smooth_static_contact, static_contact};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
@@ -13,7 +13,7 @@ use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 pub struct StaticSegmentForce {
     /// Consistent nodal loads \[N, N m\].
     pub force: ElementVector,
-    /// Their derivatives by the nodal values, with the ends of the contact fixed: there the penetration is zero.
+    /// Their derivatives by the nodal values, those by the ends of the contact included. Of an exact integral these would be zero, as the penetration is there.
     pub tangent: ElementMatrix,
     /// Normal forces \[N\], shared between the upper and the lower node.
     pub ends: [f64; 2],
@@ -60,22 +60,53 @@ pub fn static_segment(
     rotation_speed: f64,
 ) -> Option<StaticSegmentForce> {
     let mut sum: Option<StaticSegmentForce> = None;
-    for (place, wall) in segment.in_contact(&planes(values)) {
-        let rows = place.rows();
-        let (u, v) = (rows.u(values), rows.v(values));
-        let contact = static_contact(law, &wall, u, v, rotation_speed);
+    let of_planes = planes(values);
+    for stretch in segment.stretches_in_contact(&of_planes) {
         let sum = sum.get_or_insert_with(|| StaticSegmentForce {
             force: ElementVector::zeros(),
             tangent: ElementMatrix::zeros(),
             ends: [0.0; 2],
         });
-        sum.force += rows.load([contact.force_u, contact.force_v, contact.torque_z]);
-        sum.tangent += rows.matrix(&with_column_of_twist(&contact.tangent));
-        sum.ends[0] += (1.0 - place.at) * contact.normal;
-        sum.ends[1] += place.at * contact.normal;
+        for (place, wall) in segment.points_of(&stretch) {
+            let rows = place.rows();
+            let contact = static_contact(law, &wall, rows.u(values), rows.v(values), rotation_speed);
+            sum.force += rows.load([contact.force_u, contact.force_v, contact.torque_z]);
+            sum.tangent += rows.matrix(&with_column_of_twist(&contact.tangent));
+            sum.ends[0] += (1.0 - place.at) * contact.normal;
+            sum.ends[1] += place.at * contact.normal;
+        }
+        let loads = |stretch: Stretch<f64>| {
+            segment.points_of(&stretch).iter().fold(ElementVector::zeros(), |sum, (place, wall)| {
+                let rows = place.rows();
+                let contact = static_contact(law, wall, rows.u(values), rows.v(values), rotation_speed);
+                sum + rows.load([contact.force_u, contact.force_v, contact.torque_z])
+            })
+        };
+        for (end, by_gaps) in segment.ends_by_gaps(&of_planes, &stretch).into_iter().enumerate() {
+            if by_gaps == [0.0; 3] {
+                continue;
+            }
+            let moved = |by: f64| match end {
+                0 => Stretch { from: stretch.from + by, ..stretch },
+                _ => Stretch { to: stretch.to + by, ..stretch },
+            };
+            // Smooth in the end's place, at which nothing presses: a central difference is as good as rounding lets Newton's method be.
+            let by_end = (loads(moved(END_STEP)) - loads(moved(-END_STEP))) / (2.0 * END_STEP);
+            let row = segment.normals(&of_planes).into_iter().zip(by_gaps).fold(
+                ElementVector::zeros(),
+                |row, ((place, [n_u, n_v]), by_gap)| {
+                    let Rows(rows) = place.rows();
+                    row + (rows.row(0).transpose() * n_u + rows.row(1).transpose() * n_v) * by_gap
+                },
+            );
+            sum.tangent += by_end * row.transpose();
+        }
     }
     sum
 }
+
+/// Part of an element by which an end of the contact is moved to find how its loads change.
+const END_STEP: f64 = 1e-6;
 
 /// Loads of [`smooth_static_contact`] at the Gauss points of the whole element. As the width vanishes they become those of contact at these fixed
 /// points, next to those of [`static_segment`].

@@ -173,13 +173,16 @@ impl<L: Lane> ContactParameters<L> {
     /// The sliding speeds s_i \[m/s\] at which `s_i + sum_j response_ij mu(s_j) = unopposed_i`: the same of two points that move with each other's
     /// friction, `response` \[m/s\] being the change of the sliding speeds (rows) by friction coefficients of one (columns).
     ///
-    /// Newton's method from rest, as for one point, with bounds that hold where the curve falls: each step's matrix is kept regular, and no speed exceeds
-    /// the sum of the unopposed ones.
+    /// Newton's method from the speeds that points with one friction coefficient in common would have, with bounds that hold where the curve falls: each step's
+    /// matrix is kept regular, and no speed exceeds the sum of the unopposed ones.
     #[inline(always)]
     pub(super) fn opposed_sliding_speeds(&self, unopposed: [L; 2], response: [[L; 2]; 2]) -> [L; 2] {
-        let (one, zero, smallest) = (L::splat(1.0), L::splat(0.0), L::splat(SMALLEST_RISE));
+        let (one, smallest) = (L::splat(1.0), L::splat(SMALLEST_RISE));
         let most = unopposed[0].abs() + unopposed[1].abs();
-        let mut speeds = [zero; 2];
+        let mut speeds = [
+            self.opposed_sliding_speed(unopposed[0], response[0][0] + response[0][1]),
+            self.opposed_sliding_speed(unopposed[1], response[1][0] + response[1][1]),
+        ];
         let mut moves = L::Mask::splat(true);
         for _ in 0..OPPOSED_PAIR_ITERATIONS {
             let (first, first_slope) = self.friction_with_slope(speeds[0]);

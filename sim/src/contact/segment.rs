@@ -64,8 +64,8 @@ pub struct SegmentCompliance<L> {
 /// A part of an element, from 0 at the upper end to 1 at the lower one; empty if both ends are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch<L> {
-    from: L,
-    to: L,
+    pub(super) from: L,
+    pub(super) to: L,
 }
 
 /// Where elements are compared with the wall.
@@ -468,23 +468,54 @@ impl ContactSegment<f64> {
         planes: &[Plane<f64>; 2],
     ) -> impl Iterator<Item = (Place<f64>, ContactNode<f64>)> + use<> {
         let segment = *self;
-        let (first, second) = if self.may_touch(planes) {
-            self.stretches(planes)
-        } else {
-            let none = Stretch { from: 0.0, to: 0.0 };
-            (none, none)
-        };
-        [first, second].into_iter().filter(|stretch| stretch.from < stretch.to).flat_map(move |stretch| {
-            let wall = segment.wall_of_a_point(&stretch);
-            segment.gauss_points(&stretch).map(|place| (place, wall))
+        self.stretches_in_contact(planes).flat_map(move |stretch| segment.points_of(&stretch))
+    }
+
+    /// The stretches in contact.
+    pub(super) fn stretches_in_contact(
+        &self,
+        planes: &[Plane<f64>; 2],
+    ) -> impl Iterator<Item = Stretch<f64>> + use<> {
+        let none = Stretch { from: 0.0, to: 0.0 };
+        let (first, second) = self.contact(planes).unwrap_or((none, none));
+        [first, second].into_iter().filter(|stretch| stretch.from < stretch.to)
+    }
+
+    /// The Gauss points of a stretch, with the wall as each meets it.
+    pub(super) fn points_of(&self, stretch: &Stretch<f64>) -> [(Place<f64>, ContactNode<f64>); 2] {
+        let wall = self.wall_of_a_point(stretch);
+        self.gauss_points(stretch).map(|place| (place, wall))
+    }
+
+    /// Derivatives of both ends of a stretch by the gaps at the upper end, in the middle and at the lower end \[1/m\]; zero at an end of the element.
+    pub(super) fn ends_by_gaps(&self, planes: &[Plane<f64>; 2], stretch: &Stretch<f64>) -> [[f64; 3]; 2] {
+        let [upper, middle, lower] =
+            self.at_ends_and_middle(planes).map(|[u, v]| u.hypot(v) - self.wall.clearance);
+        let c = 2.0 * (upper + lower - 2.0 * middle);
+        let b = lower - upper - c;
+        [stretch.from, stretch.to].map(|x| {
+            let slope = b + 2.0 * c * x;
+            if x <= 0.0 || x >= 1.0 || slope == 0.0 {
+                return [0.0; 3];
+            }
+            [1.0 - 3.0 * x + 2.0 * x * x, 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)].map(|by| -by / slope)
+        })
+    }
+
+    /// Unit vectors (u, v) from the axis at the upper end, in the middle and at the lower end, with these places; zero on the axis.
+    pub(super) fn normals(&self, planes: &[Plane<f64>; 2]) -> [(Place<f64>, [f64; 2]); 3] {
+        let places = [0.0, 0.5, 1.0].map(|at| self.place(at));
+        let points = self.at_ends_and_middle(planes);
+        [0, 1, 2].map(|k| {
+            let [u, v] = points[k];
+            let radius = u.hypot(v);
+            (places[k], if radius > 0.0 { [u / radius, v / radius] } else { [0.0; 2] })
         })
     }
 
     /// The Gauss points of the whole element, with the wall as each meets it.
     pub(super) fn whole(&self) -> [(Place<f64>, ContactNode<f64>); 2] {
-        let stretch = Stretch { from: 0.0, to: 1.0 };
-        let wall = self.wall_of_a_point(&stretch);
-        self.gauss_points(&stretch).map(|place| (place, wall))
+        self.points_of(&Stretch { from: 0.0, to: 1.0 })
     }
 }
 

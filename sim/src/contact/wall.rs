@@ -51,6 +51,22 @@ impl Wall {
         self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
     }
 
+    /// The wall with what it has along the elements put at their ends: half of each element at the nodes that it touches with its own clearance. It is the trapezoid
+    /// rule of the same wall, on the way to an equilibrium.
+    #[must_use]
+    pub fn at_nodes(&self) -> Self {
+        let mut sites = self.sites.clone();
+        for (element, segment) in self.segments.iter().enumerate() {
+            for site in sites[element..=element + 1].iter_mut().flatten() {
+                if site.clearance == segment.wall.clearance {
+                    site.stiffness_share += 0.5 * segment.wall.stiffness_share;
+                    site.damping_share += 0.5 * segment.wall.damping_share;
+                }
+            }
+        }
+        Self { law: self.law, sites, segments: Vec::new() }
+    }
+
     /// The same contact sites with another law, but the same kind of friction at rest.
     pub fn with_law(&self, law: &ContactLaw, effects: &ActiveEffects) -> Self {
         let law = ContactParameters::new(law, effects).with_friction_at_rest(self.law.at_rest());

@@ -38,6 +38,16 @@ pub(super) fn with_growing_friction(
     path::follow(model, &Friction { model, load, none: frictionless(model) }, displacement)
 }
 
+/// Follows the equilibria under `load` as the wall moves from the nodes along the elements, from the one on the [wall at the nodes](Wall::at_nodes), at
+/// `displacement`, which is moved to the one along the elements; `None` if their path does not come there.
+pub(super) fn along_the_elements(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> Option<NewtonOutcome> {
+    path::follow(model, &Spreading { model, load, at_nodes: model.wall.at_nodes() }, displacement)
+}
+
 /// The model's wall without friction.
 pub(super) fn frictionless(model: &Model) -> Wall {
     model.wall.with_friction_share(0.0)
@@ -96,6 +106,39 @@ impl Growth for Friction<'_> {
         let (mut slope, (without, _)) = (on(&self.model.wall).0, on(&self.none));
         add(&mut slope, -1.0, &without);
         Some((residual, tangent, slope))
+    }
+
+    fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
+        newton::finish(self.model, self.load, displacement)
+    }
+}
+
+/// The wall moves from the nodes along the elements.
+struct Spreading<'a> {
+    model: &'a Model,
+    load: &'a [[f64; DOFS]],
+    at_nodes: Wall,
+}
+
+impl Growth for Spreading<'_> {
+    fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
+        let on = |wall: &Wall| linearise(self.model, wall, self.load, &at.displacement);
+        let ((start, start_tangent), (end, end_tangent)) = (on(&self.at_nodes), on(&self.model.wall));
+        let mixed = |from: f64, to: f64| at.share.mul_add(to - from, from);
+        let nodal = |from: &NodalVector, to: &NodalVector, of: &dyn Fn(f64, f64) -> f64| -> NodalVector {
+            let pairs = from.iter().zip(to);
+            pairs.map(|(from, to)| std::array::from_fn(|dof| of(from[dof], to[dof]))).collect()
+        };
+        let tangent = BlockTridiagonal::combine(
+            1.0 - at.share,
+            &start_tangent,
+            at.share,
+            &end_tangent,
+            0.0,
+            &end_tangent,
+        );
+        let slope = nodal(&start, &end, &|from, to| to - from);
+        Some((nodal(&start, &end, &mixed), tangent, slope))
     }
 
     fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {

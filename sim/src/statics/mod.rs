@@ -325,6 +325,11 @@ fn with_fallbacks(
         Err(failure) => failure,
         converged => return converged,
     };
+    if let Some(outcome) = by_way_of_the_nodes(model, load, &start) {
+        let (found, outcome) = outcome;
+        *displacement = found;
+        return Ok(outcome);
+    }
     displacement.clone_from(&start);
     if let Ok(outcome) = against_a_hardening_wall(model, load, displacement) {
         return Ok(outcome);
@@ -391,6 +396,22 @@ fn with_growing_friction(
         newton::solve(model, &frictionless, load, displacement, settings).is_ok()
     });
     if is_found { continuation::with_growing_friction(model, load, displacement) } else { None }
+}
+
+/// The equilibrium on a wall along the elements from the one on the wall put at the nodes; `None` if the wall is at the nodes anyway, or either is not found.
+fn by_way_of_the_nodes(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    start: &NodalVector,
+) -> Option<(NodalVector, newton::NewtonOutcome)> {
+    if model.wall.segments().is_empty() {
+        return None;
+    }
+    let at_nodes = Model { wall: model.wall.at_nodes(), ..model.clone() };
+    let mut displacement = start.clone();
+    with_fallbacks(&at_nodes, load, &mut displacement, &NewtonSettings::default()).ok()?;
+    let outcome = continuation::along_the_elements(model, load, &mut displacement)?;
+    Some((displacement, outcome))
 }
 
 /// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.

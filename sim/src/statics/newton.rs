@@ -2,8 +2,8 @@
 
 use super::{StaticsError, contact_along, contact_at};
 use crate::beam::{ElementMatrix, ElementVector};
-use crate::contact::Wall;
-use crate::freedom::{DOFS, THETA_Z, U, V};
+use crate::contact::{Wall, planes};
+use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 use crate::linalg::{Block, BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
 
@@ -74,9 +74,12 @@ pub(super) fn solve(
             block[(U, U)] += shift * length;
             block[(V, V)] += shift * length;
         }
+        if !wall.segments().is_empty() {
+            hold_rotations(model, shift, &mut tangent);
+        }
         let mut step = residual;
         Factor::new(&tangent)?.solve_in_place(&mut step);
-        let lateral = step.iter().fold(0.0_f64, |m, s| m.max(s[U].hypot(s[V])));
+        let lateral = largest_deflection(wall, &step);
         let scale = (settings.largest_step / lateral).min(1.0);
         let mut longest: f64 = 0.0;
         for (node, step) in displacement.iter_mut().zip(&step) {
@@ -113,6 +116,30 @@ pub(super) fn solve(
         node,
         overload: None,
     })
+}
+
+/// Adds the rotational part of a lateral spring of `shift` \[N/m2\] along the elements, 2 l^3/105 of each end: between nodes a wall along the elements pushes by
+/// rotations alone.
+fn hold_rotations(model: &Model, shift: f64, tangent: &mut BlockTridiagonal) {
+    for (e, element) in model.elements.iter().enumerate() {
+        let spring = shift * 2.0 / 105.0 * element.chord.length.powi(3);
+        for node in [e, e + 1] {
+            for dof in [THETA_X, THETA_Y] {
+                tangent.diagonal[node][(dof, dof)] += spring;
+            }
+        }
+    }
+}
+
+/// The largest lateral displacement of a step \[m\]: of nodes, and of the middles of elements if the wall acts along them.
+fn largest_deflection(wall: &Wall, step: &[[f64; DOFS]]) -> f64 {
+    let of_nodes = step.iter().fold(0.0_f64, |most, node| most.max(node[U].hypot(node[V])));
+    let along = wall.segments().iter().enumerate().map(|(e, segment)| {
+        let middle = planes(&element_values(step, e))
+            .map(|[a, turn_a, b, turn_b]| 0.5 * (a + b) + 0.125 * segment.length * (turn_a - turn_b));
+        middle[0].hypot(middle[1])
+    });
+    along.fold(of_nodes, f64::max)
 }
 
 /// Plain Newton from `displacement` next to an equilibrium under `load`, with steps as long as they are.

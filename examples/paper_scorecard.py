@@ -11,7 +11,17 @@ import argparse
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from paper_search import CONTACT_WINDOW, LINE_WINDOW, NODE, PRESET, STEADY_WINDOW, Motion, is_tool_joint, motion
+from paper_search import (
+    CONTACT_WINDOW,
+    DAMPING,
+    LINE_WINDOW,
+    NODE,
+    PRESET,
+    STEADY_WINDOW,
+    Motion,
+    is_tool_joint,
+    motion,
+)
 
 from drillsweep import Client, Point
 
@@ -88,7 +98,7 @@ def main() -> None:
     client = Client()
     weights = [-1e5 + newton for newton in range(1 if chosen.quick else 4)]
     axes = {"operation.weight_on_bit": weights}
-    changes = {"duration": STEADY_WINDOW[1], "accuracy": chosen.accuracy}
+    changes = {"duration": STEADY_WINDOW[1], "accuracy": chosen.accuracy, **DAMPING}
     wet = client.submit(chosen.preset, set=changes, axes=axes, name="section 4.3, with mud")
     dry = client.submit(chosen.preset, set={**changes, "mud": None}, axes=axes, name="section 4.3, without mud")
 

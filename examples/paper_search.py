@@ -25,7 +25,8 @@ import numpy as np
 
 from drillsweep import Client, Point, Range, Sweep, Table
 
-PRESET = "paper-200m-damped"
+PRESET = "paper-200m"
+DAMPING = {"damping.stiffness_proportional": 3e-5}  # s, of paper-200m-damped; the paper's is 0
 NODE = 49
 SURVEY = {
     "well.survey[0].inclination_deg": (40.0, 80.0),
@@ -247,6 +248,7 @@ def submitted(
             "recording.nodes": [{"node": NODE}],
             "recording.spectrum_windows": [],
             "recording.orbit_window": None,
+            **DAMPING,
             **reading.changes,
             **changes,
         },

@@ -28,7 +28,7 @@ const MOST_CELLS: [usize; 2] = [640, 420];
 /// Side of the cells of a mosaic whose points are not even \[page units\].
 const TILE: f64 = 2.0;
 /// Between marks on a mosaic, at least \[page units\].
-const MARK_DISTANCE: f64 = 16.0;
+const MARK_DISTANCE: f64 = 18.0;
 
 /// The scale of colours viridis (van der Walt and Smith): even to the eye, in grey print too.
 const VIRIDIS: [[f64; 3]; 9] = [

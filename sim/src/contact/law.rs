@@ -179,19 +179,26 @@ impl<L: Lane> ContactParameters<L> {
     pub(super) fn opposed_sliding_speeds(&self, unopposed: [L; 2], response: [[L; 2]; 2]) -> [L; 2] {
         let (one, smallest) = (L::splat(1.0), L::splat(SMALLEST_RISE));
         let most = unopposed[0].abs() + unopposed[1].abs();
-        let mut speeds = [
+        let left = |speeds: &[L; 2], friction: [L; 2]| {
+            [0, 1].map(|i| {
+                response[i][0].mul_add(friction[0], response[i][1].mul_add(friction[1], speeds[i]))
+                    - unopposed[i]
+            })
+        };
+        let in_common = [
             self.opposed_sliding_speed(unopposed[0], response[0][0] + response[0][1]),
             self.opposed_sliding_speed(unopposed[1], response[1][0] + response[1][1]),
         ];
+        let mut speeds = in_common;
         let mut moves = L::Mask::splat(true);
-        for _ in 0..OPPOSED_PAIR_ITERATIONS {
+        let mut at_start = L::splat(0.0);
+        for iteration in 0..OPPOSED_PAIR_ITERATIONS {
             let (first, first_slope) = self.friction_with_slope(speeds[0]);
             let (second, second_slope) = self.friction_with_slope(speeds[1]);
-            let opposed = [
-                response[0][0].mul_add(first, response[0][1].mul_add(second, speeds[0])),
-                response[1][0].mul_add(first, response[1][1].mul_add(second, speeds[1])),
-            ];
-            let excess = [opposed[0] - unopposed[0], opposed[1] - unopposed[1]];
+            let excess = left(&speeds, [first, second]);
+            if iteration == 0 {
+                at_start = excess[0].abs().max(excess[1].abs());
+            }
             let rise = [
                 response[0][0].mul_add(first_slope, one).max(smallest),
                 response[1][1].mul_add(second_slope, one).max(smallest),
@@ -212,7 +219,11 @@ impl<L: Lane> ContactParameters<L> {
                 break;
             }
         }
-        speeds
+        // Next to a fold, where friction falls faster than the speeds give way, steps may lead away.
+        let excess =
+            left(&speeds, [self.friction_coefficient(speeds[0]), self.friction_coefficient(speeds[1])]);
+        let is_closer = !excess[0].abs().max(excess[1].abs()).greater_than(at_start);
+        [L::select(is_closer, speeds[0], in_common[0]), L::select(is_closer, speeds[1], in_common[1])]
     }
 
     /// [Coefficient](Self::friction_coefficient) and [slope](Self::friction_slope) of friction at a sliding speed \[m/s\], by one division.

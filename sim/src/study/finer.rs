@@ -75,6 +75,9 @@ pub fn asked_of(accuracy: &Accuracy) -> Promise {
 /// Differences count as equally large up to this ratio: single runs of a sensitive scene are draws, whose differences scatter.
 const SAME_SIZE: f64 = 5.0;
 
+/// Runs that start a micrometre away, at most, before a difference counts as one of the steps: of a single one the statistics may agree by chance.
+const NEIGHBOURS: u32 = 3;
+
 /// Runs a model, of which `own` is what its first run left, with a [finer step](TimeStepping::finer) and compares.
 pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Control) -> Verdict {
     let stepping = model.scenario.accuracy.time_stepping();
@@ -92,13 +95,18 @@ pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Co
     };
     let finer = TimeStepping { step: made, ..stepping }.finer();
     match against(finer, 0) {
-        Verdict::Differs(finer) => match against(stepping, 1) {
-            Verdict::Cancelled => Verdict::Cancelled,
-            Verdict::Differs(neighbour) if finer.share() <= SAME_SIZE * neighbour.share() => {
-                Verdict::Sensitive { finer, neighbour }
+        Verdict::Differs(finer) => {
+            for member in 1..=NEIGHBOURS {
+                match against(stepping, member) {
+                    Verdict::Cancelled => return Verdict::Cancelled,
+                    Verdict::Differs(neighbour) if finer.share() <= SAME_SIZE * neighbour.share() => {
+                        return Verdict::Sensitive { finer, neighbour };
+                    }
+                    _ => {}
+                }
             }
-            _ => Verdict::Differs(finer),
-        },
+            Verdict::Differs(finer)
+        }
         verdict => verdict,
     }
 }

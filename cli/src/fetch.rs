@@ -167,7 +167,7 @@ fn points(
             for node in point.summary.iter().flat_map(recorded_nodes) {
                 let node_and_format = format!("node={node}&window=hann&format={format}");
                 let Some(windows) = point.scenario.spectrum_windows() else {
-                    // What is kept of a run that settles is its window.
+                    // Of a run that settles only its window is kept.
                     let name = format!("spectrum-node{node}.{format}");
                     files.download(
                         client,

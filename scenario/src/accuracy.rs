@@ -193,7 +193,7 @@ impl AccuracyPreset {
         }
     }
 
-    /// What it promises of statistics.
+    /// Bounds on the relative error of the statistics.
     pub fn promise(self) -> Promise {
         let radius_deviation = match self {
             AccuracyPreset::Draft => 0.15,

@@ -482,7 +482,7 @@ pub struct RayleighDamping {
     pub stiffness_proportional: f64,
 }
 
-/// What is kept of a run.
+/// Data kept of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]

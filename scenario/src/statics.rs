@@ -63,7 +63,7 @@ pub enum Starts {
     /// The equilibrium with the friction of the scenario.
     #[default]
     One,
-    /// That and the equilibrium with the other friction.
+    /// Equilibria with friction of either kind.
     Both,
 }
 

@@ -50,7 +50,7 @@ impl CanonicalString {
     }
 }
 
-/// What is kept of a run but for its snapshots, which have a place of their own. A window that is absent is the settled one.
+/// Recording without its snapshots, which have a place of their own. An absent window is the settled one.
 #[derive(Serialize)]
 struct CanonicalRecording {
     rate_hz: f64,

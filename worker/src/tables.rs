@@ -170,7 +170,7 @@ fn transient_row(transient: &TransientSummary) -> Row {
     row
 }
 
-/// What a run's statistics are over, and whether its motion has settled.
+/// Window of a run's statistics, and the verdict on its settling.
 fn settling_row(simulated_time: f64, settling: &Settling) -> Row {
     let mut row = Row::default();
     row.put(&SIMULATED_TIME, simulated_time);

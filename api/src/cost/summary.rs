@@ -37,7 +37,7 @@ pub struct SummaryRow {
     pub radius_deviation: Option<WorstBias>,
     /// Processor time per simulated second; absent where the run failed.
     pub cpu_per_simulated_second: Option<f64>,
-    /// How many times faster than RK4 with steps of [`SummaryRow::rk4_step`].
+    /// Speed relative to RK4 with steps of [`SummaryRow::rk4_step`].
     pub speed_over_rk4: Option<f64>,
     /// What a named accuracy promises, and whether it keeps it; absent for others.
     pub promise: Option<PromiseCheck>,

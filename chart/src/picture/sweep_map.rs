@@ -89,7 +89,7 @@ pub struct MapPoint {
     pub value: f64,
     /// Whether the point stands out among the others: it gets a diamond.
     pub is_marked: bool,
-    /// Whether the value cannot be trusted: it gets a cross.
+    /// Marks a value that cannot be trusted: it gets a cross.
     pub is_doubtful: bool,
 }
 

@@ -367,8 +367,8 @@ const LAST_STEP: f64 = 1e-3;
 /// The change of both times a after which a lane has converged: Newton's method squares the error.
 const LAST_PAIR_STEP: f64 = 1e-4;
 
-/// Where friction falls faster than the sliding speed gives way, no iteration goes further than this allows: ten times as far as one without
-/// friction.
+/// Least slope of the equation of the sliding speed, if friction falls faster than the speed gives way: it bounds an iteration to ten times the
+/// step without friction.
 const SMALLEST_RISE: f64 = 0.1;
 
 /// Below this y the series is summed; what 9 terms leave out is below y^18.

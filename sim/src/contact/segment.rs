@@ -68,7 +68,7 @@ pub(super) struct Stretch<L> {
     pub(super) to: L,
 }
 
-/// Where elements are compared with the wall.
+/// Comparison of whole elements with the wall, before any roots are taken.
 struct Reach<L: Lane> {
     /// Lanes that may touch.
     may_touch: L::Mask,

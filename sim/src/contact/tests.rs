@@ -566,7 +566,7 @@ fn a_sliding_speed_that_gives_way_solves_its_equation() {
     }
 }
 
-/// Where friction falls faster than the speed gives way, the solution is that nearest to rest.
+/// Friction that falls faster than the speed gives way has several solutions: the one nearest to rest is taken.
 #[test]
 fn a_node_that_could_stick_or_slide_sticks() {
     let parameters: ContactParameters<f64> =

@@ -224,7 +224,7 @@ impl Course {
     pub fn growth(&self, [from, to]: [Range<usize>; 2], frequency_hz: f64) -> Option<f64> {
         /// Periods of a window in which Hann's window parts the line from the mean.
         const PERIODS: f64 = 3.0;
-        /// How far the line of a large motion may lie from that of a small one.
+        /// Largest relative difference between the frequencies of a large motion and of a small one.
         const SHIFT: f64 = 0.02;
         let lag = (to.start as f64 - from.start as f64) / self.rate_hz;
         if from.len() as f64 / self.rate_hz * frequency_hz < PERIODS || lag <= 0.0 {
@@ -348,7 +348,7 @@ impl Course {
             .collect()
     }
 
-    /// What `of` makes of the series of each statistic: of u and v together, of the radius, of the bit's rate of twist.
+    /// Values of `of` for the series of each statistic: the sum over u and v, the radius, the bit's rate of twist.
     fn mean_square_of<T: std::ops::Add<Output = T>>(
         &self,
         window: &Range<usize>,
@@ -393,7 +393,7 @@ impl std::ops::Add for Squares {
     }
 }
 
-/// What batches show of the root of their mean.
+/// Confidence interval of the root of a mean, from the means of batches.
 struct Interval {
     half_width: f64,
     is_steady: bool,

@@ -18,7 +18,7 @@ use crate::transient::{
     twin_time,
 };
 
-/// How far a twin that starts [`DISTURBANCE`] away gets from the run.
+/// Distance from the run of a twin that starts [`DISTURBANCE`] away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Sensitivity {

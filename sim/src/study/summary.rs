@@ -50,7 +50,7 @@ pub struct StaticsSummary {
 pub struct TransientSummary {
     /// Length of the run \[s\].
     pub simulated_time: f64,
-    /// What the orbits' statistics are over, and whether the motion has settled.
+    /// Window of the orbits' statistics, and the verdict on its settling.
     pub settling: Settling,
     /// Orbits of the recorded nodes over that window.
     pub orbits: Vec<OrbitSummary>,

@@ -53,7 +53,7 @@ const LOCAL_ORDER: f64 = 4.0;
 /// Error, relative to what is allowed, below which a step of twice the length is tried: it would leave two thirds.
 const ROOM_TO_DOUBLE: f64 = 0.04;
 
-/// How long errors of steps count as adding up \[s\]. In stick-slip of four wells steps of 8 ms that leave 6e-3 of the motion a second make orbits
+/// Time over which errors of steps are taken to add up \[s\]. In stick-slip of four wells steps of 8 ms that leave 6e-3 of the motion a second make orbits
 /// 2 to 8 % wrong, and those of 4 ms that leave 1.2e-3 a second 0.2 to 1 %: it is 8 to 13 s for the mean of a run's steps, and less here, where
 /// every single step has to keep to it.
 const MEMORY: f64 = 5.0;

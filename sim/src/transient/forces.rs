@@ -12,7 +12,7 @@ use crate::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
 use crate::model::Model;
 use crate::motion::DynamicSystem;
 
-/// What the wall does to the string, as of one evaluation: to nodes, four side by side, and along elements.
+/// Contact forces of one evaluation: at nodes, four side by side, and along elements.
 #[derive(Debug, Clone)]
 pub(super) struct ContactForces {
     groups: Vec<GroupContact>,
@@ -22,7 +22,7 @@ pub(super) struct ContactForces {
     surfaces: Vec<NodeSurfaces>,
 }
 
-/// How the surfaces of four nodes move on a wall that acts along elements.
+/// Motion of the surfaces of four nodes on a wall that acts along elements.
 #[derive(Debug, Clone, Copy)]
 struct NodeSurfaces {
     /// Penetrations \[m\]; zero where a node is off the wall.
@@ -230,7 +230,7 @@ impl<const D: usize> Forces<D> {
         &self.segments
     }
 
-    /// Where the twist stands among the degrees of freedom; absent where it is not solved for.
+    /// Index of the twist among the degrees of freedom; absent if it is not solved for.
     pub(super) fn twist(&self) -> Option<usize> {
         self.freedoms.twist()
     }
@@ -240,7 +240,7 @@ impl<const D: usize> Forces<D> {
         self.sites.iter().map(|site| site.contact_radius)
     }
 
-    /// How nodes and elements give way to their own contact forces, from blocks of a stage matrix' inverse.
+    /// Compliance of nodes and elements under their own contact forces, from blocks of a stage matrix' inverse.
     pub(super) fn compliance(&self, bands: &InverseBands<D>) -> Compliance {
         let inverse = &bands.diagonal;
         let site = |(first, site): (usize, &ContactNode<Four>)| {

@@ -74,7 +74,7 @@ pub struct Records<H = Vec<NodeHistory>> {
     pub rate_hz: f64,
     /// Length of the run \[s\]: the scenario's duration, or where its window is settled at most that.
     pub simulated_time: f64,
-    /// What the run's statistics are over, and whether its motion has settled.
+    /// Window of the run's statistics, and the verdict on its settling.
     pub settling: Settling,
     /// Motion of the recorded nodes and of the bit at a lower rate: of the whole run where the window is settled, of the window where it
     /// is fixed.

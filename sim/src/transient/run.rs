@@ -420,7 +420,7 @@ impl<'m, const D: usize> Run<'m, D> {
         })))
     }
 
-    /// What the run shows where it has settled and may end.
+    /// Verdict on the motion so far; present once it has settled and the run may end.
     fn settled(&self) -> Option<Settling> {
         let sample = self.progress.ticks / self.grid.at_sample(1);
         if !self.settle.is_due(sample) {

@@ -117,7 +117,7 @@ impl<const D: usize> Segments<D> {
         self.groups.is_empty()
     }
 
-    /// How elements give way to loads along them, from blocks of a stage matrix' inverse.
+    /// Compliance of elements under loads along them, from blocks of a stage matrix' inverse.
     pub(super) fn compliance(&self, inverse: &InverseBands<D>) -> Vec<SegmentCompliance<Four>> {
         let nodes = inverse.diagonal.len();
         let is_held = |node: usize, dof: usize| self.held.contains(&(node, dof));

@@ -35,7 +35,7 @@ const NO_GROWTH: f64 = 0.02;
 /// Standard deviation of the rotation speed below which it is not compared with itself, relative to the speed at the top.
 const SMALLEST_ROTATION: f64 = 0.1;
 
-/// What is known of a run's motion over the window of its statistics.
+/// Kind and steadiness of a run's motion over the window of its statistics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settling {
     /// Kind of motion.
@@ -208,7 +208,7 @@ fn latest_end(scenario: &Scenario) -> f64 {
     windows.fold(0.0, |latest, window| latest.max(window.to))
 }
 
-/// What a run is judged by, which does not change during it.
+/// Criteria of settling, fixed for a run.
 #[derive(Debug, Clone)]
 pub(super) struct Settle {
     /// The fixed window; absent where it is to be settled.
@@ -223,7 +223,7 @@ pub(super) struct Settle {
     block: u64,
     /// Samples before which no run ends.
     earliest: u64,
-    /// What the accuracy promises.
+    /// Errors that the accuracy allows.
     promise: Allowed,
     /// The bit, from 0 at the top, where its rotation is recorded.
     bit: Option<usize>,
@@ -316,12 +316,12 @@ impl Settle {
         );
     }
 
-    /// Whether a run is judged that has come to a recorded sample.
+    /// Returns true if a run that has come to a recorded sample is to be judged.
     pub(super) fn is_due(&self, sample: u64) -> bool {
         self.fixed.is_none() && sample > 0 && sample >= self.earliest && sample.is_multiple_of(self.block)
     }
 
-    /// What the run shows at a recorded sample if it has settled enough to end there.
+    /// Verdict at a recorded sample; present if the motion has settled and the run may end there.
     pub(super) fn judge(&self, course: &Course, sample: u64) -> Option<Settling> {
         let end = self.end(course, sample);
         if let Some(settled) = self.regular(course, end) {
@@ -332,7 +332,7 @@ impl Settle {
         self.irregular(course, batches)
     }
 
-    /// What the run shows at its end, a recorded sample.
+    /// Verdict at the end of a run, a recorded sample.
     pub(super) fn conclude(&self, course: &Course, sample: u64) -> Settling {
         let Some(fixed) = self.fixed else {
             let end = self.end(course, sample);

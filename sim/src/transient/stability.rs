@@ -15,7 +15,7 @@ use crate::model::{Model, add_element_vector, element_values};
 use crate::motion::DynamicSystem;
 use crate::statics::Equilibrium;
 
-/// Where RK4's region of stability ends on the negative real axis, times the step; on the imaginary one it ends at 2 sqrt 2 = 2.828 (Hairer
+/// End of RK4's region of stability on the negative real axis, times the step; on the imaginary one it ends at 2 sqrt 2 = 2.828 (Hairer
 /// and Wanner 1996, section IV.2).
 const RK4_REACH: f64 = 2.785;
 
@@ -352,7 +352,7 @@ fn largest_stable_step(frequency: f64, decay: f64) -> f64 {
         .fold(RK4_REACH / frequency.max(decay), f64::min)
 }
 
-/// How far RK4's region of stability reaches from zero on the ray of the eigenvalues of damping ratio `ratio`, at most [`RK4_REACH`].
+/// Extent of RK4's region of stability from zero on the ray of the eigenvalues of damping ratio `ratio`, at most [`RK4_REACH`].
 fn rk4_reach(ratio: f64) -> f64 {
     let (mut stable, mut beyond) = (RK4_LEAST_REACH, RK4_REACH);
     if rk4_growth(ratio, beyond) <= 1.0 {

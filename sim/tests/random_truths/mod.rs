@@ -24,7 +24,7 @@ const BELOW_LIMIT: f64 = 0.95;
 /// Stiffness-proportional damping \[s\] that ends torsion before the mesh does, as in the damped base case.
 const CLOSING_DAMPING: f64 = 3e-5;
 
-/// What a run of `standard` is worth in a scenario.
+/// Verdict on a run of `standard` in a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Judgement {
     /// The scenario is none to judge: no equilibrium, no stick-slip, or RK4 would take too long.

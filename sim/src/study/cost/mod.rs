@@ -239,7 +239,7 @@ pub struct CostRow {
     pub cpu_time: f64,
     /// Processor time per simulated second.
     pub cpu_per_simulated_second: f64,
-    /// How many times faster than RK4 with the longest of its fixed steps, in the usual reference 0.95 of its stability limit on the mesh; absent
+    /// Speed relative to RK4 with the longest of its fixed steps, in the usual reference 0.95 of its stability limit on the mesh; absent
     /// where the study has none.
     pub speed_over_rk4: Option<f64>,
     /// What it found, against the reference; absent where it failed.

@@ -561,33 +561,28 @@ mod tests {
         assert_eq!(row["torque_top_break_away"], row["torque_top_rotating"]);
     }
 
+    /// A shipped preset, run for its equilibrium and a hundredth of a second.
+    fn briefly(name: &str) -> Computed {
+        let mut scenario = preset(name).expect("shipped preset");
+        scenario.duration = 0.01;
+        scenario.recording.spectrum_windows = Some(Vec::new());
+        scenario.recording.orbit_window = None;
+        compute(&scenario, &Control::new()).expect("runs")
+    }
+
     #[test]
     fn an_equilibrium_that_the_string_leaves_is_reported_with_every_result() {
-        let computed = |name| {
-            let mut scenario = preset(name).expect("shipped preset");
-            scenario.duration = 0.01;
-            scenario.recording.spectrum_windows = Some(Vec::new());
-            scenario.recording.orbit_window = None;
-            compute(&scenario, &Control::new()).expect("runs")
-        };
-        let vertical = computed("hard/vertical");
+        let vertical = briefly("hard/vertical");
         let row = vertical.summary_row();
         assert_eq!((&row["stable"], &row["instability"]), (&json!(false), &json!("buckling")));
         let warning = &json!(vertical.provenance)["warnings"][0];
         assert!(warning.as_str().unwrap().starts_with("the equilibrium is unstable: buckling"), "{warning}");
-        assert_eq!(computed("hard/horizontal").summary_row().get("stable"), None);
+        assert_eq!(briefly("hard/horizontal").summary_row().get("stable"), None);
     }
 
     #[test]
     fn torsion_that_grows_to_the_end_of_the_mesh_is_told_with_the_result() {
-        let computed = |name| {
-            let mut scenario = preset(name).expect("shipped preset");
-            scenario.duration = 0.01;
-            scenario.recording.spectrum_windows = Some(Vec::new());
-            scenario.recording.orbit_window = None;
-            compute(&scenario, &Control::new()).expect("runs")
-        };
-        let printed = computed("paper-200m");
+        let printed = briefly("paper-200m");
         let row = printed.summary_row();
         assert!(
             row["undamped_torsion_hz"].as_f64().unwrap() > 4e3 && row["undamped_torsion_growth"].is_number()
@@ -604,7 +599,7 @@ mod tests {
         assert!(row["time_error"].is_null() && row["relative_spread"].is_null());
         assert_eq!(errors["spread"]["state"], "unknown");
 
-        let damped = computed("paper-200m-damped");
+        let damped = briefly("paper-200m-damped");
         assert!(damped.summary_row()["undamped_torsion_hz"].as_f64().unwrap() < 20.0);
         assert_eq!(json!(damped.provenance).get("warnings"), None);
     }

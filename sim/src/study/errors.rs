@@ -281,46 +281,22 @@ mod tests {
     use drillsweep_scenario::TimeWindow;
 
     use super::*;
-    use crate::signal::Window;
-    use crate::transient::{ErrorEstimate, MotionRegime, Settling};
+    use crate::transient::ErrorEstimate;
 
     /// A run with orbits of 1 mm and an error of the history of 10 um.
     fn run() -> TransientSummary {
         let orbit = |node| OrbitSummary {
-            node,
             measured_depth: 10.0 * node as f64,
-            window: TimeWindow { from: 0.0, to: 1.0 },
             offset: 0.0,
             mean_radius: 0.03,
             largest_radius: 0.04,
-            orbit_radius_rms: 1e-3,
-            radius_deviation: 1e-4,
-            high_frequency_rms: None,
-            interval: None,
+            ..OrbitSummary::of(node, 1e-3, 1e-4)
         };
         TransientSummary {
-            simulated_time: 1.0,
-            settling: Settling {
-                regime: MotionRegime::Fixed,
-                settled_at: None,
-                window: TimeWindow { from: 0.0, to: 1.0 },
-                weighting: Window::Rectangular,
-                base_frequencies_hz: Vec::new(),
-                intervals: Vec::new(),
-                halves_differ: None,
-                growing_mode: None,
-            },
-            orbits: vec![orbit(1), orbit(2)],
-            spectra: vec![],
             resolved_hz: 40.0,
-            unresolved_steps: 0,
-            contact_count: 0,
-            capture_count: 0,
-            largest_normal_force: 0.0,
             error_estimate: ErrorEstimate { displacement: 1e-5, relative: 0.01 },
-            energy_residual: 0.0,
             energy_residual_of_bound: Some(0.0),
-            energy_residual_ratio: None,
+            ..TransientSummary::of(vec![orbit(1), orbit(2)])
         }
     }
 

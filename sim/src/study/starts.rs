@@ -96,50 +96,16 @@ impl fmt::Display for StartsCompared {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{AccuracyPreset, TimeWindow};
+    use drillsweep_scenario::AccuracyPreset;
 
     use super::*;
-    use crate::signal::Window;
-    use crate::transient::{ErrorEstimate, MotionRegime, Settling};
 
     /// A run with orbits of the given sizes and deviations of the radius at nodes 10, 20, ...
     fn run(orbits: &[[f64; 2]]) -> TransientSummary {
-        let orbit = |(place, [size, deviation]): (usize, &[f64; 2])| OrbitSummary {
-            node: 10 * (place + 1),
-            measured_depth: 0.0,
-            window: TimeWindow { from: 0.0, to: 1.0 },
-            offset: 0.0,
-            mean_radius: 0.0,
-            largest_radius: 0.0,
-            orbit_radius_rms: *size,
-            radius_deviation: *deviation,
-            high_frequency_rms: None,
-            interval: None,
+        let orbit = |(place, [size, deviation]): (usize, &[f64; 2])| {
+            OrbitSummary::of(10 * (place + 1), *size, *deviation)
         };
-        TransientSummary {
-            orbits: orbits.iter().enumerate().map(orbit).collect(),
-            spectra: Vec::new(),
-            simulated_time: 1.0,
-            settling: Settling {
-                regime: MotionRegime::Fixed,
-                settled_at: None,
-                window: TimeWindow { from: 0.0, to: 1.0 },
-                weighting: Window::Rectangular,
-                base_frequencies_hz: Vec::new(),
-                intervals: Vec::new(),
-                halves_differ: None,
-                growing_mode: None,
-            },
-            resolved_hz: 0.0,
-            unresolved_steps: 0,
-            contact_count: 0,
-            capture_count: 0,
-            largest_normal_force: 0.0,
-            error_estimate: ErrorEstimate { displacement: 0.0, relative: 0.0 },
-            energy_residual: 0.0,
-            energy_residual_of_bound: None,
-            energy_residual_ratio: None,
-        }
+        TransientSummary::of(orbits.iter().enumerate().map(orbit).collect())
     }
 
     fn compared(own: &[[f64; 2]], other: &[[f64; 2]], accuracy: AccuracyPreset) -> StartsCompared {

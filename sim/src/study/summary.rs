@@ -267,3 +267,53 @@ fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
         Some(range.map_or([value, value], |[low, high]: [f64; 2]| [low.min(value), high.max(value)]))
     })
 }
+
+#[cfg(test)]
+impl OrbitSummary {
+    /// An orbit about the hole's axis, for tests.
+    pub(super) fn of(node: usize, orbit_radius_rms: f64, radius_deviation: f64) -> Self {
+        Self {
+            node,
+            measured_depth: 0.0,
+            window: TimeWindow { from: 0.0, to: 1.0 },
+            offset: 0.0,
+            mean_radius: 0.0,
+            largest_radius: 0.0,
+            orbit_radius_rms,
+            radius_deviation,
+            high_frequency_rms: None,
+            interval: None,
+        }
+    }
+}
+
+#[cfg(test)]
+impl TransientSummary {
+    /// A run of 1 s with a fixed window and no errors, for tests.
+    pub(super) fn of(orbits: Vec<OrbitSummary>) -> Self {
+        Self {
+            simulated_time: 1.0,
+            settling: Settling {
+                regime: crate::transient::MotionRegime::Fixed,
+                settled_at: None,
+                window: TimeWindow { from: 0.0, to: 1.0 },
+                weighting: Window::Rectangular,
+                base_frequencies_hz: Vec::new(),
+                intervals: Vec::new(),
+                halves_differ: None,
+                growing_mode: None,
+            },
+            orbits,
+            spectra: Vec::new(),
+            resolved_hz: 0.0,
+            unresolved_steps: 0,
+            contact_count: 0,
+            capture_count: 0,
+            largest_normal_force: 0.0,
+            error_estimate: ErrorEstimate { displacement: 0.0, relative: 0.0 },
+            energy_residual: 0.0,
+            energy_residual_of_bound: None,
+            energy_residual_ratio: None,
+        }
+    }
+}

@@ -12,6 +12,8 @@ import { ends, layered } from "./sweep-layers.js";
 import { distinct, isText } from "./table.js";
 import { label, say, sayer, title, unit } from "./units.js";
 
+/** Points beyond which marks are drawn by WebGL. */
+export const MANY = 3000;
 /** Designs that draw their points: these have no slices. */
 const DRAWN = ["latin_hypercube", "sobol"];
 /** Colours of words, such as states. */
@@ -180,13 +182,14 @@ export function map(context) {
         traces.push({ type: isContour ? "contour" : "heatmap", x: ends(across, allX).map((value) => at(x, value)), y: ends(up, allY).map((value) => at(y, value)), z: part((position) => shownZ[position], null), text: part((position) => texts[position], ""), customdata: part((position) => ordinals[rows[position]], null), hoverinfo: "text", hoverongaps: order === 0, colorbar: bar, showscale: order === 0, ...scale, xgap: gap, ygap: gap, contours: { coloring: "heatmap" }, line: { color: inks().panel, width: 0.7 } });
       });
     } else {
-      const kind = rows.length > 3000 ? "scattergl" : "scatter";
-      traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > 3000 ? 5 : 9, color: shownZ, colorscale: words ? scale.colorscale : lineScale(), cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
+      const kind = rows.length > MANY ? "scattergl" : "scatter";
+      traces.push({ type: kind, mode: "markers", x: rows.map((index) => at(x, xs[index])), y: rows.map((index) => at(y, ys[index])), text: texts, customdata: rows.map((index) => ordinals[index]), hoverinfo: "text", marker: { size: rows.length > MANY ? 5 : 9, color: shownZ, colorscale: words ? scale.colorscale : lineScale(), cmin: words ? -0.5 : undefined, cmax: words ? count - 0.5 : undefined, colorbar: bar, line: { width: 0 } } });
     }
+    const crosses = (/** @type {string} */ name, /** @type {number[]} */ marked, /** @type {any} */ marker) => ({ type: marked.length > MANY ? "scattergl" : "scatter", mode: "markers", name, x: marked.map((index) => at(x, xs[index])), y: marked.map((index) => at(y, ys[index])), customdata: marked.map((index) => ordinals[index]), text: marked.map((index) => `point ${ordinals[index]}: ${name}`), hoverinfo: "text", marker: { ...marker, size: marked.length > MANY ? 4 : 9, color: "#d55e00" }, showlegend: true });
     const failed = rows.filter((index) => states[index] === "failed");
-    if (failed.length) traces.push({ type: "scatter", mode: "markers", name: "failed", x: failed.map((index) => at(x, xs[index])), y: failed.map((index) => at(y, ys[index])), customdata: failed.map((index) => ordinals[index]), text: failed.map((index) => `point ${ordinals[index]}: failed`), hoverinfo: "text", marker: { symbol: "x", size: 9, color: "#d55e00" }, showlegend: true });
+    if (failed.length) traces.push(crosses("failed", failed, { symbol: "x" }));
     const doubtful = rows.filter(doubts);
-    if (doubtful.length) traces.push({ type: "scatter", mode: "markers", name: "not settled", x: doubtful.map((index) => at(x, xs[index])), y: doubtful.map((index) => at(y, ys[index])), customdata: doubtful.map((index) => ordinals[index]), text: doubtful.map((index) => `point ${ordinals[index]}: not settled`), hoverinfo: "text", marker: { symbol: "x-thin", size: 9, line: { width: 2, color: "#d55e00" } }, showlegend: true });
+    if (doubtful.length) traces.push(crosses("not settled", doubtful, { symbol: "x-thin-open", line: { width: doubtful.length > MANY ? 1 : 2 } }));
     const [columnOf, rowOf] = [xs, ys].map((column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])));
     cursor.over(rows.map((index, position) => ({ x: at(x, xs[index]), y: at(y, ys[index]), column: columnOf.get(/** @type {number} */ (xs[index])) ?? 0, row: rowOf.get(/** @type {number} */ (ys[index])) ?? 0, ordinal: Number(ordinals[index]), text: texts[position] })));
     const shape = await draw(place, traces, { xaxis: axisLayout(x), yaxis: axisLayout(y), dragmode: region.element.hidden ? "zoom" : "select" }, context.signal);

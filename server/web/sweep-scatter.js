@@ -4,12 +4,9 @@ import { choice, fill, h } from "./dom.js";
 import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "./plots.js";
-import { preferred, undelayed } from "./sweep-map.js";
+import { MANY, preferred, undelayed } from "./sweep-map.js";
 import { isText } from "./table.js";
 import { label, say, shown, title, unit } from "./units.js";
-
-/** Points beyond which marks are drawn by WebGL. */
-const MANY = 3000;
 
 /**
  * @param {import("./sweep.js").Context} context

@@ -789,7 +789,8 @@ def test_a_finer_grid_leaves_the_coarse_cells_in_the_map(opened: Opens, client: 
     coarse.wait(timeout=180.0)
     page = opened(f"#/sweeps/{coarse.id}?view=map&colour=contact_count")
     picture = drawn(page, "over flow rate")
-    layers = picture.evaluate("place => place.data.map(one => ({ z: one.z, points: one.customdata, x: one.x }))")
+    cells = "place.data.filter(one => one.type === 'heatmap')"
+    layers = picture.evaluate(f"place => {cells}.map(one => ({{ z: one.z, points: one.customdata, x: one.x }}))")
     assert [(len(layer["z"]), len(layer["z"][0])) for layer in layers] == [(4, 4), (3, 3), (1, 1)]
     # No cell is empty, and each shows the value of its own point.
     values = coarse.table().to_pandas().set_index("ordinal")["contact_count"]
@@ -800,6 +801,9 @@ def test_a_finer_grid_leaves_the_coarse_cells_in_the_map(opened: Opens, client: 
     assert shown_points == set(values.index)
     # A single point's cell ends halfway to the next values.
     assert layers[2]["x"] == pytest.approx([0.0315, 0.0365])
+    # Half a second shows no settled motion: a cross on each.
+    crosses = picture.evaluate("place => place.data.find(one => one.name === 'not settled').customdata")
+    assert set(crosses) == shown_points
 
 
 def test_first_order_indices_are_those_of_the_ishigami_function(opened: Opens) -> None:

@@ -2,7 +2,8 @@
 //! processor time at each accuracy.
 
 use drillsweep_scenario::{
-    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping,
+    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping, TimeWindow,
+    WallLaw,
 };
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +15,7 @@ use crate::statics::Equilibrium;
 use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
 use crate::study::summary::StaticsSummary;
-use crate::transient::{longest_step, resolved_hz, shortest_run, step_count, torsion_step};
+use crate::transient::{longest_step, resolved_hz, shortest_run, step_count, torsion_step, twin_time};
 
 /// The plan of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -78,7 +79,7 @@ pub struct PlannedAccuracy {
     pub steps: Option<u64>,
     /// The fewest, as `steps`.
     pub fewest_steps: Option<u64>,
-    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium included, the most where the window is
+    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium and twin included, the most where the window is
     /// settled; absent where the machine's speed is not known or steps are.
     pub cpu_time: Option<f64>,
     /// The least, as `cpu_time` \[s\].
@@ -111,8 +112,16 @@ pub struct MachineSpeed {
     /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they have converged, and RK4: for each
     /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
-    /// By what a node's step is dearer on a mesh of five times as many nodes, which no longer fits the inner caches.
+    /// Time of a node's step on a mesh of five times as many nodes, which no longer fits the inner caches, over that of the 200 m case.
     pub large_mesh_factor: f64,
+    /// Time of a step with the wall along the elements over that with the wall at the nodes, by the methods above.
+    #[serde(default = "no_difference")]
+    pub along_elements: [f64; 4],
+}
+
+/// For speeds that were measured without it.
+fn no_difference() -> [f64; 4] {
+    [1.0; 4]
 }
 
 /// Nodes of the large mesh that is timed, over those of the 200 m case.
@@ -143,6 +152,7 @@ pub struct CalibrationRun {
     method: usize,
     degrees_of_freedom: usize,
     is_large: bool,
+    is_along_elements: bool,
 }
 
 impl Plan {
@@ -151,6 +161,15 @@ impl Plan {
     /// # Errors
     /// When the scenario has no model.
     pub fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
+        Self::with_twin(scenario, speed, twin_part(scenario))
+    }
+
+    /// The plan of a line of a cost study, whose runs have no twin.
+    pub(super) fn of_line(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
+        Self::with_twin(scenario, speed, 0.0)
+    }
+
+    fn with_twin(scenario: &Scenario, speed: Option<&MachineSpeed>, twin: f64) -> Result<Self, ModelError> {
         let model = Model::new(scenario)?;
         let nodes = model.node_count();
         let lengths = || model.mesh.elements.iter().map(|element| element.length);
@@ -159,6 +178,7 @@ impl Plan {
         let shortest_part = shortest_run(scenario) / scenario.duration;
         let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
         let degrees_of_freedom = degrees_of_freedom(&model);
+        let along_elements = model.effects.contact && scenario.contact.law == WallLaw::PerLength;
         let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
         let planned = |(name, stepping): (&str, TimeStepping)| {
             let runs = u64::from(scenario.runs());
@@ -166,8 +186,9 @@ impl Plan {
             let cost = |steps: u64| {
                 let (speed, method) = (speed?, MethodKind::of(stepping));
                 let start = speed.start_per_node[method as usize] * nodes as f64 * runs as f64;
-                let step = speed.step(method, degrees_of_freedom, nodes);
-                Some(statics_cpu_time? + start + step * steps as f64)
+                let along = if along_elements { speed.along_elements[method as usize] } else { 1.0 };
+                let step = along * speed.step(method, degrees_of_freedom, nodes);
+                Some(statics_cpu_time? + start + step * steps as f64 * (1.0 + twin / runs as f64))
             };
             let fewest_steps = steps.map(|steps| (steps as f64 * shortest_part).round() as u64);
             PlannedAccuracy {
@@ -266,6 +287,15 @@ impl PlannedStudy {
     }
 }
 
+/// Steps of the twin that measures the amplification, over those of the run; where the window is settled the most that it can be.
+fn twin_part(scenario: &Scenario) -> f64 {
+    if scenario.recording.nodes.is_empty() {
+        return 0.0;
+    }
+    let whole = TimeWindow { from: 0.0, to: scenario.duration };
+    twin_time(scenario.orbit_window().unwrap_or(whole), scenario.duration) / scenario.duration
+}
+
 fn degrees_of_freedom(model: &Model) -> usize {
     4 + usize::from(model.effects.torsion) + usize::from(model.effects.axial_motion)
 }
@@ -317,7 +347,7 @@ impl MethodKind {
 }
 
 /// The runs that measure the speed of a machine: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
-/// (the 200 m case), and one on a large mesh of it.
+/// (the 200 m case), one on a large mesh of it, and every method with the wall along the elements.
 pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
     let run = |method: MethodKind, degrees_of_freedom: usize| {
         let (stepping, duration) = method.sample();
@@ -334,7 +364,13 @@ pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
         };
         scenario.effects.torsion = if degrees_of_freedom > 4 { Switch::On } else { Switch::Off };
         scenario.effects.axial_motion = if degrees_of_freedom > 5 { Switch::On } else { Switch::Off };
-        CalibrationRun { scenario, method: method as usize, degrees_of_freedom, is_large: false }
+        CalibrationRun {
+            scenario,
+            method: method as usize,
+            degrees_of_freedom,
+            is_large: false,
+            is_along_elements: false,
+        }
     };
     let mut runs: Vec<_> = MethodKind::ALL
         .into_iter()
@@ -345,6 +381,12 @@ pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
     large.is_large = true;
     large.scenario.mesh = large.scenario.mesh.scaled(1.0 / LARGE_MESH);
     runs.push(large);
+    runs.extend(MethodKind::ALL.map(|method| {
+        let mut along = run(method, 6);
+        along.is_along_elements = true;
+        along.scenario.contact.law = WallLaw::PerLength;
+        along
+    }));
     runs
 }
 
@@ -372,15 +414,18 @@ impl MachineSpeed {
             start_per_node: [0.0; 4],
             step_per_node: [[0.0; 3]; 4],
             large_mesh_factor: 1.0,
+            along_elements: no_difference(),
         };
         for (run, RunTime { nodes, steps, start_cpu_time, steps_cpu_time }) in runs {
             let per_node = steps_cpu_time / (steps as f64 * nodes as f64);
-            if run.degrees_of_freedom == 6 && !run.is_large {
+            if run.degrees_of_freedom == 6 && !run.is_large && !run.is_along_elements {
                 speed.start_per_node[run.method] = start_cpu_time / nodes as f64;
             }
             let usual = &mut speed.step_per_node[run.method][run.degrees_of_freedom - 4];
             if run.is_large {
                 speed.large_mesh_factor = (per_node / *usual).max(1.0);
+            } else if run.is_along_elements {
+                speed.along_elements[run.method] = (per_node / *usual).max(1.0);
             } else {
                 *usual = per_node;
             }
@@ -445,6 +490,7 @@ mod tests {
             start_per_node: [2e-5, 0.0, 0.0, 0.0],
             step_per_node: [[1e-7, 2e-7, 3e-7], [1e-6; 3], [2e-6; 3], [5e-7; 3]],
             large_mesh_factor: 2.0,
+            along_elements: [1.5, 1.0, 1.0, 1.0],
         };
         let mut scenario = paper();
         scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4));
@@ -452,8 +498,13 @@ mod tests {
         let plan = Plan::new(&scenario, Some(&speed)).unwrap();
         let statics = 297.0 * 1e-4;
         assert_eq!(plan.simulated_time, 120.0);
-        let (start, steps) = (2.0 * 297.0 * 2e-5, 297.0 * 240_000.0 * 3e-7);
+        // The twin goes over 20 s, the orbit window.
+        let (start, steps) = (2.0 * 297.0 * 2e-5, 297.0 * (240_000.0 + 40_000.0) * 3e-7);
         assert!((plan.cpu_time().unwrap() - (statics + start + steps)).abs() < 1e-9);
+        scenario.contact.law = WallLaw::PerLength;
+        let along = Plan::new(&scenario, Some(&speed)).unwrap();
+        assert!((along.cpu_time().unwrap() - (statics + start + 1.5 * steps)).abs() < 1e-9);
+        scenario.contact.law = WallLaw::PerNode;
         let names: Vec<_> = plan.accuracies.iter().map(|accuracy| accuracy.name.as_str()).collect();
         assert_eq!(names, ["explicit", "draft", "standard", "reference"]);
 
@@ -473,6 +524,7 @@ mod tests {
             start_per_node: [0.0; 4],
             step_per_node: [[1e-6; 3]; 4],
             large_mesh_factor: 1.0,
+            along_elements: [1.0; 4],
         };
         let mut scenario = paper();
         let one = Plan::new(&scenario, Some(&speed)).unwrap();
@@ -509,7 +561,11 @@ mod tests {
             let plan = Plan::new(&run.scenario, None).unwrap();
             assert_eq!(plan.degrees_of_freedom, run.degrees_of_freedom);
             assert_eq!(plan.nodes > 1400, run.is_large);
-            let per_node = if run.is_large { 4.5 } else { (i + 1) as f64 };
+            let per_node = match (run.is_large, run.is_along_elements) {
+                (true, _) => 4.5,
+                (_, true) => 2.0 * [3.0, 6.0, 9.0, 12.0][run.method],
+                _ => (i + 1) as f64,
+            };
             let nodes = plan.nodes;
             let (start_cpu_time, steps_cpu_time) = (nodes as f64 * 0.5, per_node * 100.0 * nodes as f64);
             times.push((run, RunTime { nodes, steps: 100, start_cpu_time, steps_cpu_time }));
@@ -519,6 +575,7 @@ mod tests {
         assert_eq!(speed.start_per_node, [0.5; 4]);
         // Of generalized-alpha with six degrees of freedom: 4.5 after 3.
         assert!((speed.large_mesh_factor - 1.5).abs() < 1e-12);
+        assert_eq!(speed.along_elements, [2.0; 4]);
         let step = |nodes| speed.step(MethodKind::GeneralizedAlpha, 6, nodes) / nodes as f64;
         assert_eq!(step(100), 3.0);
         assert!((step(664) - 3.75).abs() < 1e-3, "half way by the logarithm: {}", step(664));

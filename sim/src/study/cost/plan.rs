@@ -114,7 +114,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
 pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
     let cost = |row: &PlannedRow| {
         let members = f64::from(row.members.end - row.members.start);
-        Some(members * Plan::new(&row.scenario, Some(speed)).ok()?.cpu_time()?)
+        Some(members * Plan::of_line(&row.scenario, Some(speed)).ok()?.cpu_time()?)
     };
     rows.iter().map(cost).fold((0.0, 0), |(time, unknown), cost| match cost {
         Some(cost) => (time + cost, unknown),
@@ -313,6 +313,7 @@ mod tests {
             start_per_node: [0.0; 4],
             step_per_node: [[1e-6; 3]; 4],
             large_mesh_factor: 1.0,
+            along_elements: [1.0; 4],
         };
         // One row's steps are not known; 297 nodes, 60 s, five members of the others.
         let draft_steps = Plan::new(&rows[2].scenario, None).unwrap().accuracies[0].steps.unwrap();

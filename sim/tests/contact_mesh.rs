@@ -243,7 +243,7 @@ fn orbits_converge_at_second_order_or_faster() {
     for place in 0..3 {
         let [coarse, fine] = errors.map(|errors| errors[place]);
         // Two octaves of second order are a sixteenth. Contact at the nodes leaves some 1e-2 on 30 elements, and second order at best.
-        assert!(coarse < 1e-4 && fine < coarse / 16.0, "{place}: {errors:?}");
+        assert!(coarse < 1e-3 && fine < coarse / 16.0, "{place}: {errors:?}");
     }
 }
 

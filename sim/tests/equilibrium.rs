@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use drillsweep_scenario::{
-    Effect, Gauge, Material, Mud, Scenario, Section, SectionKind, StartFriction, SurveyStation, Switch,
-    preset,
+    Effect, Gauge, Material, Mud, PRESETS, Scenario, Section, SectionKind, StartFriction, SurveyStation,
+    Switch, preset,
 };
 use drillsweep_sim::beam::BeamSection;
 use drillsweep_sim::contact::{
@@ -463,5 +463,32 @@ fn a_run_from_sliding_friction_begins_in_balance_and_one_from_break_away_does_no
         scenario.statics.friction = StartFriction::BreakAway;
         let step = unbalanced_at_the_start(scenario);
         assert!((0.07..0.1).contains(&step), "{}: {step} from break-away", scenario.name);
+    }
+}
+
+#[test]
+fn a_string_on_a_wall_along_its_elements_rests_on_any_mesh() {
+    // Elements of 8 to 1 m on a wall that spreads a pipe's force over 0.8 m.
+    let mut totals = Vec::new();
+    for factor in [2.0, 1.0, 0.5, 0.25] {
+        let mut scenario = preset("closed/string-1000m").unwrap();
+        scenario.mesh = scenario.mesh.scaled(factor);
+        let model = Model::new(&scenario).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("factor {factor}: {error}"));
+        totals.push(rest.normal_force.iter().sum::<f64>());
+    }
+    for total in &totals {
+        assert!((total / totals[3] - 1.0).abs() < 0.02, "{totals:?} N");
+    }
+}
+
+#[test]
+fn every_scenario_that_is_damped_at_all_frequencies_has_an_equilibrium() {
+    for (name, _) in
+        PRESETS.iter().filter(|(name, _)| name.starts_with("closed/") || name.starts_with("paper"))
+    {
+        let model = Model::new(&preset(name).unwrap()).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(rest.normal_force.iter().any(|force| *force > 0.0), "{name}");
     }
 }

@@ -3,8 +3,8 @@
 use nalgebra::SMatrix;
 
 use super::law::ContactParameters;
-use super::segment::{ContactSegment, Place, Plane, Stretch};
-use super::{ContactNode, sliding_tangent, smooth_static_contact, static_contact};
+use super::segment::{ContactSegment, Place, Plane};
+use super::{ContactNode, smooth_static_contact};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 
@@ -13,7 +13,8 @@ use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 pub struct StaticSegmentForce {
     /// Consistent nodal loads \[N, N m\].
     pub force: ElementVector,
-    /// Their derivatives by the nodal values, those by the ends of the contact included. Of an exact integral these would be zero, as the penetration is there.
+    /// Their derivatives by the nodal values; without friction the second derivatives of an energy, to the square of the angle by which the normal turns along the
+    /// element.
     pub tangent: ElementMatrix,
     /// Normal forces \[N\], shared between the upper and the lower node.
     pub ends: [f64; 2],
@@ -59,54 +60,102 @@ pub fn static_segment(
     values: &ElementVector,
     rotation_speed: f64,
 ) -> Option<StaticSegmentForce> {
-    let mut sum: Option<StaticSegmentForce> = None;
-    let of_planes = planes(values);
-    for stretch in segment.stretches_in_contact(&of_planes) {
-        let sum = sum.get_or_insert_with(|| StaticSegmentForce {
-            force: ElementVector::zeros(),
-            tangent: ElementMatrix::zeros(),
-            ends: [0.0; 2],
-        });
-        for (place, wall) in segment.points_of(&stretch) {
-            let rows = place.rows();
-            let contact = static_contact(law, &wall, rows.u(values), rows.v(values), rotation_speed);
-            sum.force += rows.load([contact.force_u, contact.force_v, contact.torque_z]);
-            sum.tangent += rows.matrix(&with_column_of_twist(&contact.tangent));
-            sum.ends[0] += (1.0 - place.at) * contact.normal;
-            sum.ends[1] += place.at * contact.normal;
-        }
-        let loads = |stretch: Stretch<f64>| {
-            segment.points_of(&stretch).iter().fold(ElementVector::zeros(), |sum, (place, wall)| {
-                let rows = place.rows();
-                let contact = static_contact(law, wall, rows.u(values), rows.v(values), rotation_speed);
-                sum + rows.load([contact.force_u, contact.force_v, contact.torque_z])
-            })
-        };
-        for (end, by_gaps) in segment.ends_by_gaps(&of_planes, &stretch).into_iter().enumerate() {
-            if by_gaps == [0.0; 3] {
-                continue;
-            }
-            let moved = |by: f64| match end {
-                0 => Stretch { from: stretch.from + by, ..stretch },
-                _ => Stretch { to: stretch.to + by, ..stretch },
-            };
-            // Smooth in the end's place, at which nothing presses: a central difference is as good as rounding lets Newton's method be.
-            let by_end = (loads(moved(END_STEP)) - loads(moved(-END_STEP))) / (2.0 * END_STEP);
-            let row = segment.normals(&of_planes).into_iter().zip(by_gaps).fold(
-                ElementVector::zeros(),
-                |row, ((place, [n_u, n_v]), by_gap)| {
-                    let Rows(rows) = place.rows();
-                    row + (rows.row(0).transpose() * n_u + rows.row(1).transpose() * n_v) * by_gap
-                },
-            );
-            sum.tangent += by_end * row.transpose();
-        }
+    let friction = law.friction_at_rest(&segment.wall, rotation_speed);
+    let elastic = Elastic::of(law, segment, values, friction)?;
+    let mut force = ElementVector::zeros();
+    let mut ends = [0.0; 2];
+    for (point, direction) in &elastic.points {
+        force += point.rows.load(direction.map(|along| -point.normal * along));
+        ends[0] += (1.0 - point.at) * point.normal;
+        ends[1] += point.at * point.normal;
     }
-    sum
+    Some(StaticSegmentForce { force, tangent: -elastic.stiffness, ends })
 }
 
-/// Part of an element by which an end of the contact is moved to find how its loads change.
-const END_STEP: f64 = 1e-6;
+/// The elastic force of the wall along an element, with a friction in proportion to it.
+struct Elastic {
+    /// The points that it acts at, with its direction there: along u and v, and the arm of its torque \[m\].
+    points: [(PressedPoint, [f64; 3]); 2],
+    /// Its derivatives by the nodal values, with the sign of a left-hand side.
+    stiffness: ElementMatrix,
+    /// Damping of the law over the part in the wall \[N s/m\].
+    damping: f64,
+}
+
+/// A point that carries a part of the wall's force.
+struct PressedPoint {
+    at: f64,
+    rows: Rows,
+    /// Unit vector (u, v) from the axis.
+    outwards: [f64; 2],
+    /// Part of the whole that it carries.
+    part: f64,
+    /// Normal force \[N\].
+    normal: f64,
+}
+
+impl Elastic {
+    /// At nodal values, with a coefficient of friction; `None` without contact.
+    fn of(
+        law: &ContactParameters<f64>,
+        segment: &ContactSegment<f64>,
+        values: &ElementVector,
+        friction: f64,
+    ) -> Option<Self> {
+        let of_planes = planes(values);
+        let pressed = segment.pressed(&of_planes).filter(|pressed| pressed.depth > 0.0)?;
+        let share = segment.wall.stiffness_share;
+        let (stiffness, slope) = (law.stiffness(pressed.rms) * share, law.elastic_slope(pressed.rms) * share);
+        let (along, arm) =
+            (friction * law.tangential_share, friction * law.torque_share * segment.wall.contact_radius);
+        // The force is -F_n d with the direction d = n + mu t, which turns with n.
+        let direction = |[n_u, n_v]: [f64; 2]| [n_u - along * n_v, n_v + along * n_u, arm];
+        let mut sum = ElementMatrix::zeros();
+        let (mut pushed, mut inwards) = (ElementVector::zeros(), ElementVector::zeros());
+        let points = [0, 1].map(|k| {
+            let (place, part) = (pressed.places[k], pressed.parts[k]);
+            let rows = place.rows();
+            let (radius, outwards) = outwards(&rows, values);
+            let normal = part * stiffness * pressed.depth;
+            let along_wall = [-outwards[1], outwards[0]];
+            let turned = direction(along_wall);
+            let turns = normal / radius;
+            sum += rows.matrix(&[0, 1, 2].map(|row| {
+                let of_row = if row < 2 { turns * turned[row] } else { 0.0 };
+                [of_row * along_wall[0], of_row * along_wall[1], 0.0]
+            }));
+            pushed += rows.load(direction(outwards)) * (part * pressed.depth);
+            inwards += rows.load([outwards[0], outwards[1], 0.0]) * (part * pressed.depth);
+            (PressedPoint { at: place.at, rows, outwards, part, normal }, direction(outwards))
+        });
+        let normals = segment.normals(&of_planes).map(|(place, [n_u, n_v])| {
+            let Rows(rows) = place.rows();
+            (rows.row(0) * n_u + rows.row(1) * n_v).transpose()
+        });
+        for (place, weight) in segment.points_in_the_wall(&of_planes) {
+            let rows = place.rows();
+            let x = place.at;
+            let by_gaps = [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)];
+            let gap = normals
+                .iter()
+                .zip(by_gaps)
+                .fold(ElementVector::zeros(), |sum, (normal, by)| sum + normal * by);
+            let (_, outwards) = outwards(&rows, values);
+            sum += rows.load(direction(outwards)) * gap.transpose() * (weight * stiffness);
+        }
+        // The law stiffens with the root mean square penetration.
+        sum += pushed * inwards.transpose() * ((slope - stiffness) / (pressed.rms * pressed.rms));
+        let damping = law.damping(pressed.rms) * segment.wall.damping_share * pressed.share;
+        Some(Self { points, stiffness: sum, damping })
+    }
+}
+
+/// Distance from the axis \[m\], and the unit vector (u, v) from it, of a place in the wall.
+fn outwards(rows: &Rows, values: &ElementVector) -> (f64, [f64; 2]) {
+    let (u, v) = (rows.u(values), rows.v(values));
+    let radius = u.hypot(v).max(f64::MIN_POSITIVE);
+    (radius, [u / radius, v / radius])
+}
 
 /// Loads of [`smooth_static_contact`] at the Gauss points of the whole element. As the width vanishes they become those of contact at these fixed
 /// points, next to those of [`static_segment`].
@@ -143,22 +192,27 @@ pub fn sliding_segment(
     values: &ElementVector,
     rotation_speed: f64,
 ) -> Option<SlidingSegmentTangent> {
-    let mut sum: Option<SlidingSegmentTangent> = None;
-    for (place, wall) in segment.in_contact(&planes(values)) {
-        let rows = place.rows();
-        let (u, v) = (rows.u(values), rows.v(values));
-        let Some(tangent) = sliding_tangent(law, &wall, u, v, rotation_speed) else { continue };
-        let sum = sum.get_or_insert_with(|| SlidingSegmentTangent {
-            stiffness: ElementMatrix::zeros(),
-            damping: ElementMatrix::zeros(),
-            rubbing: [0.0; 2],
+    let radius = segment.wall.contact_radius;
+    let sliding_speed = rotation_speed * radius;
+    let elastic = Elastic::of(law, segment, values, law.friction_coefficient(sliding_speed))?;
+    let friction_slope = law.friction_slope(sliding_speed);
+    let mut damping = ElementMatrix::zeros();
+    let mut rubbing = [0.0; 2];
+    for (point, direction) in &elastic.points {
+        // As sliding_tangent has it of a node.
+        let [n_u, n_v] = point.outwards;
+        let (normal, tangent) = ([n_u, n_v, 0.0], [-n_v, n_u, radius]);
+        let rubbed = [-law.tangential_share * n_v, law.tangential_share * n_u, law.torque_share * radius];
+        let (damps, feeds) = (point.part * elastic.damping, point.normal * friction_slope);
+        let of_place = [0, 1, 2].map(|row| {
+            [0, 1, 2]
+                .map(|column| damps * direction[row] * normal[column] + feeds * rubbed[row] * tangent[column])
         });
-        sum.stiffness += rows.matrix(&tangent.stiffness);
-        sum.damping += rows.matrix(&tangent.damping);
-        sum.rubbing[0] += (1.0 - place.at) * tangent.damping[2][2];
-        sum.rubbing[1] += place.at * tangent.damping[2][2];
+        damping += point.rows.matrix(&of_place);
+        rubbing[0] += (1.0 - point.at) * of_place[2][2];
+        rubbing[1] += point.at * of_place[2][2];
     }
-    sum
+    Some(SlidingSegmentTangent { stiffness: elastic.stiffness, damping, rubbing })
 }
 
 /// The Gauss points of a whole element: rows that give u, v and the twist there from the nodal values, and the wall as each meets it.

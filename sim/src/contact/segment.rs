@@ -1,9 +1,11 @@
-//! Contact along an element: the law of the wall, integrated over the stretch of the element that is in the wall.
+//! Contact along an element: the law of the wall, integrated over the part of the element that is in the wall.
 //!
-//! The deflection between the nodes is that of the beam's shape functions. The gap r - j0 at both ends and in the middle gives a parabola, whose
-//! positive part is the stretch in contact; the law acts at the two Gauss points of that stretch, each for half of its length. A rule
-//! with fixed points, such as one at the nodes, switches a whole share of the length when a point enters the wall. This one grows from
-//! zero, and it is exact for a rigid element. Forces step, by the error of the rule, only if a gap between two outer parts of one element closes.
+//! The deflection between the nodes is the parabola through its values at both ends and in the middle, and so is the gap g = r - j0. The wall stores
+//! K_c/2 times the integral of g^2 over the part where the gap is positive; its forces are the exact derivatives of that energy, so that they take no work
+//! from any closed path, and they change without steps as parts of the element come into the wall, merge and leave it. (A Gauss rule on that part has
+//! neither property: its forces feed a string that moves through them, and Newton's method finds no equilibrium if elements are as long as the wall spreads a
+//! force.) They act at two points of the element, the Gauss points of the weight g, which carry the same force and the same first three
+//! moments as the whole.
 
 use super::ContactNode;
 use super::law::ContactParameters;
@@ -15,8 +17,6 @@ use crate::linalg::{Lane, Mask};
 pub struct ContactSegment<L> {
     /// Length l \[m\].
     pub length: L,
-    /// a / (1 + a), with the shear parameter a of (6).
-    pub shear_share: L,
     /// Clearance and contact radius of the element, and the shares of its whole length in stiffness and damping of the law.
     pub wall: ContactNode<L>,
 }
@@ -47,7 +47,7 @@ pub struct SegmentForce<L> {
     pub torque: [L; 2],
     /// Normal forces \[N\], shared between the ends in proportion to their nearness.
     pub ends: [L; 2],
-    /// Place of the middle of the contact, from 0 at the upper end to 1; 1/2 without contact.
+    /// Centre of the pressure, from 0 at the upper end to 1; 1/2 without contact.
     pub middle: L,
 }
 
@@ -66,6 +66,40 @@ pub struct SegmentCompliance<L> {
 pub(super) struct Stretch<L> {
     pub(super) from: L,
     pub(super) to: L,
+}
+
+/// The gap along an element: `upper + rise x + bend x^2` \[m\], x from 0 at the upper end to 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gap<L> {
+    upper: L,
+    lower: L,
+    rise: L,
+    bend: L,
+}
+
+/// The parts of an element in the wall, with the gap along it.
+struct Contact<L> {
+    gap: Gap<L>,
+    first: Stretch<L>,
+    /// The other part if a gap opens between two outer ones; empty in most cases.
+    second: Stretch<L>,
+}
+
+/// The penetration along an element, as two points have it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pressed<L> {
+    /// Gauss points of the penetration as a weight.
+    pub(super) places: [Place<L>; 2],
+    /// Their parts of its integral, together 1.
+    pub(super) parts: [L; 2],
+    /// Mean penetration of the whole element \[m\], 0 out of the wall; zero without contact.
+    pub(super) depth: L,
+    /// Root mean square penetration of the whole element \[m\], 0 out of the wall.
+    pub(super) rms: L,
+    /// Part of the element in the wall.
+    pub(super) share: L,
+    /// Centre of the penetration; 1/2 without contact.
+    middle: L,
 }
 
 /// Comparison of whole elements with the wall, before any roots are taken.
@@ -96,8 +130,7 @@ struct Point<L: Lane> {
     normal: L,
 }
 
-/// Consistent nodal loads of the wall on an element in motion, at rotation speed Omega \[rad/s\]: the law (10) to (14) at the Gauss points of the
-/// stretch in contact. False if no lane touches; then `force` is left as it is.
+/// Consistent nodal loads of the wall on an element in motion, at rotation speed Omega \[rad/s\]: the law (10) to (14). False if no lane touches; then `force` is left as it is.
 #[inline(always)]
 pub fn dynamic_segment<L: Lane>(
     law: &ContactParameters<L>,
@@ -107,26 +140,18 @@ pub fn dynamic_segment<L: Lane>(
     force: &mut SegmentForce<L>,
 ) -> bool {
     let zero = L::splat(0.0);
-    let Some((first, second)) = segment.contact(&motion.planes) else { return false };
+    let Some(pressed) = segment.pressed(&motion.planes) else { return false };
     *force = SegmentForce::none();
-    force.set_middle(&first);
-    let (mut stretch, mut is_last) = (first, !second.is_anywhere());
-    loop {
-        let points = segment.points(law, &stretch, motion, rotation_speed, zero);
-        let friction = |point: &Point<L>| {
-            if law.has_friction {
-                law.friction_coefficient(point.surface.sliding_speed) * point.normal.abs()
-            } else {
-                zero
-            }
+    force.middle = pressed.middle;
+    for point in segment.points(law, &pressed, motion, rotation_speed, zero) {
+        let friction = if law.has_friction {
+            law.friction_coefficient(point.surface.sliding_speed) * point.normal.abs()
+        } else {
+            zero
         };
-        segment.add(law, &points[0], points[0].normal, friction(&points[0]), force);
-        segment.add(law, &points[1], points[1].normal, friction(&points[1]), force);
-        if is_last {
-            return true;
-        }
-        (stretch, is_last) = (second, true);
+        segment.add(law, &point, point.normal, friction, force);
     }
+    true
 }
 
 /// The loads of the same law that agree with the motion which they lead to, as far as the element's own loads move it: normal forces of both
@@ -143,100 +168,134 @@ pub fn implicit_segment<L: Lane>(
     force: &mut SegmentForce<L>,
 ) -> bool {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let Some((first, second)) = segment.contact(&motion.planes) else { return false };
-    let (before_u, before_v, before_torque) = (force.load(0), force.load(1), force.torque);
+    let Some(pressed) = segment.pressed(&motion.planes) else { return false };
+    // Loads that the motion was found with.
+    let (load_u, load_v, load_torque) = (force.load(0), force.load(1), force.torque);
     *force = SegmentForce::none();
-    force.set_middle(&first);
-    let (mut stretch, mut is_last) = (first, !second.is_anywhere());
-    loop {
-        let [p, q] = segment.points(law, &stretch, motion, rotation_speed, speed);
-        // Loads that the motion was found with and that no earlier stretch of the element has replaced.
-        let load_u = difference(&before_u, &force.load(0));
-        let load_v = difference(&before_v, &force.load(1));
-        // Displacements of the ends by 1 N at each point.
-        let (by_p, by_q) = (compliance.of_load(&p.place.shape), compliance.of_load(&q.place.shape));
-        let own = [dot(&by_p, &p.place.shape), dot(&by_q, &q.place.shape)];
-        let between = dot(&by_p, &q.place.shape);
-        // Displacements of the points by those loads.
-        let moved_p = [dot(&by_p, &load_u), dot(&by_p, &load_v)];
-        let moved_q = [dot(&by_q, &load_u), dot(&by_q, &load_v)];
+    force.middle = pressed.middle;
+    let [p, q] = segment.points(law, &pressed, motion, rotation_speed, speed);
+    // Displacements of the ends by 1 N at each point.
+    let (by_p, by_q) = (compliance.of_load(&p.place.shape), compliance.of_load(&q.place.shape));
+    let own = [dot(&by_p, &p.place.shape), dot(&by_q, &q.place.shape)];
+    let between = dot(&by_p, &q.place.shape);
+    // Displacements of the points by those loads.
+    let moved_p = [dot(&by_p, &load_u), dot(&by_p, &load_v)];
+    let moved_q = [dot(&by_q, &load_u), dot(&by_q, &load_v)];
 
-        let inwards = |[n_u, n_v]: [L; 2], [u, v]: [L; 2]| n_u.mul_add(u, n_v * v);
-        let unloaded = [
-            p.normal - p.slope * inwards(p.surface.normal, moved_p),
-            q.normal - q.slope * inwards(q.surface.normal, moved_q),
-        ];
-        let rise = [p.slope.mul_add(own[0], one), q.slope.mul_add(own[1], one)];
-        let coupling = [p.slope * between, q.slope * between];
-        let per_determinant = one / (rise[0] * rise[1] - coupling[0] * coupling[1]);
-        let normal = [
-            law.limited((rise[1] * unloaded[0] - coupling[0] * unloaded[1]) * per_determinant),
-            law.limited((rise[0] * unloaded[1] - coupling[1] * unloaded[0]) * per_determinant),
-        ];
+    let inwards = |[n_u, n_v]: [L; 2], [u, v]: [L; 2]| n_u.mul_add(u, n_v * v);
+    let unloaded = [
+        p.normal - p.slope * inwards(p.surface.normal, moved_p),
+        q.normal - q.slope * inwards(q.surface.normal, moved_q),
+    ];
+    let rise = [p.slope.mul_add(own[0], one), q.slope.mul_add(own[1], one)];
+    let coupling = [p.slope * between, q.slope * between];
+    let per_determinant = one / (rise[0] * rise[1] - coupling[0] * coupling[1]);
+    let normal = [
+        law.limited((rise[1] * unloaded[0] - coupling[0] * unloaded[1]) * per_determinant),
+        law.limited((rise[0] * unloaded[1] - coupling[1] * unloaded[0]) * per_determinant),
+    ];
 
-        let mut friction = [zero; 2];
-        if law.has_friction {
-            let pressed = [normal[0].abs(), normal[1].abs()];
-            let mut speeds = [p.surface.sliding_speed, q.surface.sliding_speed];
-            let slow = speeds[0].abs().min(speeds[1].abs()).less_than(law.fast_sliding());
-            if slow.any() {
-                let radius = segment.wall.contact_radius;
-                let torque = [before_torque[0] - force.torque[0], before_torque[1] - force.torque[1]];
-                let along = |[n_u, n_v]: [L; 2], [u, v]: [L; 2]| n_u.mul_add(v, -(n_v * u));
-                let free = |point: &Point<L>, moved: [L; 2]| {
-                    let turned = compliance.twist_at(point.place.at, torque);
-                    let way = turned.mul_add(radius, along(point.surface.normal, moved));
-                    point.surface.sliding_speed - speed * way
-                };
-                let twisted = |at: L, by: L| compliance.twist_at(at, [one - by, by]) * radius * radius;
-                let response = |lateral: L, twist: L| {
-                    speed * twist.mul_add(law.torque_share, lateral * law.tangential_share)
-                };
-                let cross = response(between, twisted(p.place.at, q.place.at));
-                let responses = [
-                    [response(own[0], twisted(p.place.at, p.place.at)) * pressed[0], cross * pressed[1]],
-                    [cross * pressed[0], response(own[1], twisted(q.place.at, q.place.at)) * pressed[1]],
-                ];
-                let opposed = law.opposed_sliding_speeds([free(&p, moved_p), free(&q, moved_q)], responses);
-                for (speed, opposed) in speeds.iter_mut().zip(opposed) {
-                    *speed = L::select(slow, opposed, *speed);
-                }
-            }
-            friction = [
-                law.friction_coefficient(speeds[0]) * pressed[0],
-                law.friction_coefficient(speeds[1]) * pressed[1],
+    let mut friction = [zero; 2];
+    if law.has_friction {
+        let pressed = [normal[0].abs(), normal[1].abs()];
+        let mut speeds = [p.surface.sliding_speed, q.surface.sliding_speed];
+        let slow = speeds[0].abs().min(speeds[1].abs()).less_than(law.fast_sliding());
+        if slow.any() {
+            let radius = segment.wall.contact_radius;
+            let along = |[n_u, n_v]: [L; 2], [u, v]: [L; 2]| n_u.mul_add(v, -(n_v * u));
+            let free = |point: &Point<L>, moved: [L; 2]| {
+                let turned = compliance.twist_at(point.place.at, load_torque);
+                let way = turned.mul_add(radius, along(point.surface.normal, moved));
+                point.surface.sliding_speed - speed * way
+            };
+            let twisted = |at: L, by: L| compliance.twist_at(at, [one - by, by]) * radius * radius;
+            let response = |lateral: L, twist: L| {
+                speed * twist.mul_add(law.torque_share, lateral * law.tangential_share)
+            };
+            let cross = response(between, twisted(p.place.at, q.place.at));
+            let responses = [
+                [response(own[0], twisted(p.place.at, p.place.at)) * pressed[0], cross * pressed[1]],
+                [cross * pressed[0], response(own[1], twisted(q.place.at, q.place.at)) * pressed[1]],
             ];
+            let opposed = law.opposed_sliding_speeds([free(&p, moved_p), free(&q, moved_q)], responses);
+            for (speed, opposed) in speeds.iter_mut().zip(opposed) {
+                *speed = L::select(slow, opposed, *speed);
+            }
         }
-        segment.add(law, &p, normal[0], friction[0], force);
-        segment.add(law, &q, normal[1], friction[1], force);
-        if is_last {
-            return true;
-        }
-        (stretch, is_last) = (second, true);
+        friction = [
+            law.friction_coefficient(speeds[0]) * pressed[0],
+            law.friction_coefficient(speeds[1]) * pressed[1],
+        ];
     }
+    segment.add(law, &p, normal[0], friction[0], force);
+    segment.add(law, &q, normal[1], friction[1], force);
+    true
 }
 
 impl<L: Lane> ContactSegment<L> {
-    /// The stretches in contact, the second of them empty in most cases; `None` if no lane touches.
+    /// The penetration of an element; `None` if no lane touches.
     #[inline(always)]
-    fn contact(&self, planes: &[Plane<L>; 2]) -> Option<(Stretch<L>, Stretch<L>)> {
+    pub(super) fn pressed(&self, planes: &[Plane<L>; 2]) -> Option<Pressed<L>> {
+        let Contact { gap, first, second } = self.contact(planes)?;
+        let (zero, half, one) = (L::splat(0.0), L::splat(0.5), L::splat(1.0));
+        let (mut moments, mut square) = gap.moments(&first);
+        let mut share = first.length();
+        if second.is_anywhere() {
+            let (others, others_square) = gap.moments(&second);
+            let [of_0, of_1, of_2, of_3] = others;
+            // About the upper end of the first.
+            let shift = second.from - first.from;
+            let twice = shift.mul_add(of_0, of_1);
+            let thrice = shift.mul_add(twice + of_1, of_2);
+            moments[0] = moments[0] + of_0;
+            moments[1] = moments[1] + twice;
+            moments[2] = moments[2] + thrice;
+            moments[3] = moments[3] + shift.mul_add(thrice + shift.mul_add(of_1, of_2 + of_2), of_3);
+            square = square + others_square;
+            share = share + second.length();
+        }
+        let touches = moments[0].greater_than(zero);
+        let depth = L::select(touches, moments[0], zero);
+        let per_depth = one / L::select(touches, depth, one);
+        let [mean, second_moment, third_moment] = [1, 2, 3].map(|k| moments[k] * per_depth);
+        let variance = (second_moment - mean * mean).max(zero);
+        let third = third_moment - mean * (L::splat(3.0) * second_moment - (mean + mean) * mean);
+        let deviation = variance.sqrt();
+        let cube = variance * deviation;
+        let is_wide = cube.greater_than(zero);
+        let skew = L::select(is_wide, half * third, zero) / L::select(is_wide, cube, one);
+        let root = skew.mul_add(skew, one).sqrt();
+        let at = |side: L| (first.from + deviation.mul_add(skew + side, mean)).max(zero).min(one);
+        let lean = half * skew / root;
+        Some(Pressed {
+            places: [self.place(at(-root)), self.place(at(root))],
+            parts: [half + lean, half - lean],
+            depth,
+            rms: square.max(zero).sqrt(),
+            share: L::select(touches, share, zero),
+            middle: L::select(touches, first.from + mean, half),
+        })
+    }
+
+    /// The parts in the wall; `None` if no lane touches.
+    #[inline(always)]
+    fn contact(&self, planes: &[Plane<L>; 2]) -> Option<Contact<L>> {
         let Reach { may_touch, whole } = self.reach(planes);
         if !may_touch.any() {
             return None;
         }
+        let gap = self.gap(planes);
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         // A collar on its low side touches with the whole of most elements: no roots are taken there.
         if !(may_touch & !whole).any() {
-            return Some((
-                Stretch { from: zero, to: L::select(whole, one, zero) },
-                Stretch { from: one, to: one },
-            ));
+            let first = Stretch { from: zero, to: L::select(whole, one, zero) };
+            return Some(Contact { gap, first, second: Stretch { from: one, to: one } });
         }
-        let (mut first, mut second) = self.stretches(planes);
+        let (mut first, mut second) = gap.stretches();
         first.from = L::select(whole, zero, first.from);
         first.to = L::select(whole, one, first.to);
         second.from = L::select(whole, one, second.from);
-        first.is_anywhere().then_some((first, second))
+        first.is_anywhere().then_some(Contact { gap, first, second })
     }
 
     /// False only if no lane touches: a look without roots.
@@ -272,61 +331,23 @@ impl<L: Lane> ContactSegment<L> {
         [[in_u[0], in_v[0]], [middle(*in_u), middle(*in_v)], [in_u[2], in_v[2]]]
     }
 
-    /// The parts of the element on which the parabola of the gap is positive: one, or the two outer ones if the gap closes at both ends only; of one
-    /// alone the second is empty.
+    /// The gap along the element.
     #[inline(always)]
-    pub(super) fn stretches(&self, planes: &[Plane<L>; 2]) -> (Stretch<L>, Stretch<L>) {
-        let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
+    pub(super) fn gap(&self, planes: &[Plane<L>; 2]) -> Gap<L> {
+        let two = L::splat(2.0);
         let gap = |[u, v]: [L; 2]| u.mul_add(u, v * v).sqrt() - self.wall.clearance;
-        let [upper, middle, lower] = self.at_ends_and_middle(planes);
-        let (upper, middle, lower) = (gap(upper), gap(middle), gap(lower));
-        // upper + b x + c x^2
-        let c = two * (upper + lower - two * middle);
-        let b = lower - upper - c;
-        let discriminant = b * b - L::splat(4.0) * c * upper;
-        let crosses = discriminant.greater_than(zero);
-        let root = discriminant.max(zero).sqrt();
-        // The roots without the difference of what is nearly equal: downwards the gap has the slope -root, upwards +root.
-        let sum = b.abs() + root;
-        let quotient = |a: L, b: L| {
-            let is_zero = !(b.less_than(zero) | b.greater_than(zero));
-            a / L::select(is_zero, one, b)
-        };
-        let (near, far) = (quotient(two * upper, sum), quotient(sum, two * c));
-        let falls = b.less_than(zero);
-        let (down, up) = (L::select(falls, near, -far), L::select(falls, far, -near));
-        let clamped = |x: L| x.max(zero).min(one);
-        let (from_top, to_bottom) = (upper.greater_than(zero), lower.greater_than(zero));
-        // Its extreme lies between the ends: a minimum, or a maximum.
-        let has_minimum = falls & (-b).less_than(two * c);
-        let has_maximum = b.greater_than(zero) & b.less_than(-(two * c));
-        // Both ends in the wall: whole, unless the gap opens between them. One end: up to the crossing. None: between the crossings, if it closes there.
-        let dips = from_top & to_bottom & crosses & has_minimum;
-        let between = !from_top & !to_bottom & crosses & has_maximum;
-        let touches = from_top | to_bottom | between;
-        let ends_inside = dips | !to_bottom;
-        let first = Stretch {
-            from: L::select(touches & !from_top, clamped(up), zero),
-            to: L::select(touches, L::select(ends_inside, clamped(down), one), zero),
-        };
-        let second = Stretch { from: L::select(dips, clamped(up), one), to: one };
-        (first, second)
+        let [upper, middle, lower] = self.at_ends_and_middle(planes).map(gap);
+        let bend = two * (upper + lower - two * middle);
+        Gap { upper, lower, rise: lower - upper - bend, bend }
     }
 
-    /// Interpolation at a place, 0 at the upper end to 1 at the lower one: the shape functions of a Timoshenko beam without load (Friedman and Kosmatka
-    /// 1993).
+    /// Interpolation at a place, 0 at the upper end to 1 at the lower one: the parabola through both ends and the middle of a Timoshenko beam without load
+    /// (Friedman and Kosmatka 1993), on which its shear parameter has no influence.
     #[inline(always)]
     pub(super) fn place(&self, at: L) -> Place<L> {
-        let (one, half) = (L::splat(1.0), L::splat(0.5));
-        let (shear, bending) = (self.shear_share, one - self.shear_share);
-        let rest = one - at;
-        let (square, product) = (at * at, at * rest);
-        let lower = bending * square * (L::splat(3.0) - at - at) + shear * at;
-        // x (1 - x)^2 and x^2 (x - 1), less and plus half of x (1 - x) for the part that shears.
-        let sheared = half * shear * product;
-        let turn_upper = self.length * (bending * product).mul_add(rest, sheared);
-        let turn_lower = -(self.length * (bending * product).mul_add(at, sheared));
-        Place { at, shape: [one - lower, turn_upper, lower, turn_lower] }
+        let rest = L::splat(1.0) - at;
+        let turn = L::splat(0.5) * self.length * (at * rest);
+        Place { at, shape: [rest, turn, at, -turn] }
     }
 
     /// Motion at a place.
@@ -335,43 +356,25 @@ impl<L: Lane> ContactSegment<L> {
         self.place(at).motion(motion)
     }
 
-    /// The Gauss points of a stretch.
-    #[inline(always)]
-    pub(super) fn gauss_points(&self, stretch: &Stretch<L>) -> [Place<L>; 2] {
-        let length = stretch.to - stretch.from;
-        let [upper, lower] = GAUSS;
-        [
-            self.place(length.mul_add(L::splat(upper), stretch.from)),
-            self.place(length.mul_add(L::splat(lower), stretch.from)),
-        ]
-    }
-
-    /// The wall as each Gauss point of a stretch meets it, with half of the stretch's length.
-    #[inline(always)]
-    pub(super) fn wall_of_a_point(&self, stretch: &Stretch<L>) -> ContactNode<L> {
-        let share = L::splat(0.5) * (stretch.to - stretch.from);
-        ContactNode {
-            stiffness_share: share * self.wall.stiffness_share,
-            damping_share: share * self.wall.damping_share,
-            ..self.wall
-        }
-    }
-
     #[inline(always)]
     fn points(
         &self,
         law: &ContactParameters<L>,
-        stretch: &Stretch<L>,
+        pressed: &Pressed<L>,
         motion: &SegmentMotion<L>,
         rotation_speed: L,
         speed: L,
     ) -> [Point<L>; 2] {
-        let wall = self.wall_of_a_point(stretch);
-        let [upper, lower] = self.gauss_points(stretch);
-        [
-            Point::at(upper, law, &wall, motion, rotation_speed, speed),
-            Point::at(lower, law, &wall, motion, rotation_speed, speed),
-        ]
+        let stiffness = law.stiffness(pressed.rms) * self.wall.stiffness_share;
+        let damping = law.damping(pressed.rms) * self.wall.damping_share * pressed.share;
+        let (elastic, slope) = (stiffness * pressed.depth, damping.mul_add(speed, stiffness * pressed.share));
+        let touches = pressed.depth.greater_than(L::splat(0.0));
+        [0, 1].map(|k| {
+            let (place, part) = (pressed.places[k], pressed.parts[k]);
+            let surface = Surface::of(&self.wall, &place.motion(motion), rotation_speed);
+            let normal = law.limited(part * damping.mul_add(surface.penetration_rate, elastic));
+            Point { place, slope: part * slope, normal, surface: Surface { touches, ..surface } }
+        })
     }
 
     /// Adds the loads of a normal force and a friction at a point.
@@ -405,31 +408,76 @@ impl<L: Lane> ContactSegment<L> {
     }
 }
 
-impl<L: Lane> Point<L> {
+impl<L: Lane> Gap<L> {
+    /// Gap at a place \[m\].
     #[inline(always)]
-    fn at(
-        place: Place<L>,
-        law: &ContactParameters<L>,
-        wall: &ContactNode<L>,
-        motion: &SegmentMotion<L>,
-        rotation_speed: L,
-        speed: L,
-    ) -> Self {
-        let zero = L::splat(0.0);
-        let surface = Surface::of(wall, &place.motion(motion), rotation_speed);
-        let stiffness = law.stiffness(surface.penetration) * wall.stiffness_share;
-        let damping = law.damping(surface.penetration) * wall.damping_share;
-        let normal = law.limited(damping.mul_add(surface.penetration_rate, stiffness * surface.penetration));
-        Point {
-            place,
-            slope: L::select(surface.touches, damping.mul_add(speed, stiffness), zero),
-            normal: L::select(surface.touches, normal, zero),
-            surface,
-        }
+    fn at(&self, at: L) -> L {
+        self.bend.mul_add(at, self.rise).mul_add(at, self.upper)
+    }
+
+    /// Integrals of the gap over a stretch, with the powers 0 to 3 of the distance from its upper end as weights, and of its square.
+    #[inline(always)]
+    fn moments(&self, stretch: &Stretch<L>) -> ([L; 4], L) {
+        let length = stretch.length();
+        // p + q t + r t^2, t from 0 to 1 along the stretch.
+        let p = self.at(stretch.from);
+        let q = (self.bend + self.bend).mul_add(stretch.from, self.rise) * length;
+        let r = self.bend * length * length;
+        let over = |k: f64| {
+            r.mul_add(
+                L::splat(1.0 / (k + 3.0)),
+                q.mul_add(L::splat(1.0 / (k + 2.0)), p * L::splat(1.0 / (k + 1.0))),
+            )
+        };
+        let [m_0, m_1, m_2, m_3] = [over(0.0), over(1.0), over(2.0), over(3.0)];
+        let square = length * length;
+        let moments = [length * m_0, square * m_1, square * length * m_2, square * square * m_3];
+        (moments, length * r.mul_add(m_2, q.mul_add(m_1, p * m_0)))
+    }
+
+    /// The parts of the element on which the gap is positive: one, or the two outer ones if it closes at both ends only; of one alone the second is empty.
+    #[inline(always)]
+    fn stretches(&self) -> (Stretch<L>, Stretch<L>) {
+        let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
+        let Gap { upper, lower, rise: b, bend: c } = *self;
+        let discriminant = b * b - L::splat(4.0) * c * upper;
+        let crosses = discriminant.greater_than(zero);
+        let root = discriminant.max(zero).sqrt();
+        // The roots without the difference of what is nearly equal: downwards the gap has the slope -root, upwards +root.
+        let sum = b.abs() + root;
+        let quotient = |a: L, b: L| {
+            let is_zero = !(b.less_than(zero) | b.greater_than(zero));
+            a / L::select(is_zero, one, b)
+        };
+        let (near, far) = (quotient(two * upper, sum), quotient(sum, two * c));
+        let falls = b.less_than(zero);
+        let (down, up) = (L::select(falls, near, -far), L::select(falls, far, -near));
+        let clamped = |x: L| x.max(zero).min(one);
+        let (from_top, to_bottom) = (upper.greater_than(zero), lower.greater_than(zero));
+        // Its extreme lies between the ends: a minimum, or a maximum.
+        let has_minimum = falls & (-b).less_than(two * c);
+        let has_maximum = b.greater_than(zero) & b.less_than(-(two * c));
+        // Both ends in the wall: whole, unless the gap opens between them. One end: up to the crossing. None: between the crossings, if it closes there.
+        let dips = from_top & to_bottom & crosses & has_minimum;
+        let between = !from_top & !to_bottom & crosses & has_maximum;
+        let touches = from_top | to_bottom | between;
+        let ends_inside = dips | !to_bottom;
+        let first = Stretch {
+            from: L::select(touches & !from_top, clamped(up), zero),
+            to: L::select(touches, L::select(ends_inside, clamped(down), one), zero),
+        };
+        let second = Stretch { from: L::select(dips, clamped(up), one), to: one };
+        (first, second)
     }
 }
 
 impl<L: Lane> Stretch<L> {
+    /// Length over that of the element.
+    #[inline(always)]
+    fn length(&self) -> L {
+        (self.to - self.from).max(L::splat(0.0))
+    }
+
     /// False if it is empty in all lanes.
     #[inline(always)]
     fn is_anywhere(&self) -> bool {
@@ -454,51 +502,22 @@ impl<L: Lane> Place<L> {
 impl ContactSegment<f64> {
     /// Energy \[J\] that the wall stores along the element.
     pub fn potential_energy(&self, law: &ContactParameters<f64>, planes: &[Plane<f64>; 2]) -> f64 {
-        self.in_contact(planes)
-            .map(|(place, wall)| {
-                let [u, v] = planes.each_ref().map(|plane| dot(&place.shape, plane));
-                wall.stiffness_share * law.potential_energy(u.hypot(v) - wall.clearance)
-            })
-            .sum()
+        let rms = self.pressed(planes).map_or(0.0, |pressed| pressed.rms);
+        self.wall.stiffness_share * law.potential_energy(rms)
     }
 
-    /// The Gauss points of all stretches in contact, with the wall as each meets it.
-    pub(super) fn in_contact(
+    /// Gauss points of order three on the parts in the wall, with their weights.
+    pub(super) fn points_in_the_wall(
         &self,
         planes: &[Plane<f64>; 2],
-    ) -> impl Iterator<Item = (Place<f64>, ContactNode<f64>)> + use<> {
-        let segment = *self;
-        self.stretches_in_contact(planes).flat_map(move |stretch| segment.points_of(&stretch))
-    }
-
-    /// The stretches in contact.
-    pub(super) fn stretches_in_contact(
-        &self,
-        planes: &[Plane<f64>; 2],
-    ) -> impl Iterator<Item = Stretch<f64>> + use<> {
+    ) -> impl Iterator<Item = (Place<f64>, f64)> + use<> {
         let none = Stretch { from: 0.0, to: 0.0 };
-        let (first, second) = self.contact(planes).unwrap_or((none, none));
-        [first, second].into_iter().filter(|stretch| stretch.from < stretch.to)
-    }
-
-    /// The Gauss points of a stretch, with the wall as each meets it.
-    pub(super) fn points_of(&self, stretch: &Stretch<f64>) -> [(Place<f64>, ContactNode<f64>); 2] {
-        let wall = self.wall_of_a_point(stretch);
-        self.gauss_points(stretch).map(|place| (place, wall))
-    }
-
-    /// Derivatives of both ends of a stretch by the gaps at the upper end, in the middle and at the lower end \[1/m\]; zero at an end of the element.
-    pub(super) fn ends_by_gaps(&self, planes: &[Plane<f64>; 2], stretch: &Stretch<f64>) -> [[f64; 3]; 2] {
-        let [upper, middle, lower] =
-            self.at_ends_and_middle(planes).map(|[u, v]| u.hypot(v) - self.wall.clearance);
-        let c = 2.0 * (upper + lower - 2.0 * middle);
-        let b = lower - upper - c;
-        [stretch.from, stretch.to].map(|x| {
-            let slope = b + 2.0 * c * x;
-            if x <= 0.0 || x >= 1.0 || slope == 0.0 {
-                return [0.0; 3];
-            }
-            [1.0 - 3.0 * x + 2.0 * x * x, 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)].map(|by| -by / slope)
+        let stretches = self.contact(planes).map_or([none; 2], |contact| [contact.first, contact.second]);
+        let segment = *self;
+        stretches.into_iter().filter(|stretch| stretch.from < stretch.to).flat_map(move |stretch| {
+            let length = stretch.length();
+            THREE_POINTS
+                .map(|(at, weight)| (segment.place(length.mul_add(at, stretch.from)), weight * length))
         })
     }
 
@@ -515,7 +534,12 @@ impl ContactSegment<f64> {
 
     /// The Gauss points of the whole element, with the wall as each meets it.
     pub(super) fn whole(&self) -> [(Place<f64>, ContactNode<f64>); 2] {
-        self.points_of(&Stretch { from: 0.0, to: 1.0 })
+        let half = ContactNode {
+            stiffness_share: 0.5 * self.wall.stiffness_share,
+            damping_share: 0.5 * self.wall.damping_share,
+            ..self.wall
+        };
+        GAUSS.map(|at| (self.place(at), half))
     }
 }
 
@@ -537,13 +561,6 @@ impl<L: Lane> SegmentForce<L> {
     pub fn load(&self, plane: usize) -> Plane<L> {
         let (normal, friction) = (&self.normal[plane], &self.friction[plane]);
         [normal[0] + friction[0], normal[1] + friction[1], normal[2] + friction[2], normal[3] + friction[3]]
-    }
-
-    #[inline(always)]
-    fn set_middle(&mut self, stretch: &Stretch<L>) {
-        let touches = stretch.from.less_than(stretch.to);
-        let middle = L::splat(0.5) * (stretch.from + stretch.to);
-        self.middle = L::select(touches, middle, L::splat(0.5));
     }
 }
 
@@ -577,10 +594,9 @@ pub fn dot<L: Lane>(a: &Plane<L>, b: &Plane<L>) -> L {
     halves[0] + halves[1]
 }
 
-#[inline(always)]
-fn difference<L: Lane>(a: &Plane<L>, b: &Plane<L>) -> Plane<L> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
-}
-
 /// Gauss points of order two on \[0, 1\]: (1 -+ 1/sqrt 3) / 2.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// Gauss points of order three on \[0, 1\] with their weights: (1 -+ sqrt(3/5)) / 2 and the middle.
+const THREE_POINTS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];

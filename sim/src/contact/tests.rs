@@ -684,7 +684,6 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
 /// A joint of 0.3 m in a hole that leaves it 27 mm.
 const SEGMENT: ContactSegment<f64> = ContactSegment {
     length: 0.3,
-    shear_share: 0.4,
     wall: ContactNode { clearance: 0.027, contact_radius: 0.081, stiffness_share: 0.6, damping_share: 0.6 },
 };
 
@@ -706,18 +705,53 @@ fn motion_of(values: &ElementVector, rates: &ElementVector) -> SegmentMotion<f64
 }
 
 #[test]
-fn an_element_deflects_on_the_wall_as_its_beam_does() {
+fn an_element_deflects_on_the_wall_as_its_beam_does_at_its_ends_and_in_the_middle() {
     for a in [0.0, 0.3, 40.0] {
-        let segment = ContactSegment { shear_share: a / (1.0 + a), ..SEGMENT };
-        for at in [0.0, 0.2, 0.5, 0.9, 1.0] {
-            let wanted = Shape::at(at, segment.length, a).deflection;
-            let found = segment.place(at).shape;
+        for at in [0.0, 0.5, 1.0] {
+            let wanted = Shape::at(at, SEGMENT.length, a).deflection;
+            let found = SEGMENT.place(at).shape;
             assert!(
                 found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-15),
                 "{a} {at}"
             );
         }
     }
+}
+
+#[test]
+fn loads_are_derivatives_of_the_energy_in_the_wall_whatever_part_of_an_element_is_in_it() {
+    let clearance = SEGMENT.wall.clearance;
+    let mut next = numbers();
+    let mut parts = [0; 4];
+    for _ in 0..3000 {
+        let size = 1e-4;
+        let mut values = rigid(clearance + size * next(), clearance + size * next());
+        (values[THETA_Y], values[DOFS + THETA_Y]) =
+            (values[THETA_Y] + 20.0 * size * next(), values[DOFS + THETA_Y] + 20.0 * size * next());
+        for sharpness in [1e14, 3e3] {
+            let law = parameters(&ContactLaw { stiffness_sharpness: sharpness, ..FRICTIONLESS });
+            let energy = |values: &ElementVector| SEGMENT.potential_energy(&law, &planes(values));
+            let Some(contact) = static_segment(&law, &SEGMENT, &values, 1.0) else { continue };
+            let [upper, _, lower] = [0.0, 0.5, 1.0].map(|at| {
+                let shape = SEGMENT.place(at).shape;
+                shape.iter().zip(planes(&values)[0]).map(|(shape, value)| shape * value).sum::<f64>()
+                    > clearance
+            });
+            parts[2 * usize::from(upper) + usize::from(lower)] += 1;
+            for dof in [U, THETA_Y, DOFS + U, DOFS + THETA_Y] {
+                let unit = ElementVector::from_fn(|i, _| if i == dof { 1e-9 } else { 0.0 });
+                let work = (energy(&(values - unit)) - energy(&(values + unit))) / 2e-9;
+                // Of second order in the step, and where contact begins or parts merge of a lower one.
+                assert!(
+                    (work - contact.force[dof]).abs() < 1e-5 * (1.0 + contact.force.norm()),
+                    "{dof}: {work} against {}",
+                    contact.force[dof]
+                );
+            }
+            assert!((contact.tangent - contact.tangent.transpose()).norm() < 1e-12 * contact.tangent.norm());
+        }
+    }
+    assert!(parts.iter().all(|&count| count > 100), "{parts:?}");
 }
 
 #[test]
@@ -771,10 +805,16 @@ fn contact_of_an_element_grows_from_zero_wherever_it_begins() {
         values
     };
     let roll = |by: f64| rigid(clearance + by, clearance - 1e-4 + by);
+    // Hollow: from both ends, which merge in the middle.
+    let hollow = |by: f64| {
+        let mut values = rigid(clearance + by, clearance + 2e-5 + by);
+        (values[THETA_Y], values[DOFS + THETA_Y]) = (-1e-3, 1e-3);
+        values
+    };
     let loads = |values: &ElementVector| {
         static_segment(&law, &SEGMENT, values, 1.0).map_or(ElementVector::zeros(), |contact| contact.force)
     };
-    for motion in [&bulge as &dyn Fn(f64) -> ElementVector, &roll] {
+    for motion in [&bulge as &dyn Fn(f64) -> ElementVector, &roll, &hollow] {
         // From off the wall to whole contact: no step of the loads is larger than the whole stiffness allows.
         let (step, most) = (1e-8, 1.1 * 1e7 * SEGMENT.wall.stiffness_share);
         let mut before = loads(&motion(-1.2e-4));
@@ -868,7 +908,6 @@ fn a_lane_has_the_bits_of_an_element_alone() {
     let wide = |value: fn(&ContactSegment<f64>) -> f64| Four::splat(value(&SEGMENT));
     let segment = ContactSegment {
         length: wide(|segment| segment.length),
-        shear_share: wide(|segment| segment.shear_share),
         wall: ContactNode {
             clearance: wide(|segment| segment.wall.clearance),
             contact_radius: wide(|segment| segment.wall.contact_radius),

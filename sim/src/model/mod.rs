@@ -104,10 +104,9 @@ impl Model {
         let contact = &scenario.contact;
         let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| data.site());
         let segment = |(data, element): (&MeshElement, &StringElement)| {
-            let (length, shear) = (element.beam.length(), element.beam.shear_parameter());
+            let length = element.beam.length();
             ContactSegment {
                 length,
-                shear_share: shear / (1.0 + shear),
                 wall: ContactNode {
                     clearance: 0.5 * (scenario.well.hole_diameter - data.outer_diameter),
                     contact_radius: 0.5 * data.outer_diameter,

@@ -89,7 +89,6 @@ impl<const D: usize> Segments<D> {
             };
             ContactSegment {
                 length: lanes(|segment| segment.length, 1.0),
-                shear_share: lanes(|segment| segment.shear_share, 0.0),
                 wall: ContactNode {
                     clearance: lanes(|segment| segment.wall.clearance, f64::INFINITY),
                     contact_radius: lanes(|segment| segment.wall.contact_radius, 0.0),

@@ -206,11 +206,13 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             "error of a lateral displacement: {:.1e} of the motion ({:.1e} m), estimated, as long as histories do not part",
             transient.error_estimate.relative, transient.error_estimate.displacement
         )?;
-        if let Some(ResultErrors { time, mesh, spread, sensitivity, .. }) = &computed.errors {
+        if let Some(errors) = &computed.errors {
+            let ResultErrors { time, mesh, sampling, spread, sensitivity, .. } = errors;
+            writeln!(text, "{errors}")?;
             if let Some(sensitivity) = sensitivity {
                 writeln!(text, "{sensitivity}")?;
             }
-            writeln!(text, "{time}\n{mesh}\n{spread}")?;
+            writeln!(text, "{time}\n{mesh}\n{sampling}\n{spread}")?;
         }
         if let Some(starts) = computed.starts.as_ref().filter(|starts| !starts.differ) {
             writeln!(text, "{starts}")?;

@@ -1,12 +1,13 @@
 //! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and what rests on it converges.
 
 use drillsweep_scenario::{
-    Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, SurveyStation, TimeStepping,
-    TimeWindow, UnbalanceMass, WallLaw, preset,
+    Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, StartFriction, SurveyStation,
+    TimeStepping, TimeWindow, UnbalanceMass, WallLaw, preset,
 };
 use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{GRAVITY, Model};
+use drillsweep_sim::modes::Receptance;
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
@@ -205,9 +206,14 @@ fn pipe_on_a_wall_by_length_converges_with_the_fourth_power_of_the_elements() {
 /// on the wall. Damping has taken what is not the mass' doing before the window begins. The wall has no damper: as (11) has it, a damper begins
 /// with half its force at once where a node arrives, which leaves a scatter of half a per cent that falls with the mesh by the first order only.
 fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
+    orbits_of(&turning_pipe(elements, 4.0))
+}
+
+/// The pipe with a mass \[kg\] off its axis.
+fn turning_pipe(elements: u32, mass: f64) -> Scenario {
     let mut scenario = pipe_on_the_low_side(WallLaw::PerLength, 2e5, elements);
     scenario.string.unbalance =
-        vec![UnbalanceMass { measured_depth: 6.0, mass: 4.0, radius: 0.05, phase_deg: 0.0 }];
+        vec![UnbalanceMass { measured_depth: 6.0, mass, radius: 0.05, phase_deg: 0.0 }];
     scenario.operation.rotation_speed_rpm = 120.0;
     scenario.damping = RayleighDamping { mass_proportional: 6.0, stiffness_proportional: 3e-5 };
     scenario.contact.damping_per_length = Some(0.0);
@@ -217,7 +223,11 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
     scenario.recording.nodes = [4.0, 10.0, 20.0].map(NodeChoice::Depth).to_vec();
     scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));
     validate(&scenario).expect("valid");
-    let model = Model::new(&scenario).expect("has a model");
+    scenario
+}
+
+fn orbits_of(scenario: &Scenario) -> Vec<f64> {
+    let model = Model::new(scenario).expect("has a model");
     let equilibrium = rest(&model);
     let Ok(Outcome::Finished(records)) =
         Transient::new(&model, &equilibrium).expect("sets up").run(&Control::new())
@@ -230,6 +240,22 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
         orbit.orbit_radius_rms
     };
     records.histories.iter().map(size).collect()
+}
+
+#[test]
+fn small_orbits_are_those_of_the_linear_response_to_the_unbalance() {
+    // A tenth of the mass, so that the string stays on the wall where it rests.
+    let mut scenario = turning_pipe(60, 0.4);
+    scenario.statics.friction = StartFriction::Sliding;
+    let model = Model::new(&scenario).expect("has a model");
+    let response = Receptance::about(&model, &rest(&model), 2.0)
+        .expect("no resonance")
+        .to_unbalance(&model, &rest(&model));
+    for (depth, in_time) in [4.0, 10.0, 20.0].into_iter().zip(orbits_of(&scenario)) {
+        let [u, v, ..] = response[model.mesh.nearest_node(depth)];
+        let linear = (0.5 * (u.norm_sqr() + v.norm_sqr())).sqrt();
+        assert!((linear / in_time - 1.0).abs() < 0.02, "{depth} m: {linear} m, in time {in_time} m");
+    }
 }
 
 #[test]

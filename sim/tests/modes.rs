@@ -11,8 +11,8 @@ use drillsweep_sim::effect::active_effects;
 use drillsweep_sim::linalg::BlockTridiagonal;
 use drillsweep_sim::model::{Model, add_element_matrix};
 use drillsweep_sim::modes::{
-    Completeness, InstabilityKind, Mode, ModeKind, ModeSearch, Modes, Pencil, Stability, modes, modes_of,
-    static_stability,
+    Completeness, InstabilityKind, Mode, ModeKind, ModeSearch, Modes, Pencil, Receptance, Stability, modes,
+    modes_of, static_stability,
 };
 use drillsweep_sim::statics::Equilibrium;
 use nalgebra::DMatrix;
@@ -301,6 +301,40 @@ fn without_falling_friction_torsion_does_not_grow() {
     assert!(grows(&scenario));
     scenario.effects.set(Effect::FrictionTorque, Switch::Off);
     assert!(!grows(&scenario), "nor without friction's torque");
+}
+
+#[test]
+fn twist_of_a_driven_shaft_is_a_standing_wave() {
+    let mut scenario = preset("hard/vertical").expect("shipped preset");
+    scenario.damping.mass_proportional = 0.0;
+    scenario.damping.stiffness_proportional = 0.0;
+    scenario.contact.static_friction = 0.0;
+    scenario.contact.dynamic_friction = 0.0;
+    scenario.effects.set(Effect::Torsion, Switch::On);
+    let mut pipe = scenario.string.sections[0].clone();
+    (pipe.length, pipe.count, pipe.tool_joint) = (200.0, 1, None);
+    scenario.string.sections = vec![pipe];
+    scenario.string.gauges.clear();
+    scenario.string.unbalance.clear();
+    scenario.recording.nodes.clear();
+    let model = Model::new(&scenario).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("rests");
+    let material = &scenario.string.material;
+    let speed = (material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio)) / material.density).sqrt();
+    let length = *model.mesh.depths().last().expect("has nodes");
+    for hz in [0.5, 3.0, 9.0] {
+        let response = Receptance::about(&model, &equilibrium, hz).expect("no resonance").to_twist_of_bit();
+        let number = TAU * hz / speed;
+        for (depth, node) in model.mesh.depths().iter().zip(&response) {
+            let exact = (number * depth).sin() / (number * length).sin();
+            // The mesh's error is of the fourth power of number times element, next to a resonance more.
+            assert!(
+                (node[5].re - exact).abs() < 1e-3 && node[5].im.abs() < 1e-6,
+                "{hz} Hz at {depth} m: {} {exact}",
+                node[5]
+            );
+        }
+    }
 }
 
 /// The frequencies \[Hz\] of a pipe that hangs clamped, by Ritz' method with x^2 times Legendre polynomials: bending stiffness and weight,

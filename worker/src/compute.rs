@@ -197,8 +197,14 @@ impl Computed {
             row.put(&UNDAMPED_TORSION_HZ, torsion.highest_hz);
             row.put(&UNDAMPED_TORSION_GROWTH, torsion.highest_growth);
         }
-        if let Some(ResultErrors { time, mesh, spread, sensitivity, histories_part }) = &self.errors {
+        if let Some(errors) = &self.errors {
+            let ResultErrors { time, mesh, sampling, promised, whole, spread, sensitivity, histories_part } =
+                errors;
+            row.put(&PROMISED_ERROR, *promised);
+            row.put(&WHOLE_ERROR, *whole);
             row.put(&TIME_ERROR, time.unconditional());
+            row.put(&MESH_ERROR, mesh.estimate().and_then(|errors| errors.orbit_size));
+            row.put(&SAMPLING_ERROR, sampling.orbit_size());
             if let Some(sensitivity) = sensitivity {
                 row.put(&AMPLIFICATION, sensitivity.amplification);
                 row.put(&AMPLIFICATION_GROWTH, sensitivity.growth_rate);
@@ -338,8 +344,10 @@ pub fn compute_from(
     let undamped_torsion = records.is_some().then(|| UndampedTorsion::about(&model, &equilibrium)).flatten();
 
     let errors = transient.as_ref().map(|transient| {
-        let mesh = MeshEstimate::of(&model, &equilibrium);
-        ResultErrors::new(transient, &ensemble, sensitivity.clone(), undamped_torsion.as_ref(), mesh)
+        let mesh = MeshEstimate::with_orbits(&model, &equilibrium, &transient.orbits);
+        let promised = scenario.accuracy.promise().map(|promise| promise.orbit_size);
+        let torsion = undamped_torsion.as_ref();
+        ResultErrors::new(transient, &ensemble, sensitivity.clone(), torsion, mesh, promised)
     });
     let mut warnings: Vec<String> = left.iter().filter_map(Stability::warning).collect();
     warnings.extend(starts.iter().filter(|starts| starts.differ).map(StartsCompared::to_string));

@@ -10,12 +10,14 @@ mod accuracy;
 mod arnoldi;
 mod count;
 mod pencil;
+mod receptance;
 mod shifted;
 mod stability;
 mod torsion;
 mod walk;
 
 pub use pencil::Pencil;
+pub use receptance::{Receptance, Response};
 pub use stability::{Instability, InstabilityKind, Stability, stability, static_stability};
 pub use torsion::{TorsionalMode, UndampedTorsion, growing_torsion, torsional_modes};
 

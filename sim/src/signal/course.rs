@@ -82,6 +82,8 @@ pub struct Agreement {
     pub since: usize,
     /// The last.
     pub window: Range<usize>,
+    /// The largest relative difference between orbit sizes of any two of them.
+    pub differ: f64,
 }
 
 /// Batch means over the second half of a run.
@@ -183,7 +185,14 @@ impl Course {
             };
             let mut all = first.iter().zip(&second).zip(&last);
             let has_settled = all.all(|((a, b), c)| agree(a, b) && agree(b, c) && agree(a, c));
-            has_settled.then(|| Agreement { since, window: windows[2].clone() })
+            let difference =
+                |a: &Statistic, b: &Statistic| (a.value - b.value).abs() / a.scale().max(b.scale());
+            let orbit_sizes = (0..2 * self.orbits.len()).step_by(2);
+            let differ = orbit_sizes.fold(0.0, |most, place| {
+                let (a, b, c) = (&first[place], &second[place], &last[place]);
+                f64::max(most, difference(a, b).max(difference(b, c)).max(difference(a, c)))
+            });
+            has_settled.then(|| Agreement { since, window: windows[2].clone(), differ })
         })
     }
 
@@ -479,7 +488,8 @@ mod tests {
     fn beating_lines_settle_at_once_to_their_own_statistics() {
         let course = course(60.0, beating, |time| 2.0 + 0.5 * (TAU * 2.16 * time).sin());
         let (end, found) = settles(&course, &ALLOWED).unwrap();
-        assert_eq!((end, found), (2000, Agreement { since: 0, window: 1000..2000 }));
+        assert_eq!((end, found.since, found.window.clone()), (2000, 0, 1000..2000));
+        assert!(found.differ < 1e-4, "{found:?}");
         let statistics = course.statistics(1000..2000, Window::Hann, &ALLOWED);
         let size = 1e-3_f64.hypot(4e-4);
         assert!((statistics[0].value / size - 1.0).abs() < 1e-4, "{statistics:?}");

@@ -1,4 +1,4 @@
-//! The three errors of a result side by side: what steps, mesh and the scene's own sensitivity leave open in the statistics that are read.
+//! Errors of a result side by side: parts of steps, mesh and sampling in the statistics that are read, and all of them together.
 
 use std::fmt;
 
@@ -9,9 +9,9 @@ use crate::modes::UndampedTorsion;
 use crate::study::mesh_estimate::MeshEstimate;
 use crate::study::sensitivity::Sensitivity;
 use crate::study::summary::{OrbitSummary, TransientSummary};
-use crate::transient::DISTURBANCE;
+use crate::transient::{DISTURBANCE, MotionRegime};
 
-/// What a result may be wrong by: as parts of the statistics of the recorded orbits, the worst node each.
+/// Errors of a result, relative to the statistics of the recorded orbits, the worst node each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ResultErrors {
@@ -19,6 +19,15 @@ pub struct ResultErrors {
     pub time: TimeError,
     /// Of the mesh.
     pub mesh: MeshEstimate,
+    /// Of the window: the run has not settled, or its statistics scatter.
+    #[serde(default)]
+    pub sampling: SamplingError,
+    /// Error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub promised: Option<f64>,
+    /// Error of orbit size by steps, mesh and sampling together; absent if one of them is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whole: Option<f64>,
     /// Between runs that start next to each other.
     pub spread: SpreadError,
     /// By how much the scenario amplifies a disturbance over the orbit window; absent where no twin was run.
@@ -51,6 +60,23 @@ pub enum TimeError {
         statistics: f64,
         /// The condition, in words.
         condition: String,
+    },
+    /// Not known.
+    Unknown {
+        /// Why, in words.
+        reason: String,
+    },
+}
+
+/// The error of orbit size by the window of the statistics.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(tag = "state", rename_all = "snake_case")]
+pub enum SamplingError {
+    /// Largest relative difference between the windows that agree of regular motion, half width of the confidence interval of irregular.
+    Estimated {
+        /// Relative error, the worst node.
+        orbit_size: f64,
     },
     /// Not known.
     Unknown {
@@ -95,9 +121,12 @@ pub struct OtherMember {
 /// related to the root mean square of all recorded orbits it is not, but misses nine runs more of 69.)
 const SHARE_OF_HISTORY: f64 = 0.2;
 
-/// Amplification that counts at least, and that is taken where none was measured. Most scenes stay below it over half a minute, those
-/// that hardly damp amplify by hundreds.
+/// Amplification that is taken if none was measured, and that counts at least of an ensemble from the start of the run. Most scenes stay below it over
+/// half a minute, those that hardly damp amplify by hundreds.
 const USUAL_AMPLIFICATION: f64 = 5.0;
+
+/// Amplification by a twin that counts at least: an error of a step is not taken to die out.
+const LEAST_AMPLIFICATION: f64 = 1.0;
 
 /// Largest residual of the energy ledger, as a fraction of its bound, of a run whose error is estimated: usual runs have less than a hundredth.
 const SOUND_RESIDUAL: f64 = 0.05;
@@ -106,17 +135,27 @@ const SOUND_RESIDUAL: f64 = 0.05;
 const LARGEST_ESTIMATE: f64 = 0.5;
 
 impl ResultErrors {
-    /// The errors of a run, given its ensemble, its twin, the torsion that friction feeds and the mesh's part.
+    /// The errors of a run, given its ensemble, its twin, the torsion that friction feeds, the mesh's part and the promise for orbit size.
     pub fn new(
         run: &TransientSummary,
         others: &[OtherMember],
         sensitivity: Option<Sensitivity>,
         torsion: Option<&UndampedTorsion>,
         mesh: MeshEstimate,
+        promised: Option<f64>,
     ) -> Self {
+        let time = TimeError::new(run, others, sensitivity.as_ref(), torsion);
+        let sampling = SamplingError::new(run);
+        let of_mesh = mesh.estimate().and_then(|errors| errors.orbit_size);
+        let whole = [time.unconditional(), of_mesh, sampling.orbit_size()]
+            .into_iter()
+            .try_fold(0.0, |sum, part| Some(sum + part?));
         Self {
-            time: TimeError::new(run, others, sensitivity.as_ref(), torsion),
+            time,
             mesh,
+            sampling,
+            promised,
+            whole,
             spread: SpreadError::new(run, others),
             histories_part: sensitivity.as_ref().is_some_and(|twin| twin.parted(&run.orbits).is_some()),
             sensitivity,
@@ -171,8 +210,10 @@ impl TimeError {
                 orbit.orbit_radius_rms
             ));
         }
+        let least =
+            if twin.is_some() && others.is_empty() { LEAST_AMPLIFICATION } else { USUAL_AMPLIFICATION };
         let amplified = run.orbits.iter().enumerate().map(|(node, orbit)| {
-            let amplification = (distance(node) / DISTURBANCE).max(USUAL_AMPLIFICATION);
+            let amplification = (distance(node) / DISTURBANCE).max(least);
             let error = SHARE_OF_HISTORY * amplification * run.error_estimate.displacement;
             (if error == 0.0 { 0.0 } else { error / orbit.orbit_radius_rms }, amplification)
         });
@@ -211,6 +252,45 @@ impl TimeError {
     }
 }
 
+impl SamplingError {
+    fn new(run: &TransientSummary) -> Self {
+        let settling = &run.settling;
+        let unknown = |reason: String| SamplingError::Unknown { reason };
+        let estimated = match settling.regime {
+            MotionRegime::Regular => settling.windows_differ,
+            MotionRegime::Irregular => {
+                let relative = run
+                    .orbits
+                    .iter()
+                    .filter_map(|orbit| Some(orbit.interval?.orbit_radius_rms / orbit.orbit_radius_rms));
+                relative.reduce(f64::max)
+            }
+            MotionRegime::NotSettled => return unknown("the motion has not settled".into()),
+            MotionRegime::Fixed => {
+                return unknown("the window is fixed: whether the motion has settled was not judged".into());
+            }
+        };
+        match estimated.filter(|error| error.is_finite()) {
+            Some(orbit_size) => SamplingError::Estimated { orbit_size },
+            None => unknown("no node moves".into()),
+        }
+    }
+
+    /// The estimate; absent if it is not known.
+    pub fn orbit_size(&self) -> Option<f64> {
+        match self {
+            SamplingError::Estimated { orbit_size } => Some(*orbit_size),
+            SamplingError::Unknown { .. } => None,
+        }
+    }
+}
+
+impl Default for SamplingError {
+    fn default() -> Self {
+        SamplingError::Unknown { reason: "it was not estimated".into() }
+    }
+}
+
 impl SpreadError {
     fn new(run: &TransientSummary, others: &[OtherMember]) -> Self {
         if others.is_empty() {
@@ -238,6 +318,45 @@ impl SpreadError {
         match self {
             SpreadError::Measured { orbit_size, .. } => Some(*orbit_size),
             SpreadError::Unknown { .. } => None,
+        }
+    }
+}
+
+/// One line: promised, stated, and the parts.
+impl fmt::Display for ResultErrors {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = |part: Option<f64>| match part {
+            Some(part) => format!("{:.2} %", 100.0 * part),
+            None => "not known".to_owned(),
+        };
+        write!(formatter, "error of orbit size: ")?;
+        if let Some(promised) = self.promised {
+            write!(formatter, "{} promised, ", percent(Some(promised)))?;
+        }
+        write!(
+            formatter,
+            "{} stated (steps {}, mesh {}, sampling {})",
+            percent(self.whole),
+            percent(self.time.unconditional()),
+            percent(self.mesh.estimate().and_then(|errors| errors.orbit_size)),
+            percent(self.sampling.orbit_size())
+        )?;
+        match (self.promised, self.whole) {
+            (Some(promised), Some(whole)) if whole > promised => write!(formatter, ": MORE than promised"),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for SamplingError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SamplingError::Estimated { orbit_size } => {
+                write!(formatter, "error of orbit size by sampling: {orbit_size:.1e}")
+            }
+            SamplingError::Unknown { reason } => {
+                write!(formatter, "error of orbit size by sampling: not known ({reason})")
+            }
         }
     }
 }
@@ -281,7 +400,8 @@ mod tests {
     use drillsweep_scenario::TimeWindow;
 
     use super::*;
-    use crate::transient::ErrorEstimate;
+    use crate::study::mesh_estimate::MeshErrors;
+    use crate::transient::{ErrorEstimate, OrbitInterval};
 
     /// A run with orbits of 1 mm and an error of the history of 10 um.
     fn run() -> TransientSummary {
@@ -340,6 +460,47 @@ mod tests {
             let told = TimeError::new(&run, &[], Some(&parted), None);
             assert!(matches!(told, TimeError::Unknown { .. }), "{told:?}");
         }
+    }
+
+    #[test]
+    fn the_whole_error_is_the_sum_of_parts_that_are_all_known() {
+        let mesh = |orbit_size| {
+            MeshEstimate::Estimated(MeshErrors {
+                mean_radius: None,
+                static_position: 0.0,
+                friction_coefficient: None,
+                orbit_size,
+            })
+        };
+        let twin = Sensitivity {
+            window: TimeWindow { from: 0.0, to: 1.0 },
+            amplification: Some(1.0),
+            growth_rate: None,
+            distances: vec![1e-6; 2],
+        };
+        let errors = |run: &TransientSummary, orbit_size| {
+            ResultErrors::new(run, &[], Some(twin.clone()), None, mesh(orbit_size), Some(0.02))
+        };
+        let mut settled = run();
+        (settled.settling.regime, settled.settling.windows_differ) = (MotionRegime::Regular, Some(0.003));
+        let whole = errors(&settled, Some(0.004));
+        // A fifth of 10 um in 1 mm.
+        assert!((whole.whole.unwrap() - (0.002 + 0.004 + 0.003)).abs() < 1e-12, "{whole:?}");
+        assert!(whole.to_string().contains("2.00 % promised, 0.90 % stated"), "{whole}");
+        assert!(!whole.to_string().contains("MORE"));
+        assert!(errors(&settled, Some(0.02)).to_string().ends_with("MORE than promised"));
+        assert_eq!(errors(&settled, None).whole, None);
+        for regime in [MotionRegime::Fixed, MotionRegime::NotSettled] {
+            let mut other = settled.clone();
+            other.settling.regime = regime;
+            assert_eq!(errors(&other, Some(0.004)).whole, None);
+        }
+        let mut scatters = settled.clone();
+        (scatters.settling.regime, scatters.settling.windows_differ) = (MotionRegime::Irregular, None);
+        for orbit in &mut scatters.orbits {
+            orbit.interval = Some(OrbitInterval { orbit_radius_rms: 5e-5, radius_deviation: 0.0 });
+        }
+        assert!((errors(&scatters, Some(0.0)).whole.unwrap() - 0.052).abs() < 1e-12);
     }
 
     #[test]

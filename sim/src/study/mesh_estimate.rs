@@ -1,18 +1,24 @@
-//! How much of a result is the mesh's, before anything runs: equilibria on meshes two and four times as fine.
+//! Part of the mesh in a result: equilibria on meshes two and four times as fine, and small motions about them.
 //!
-//! The equilibrium has the same elements, the same wall and the same hydraulics as the run in time and costs next to nothing beside it. What
-//! it loses to the mesh is no bound on what a run loses, but where the string does not rest where it should, no run in time is right.
+//! The equilibrium has the same elements, the same wall and the same hydraulics as the run in time and costs next to nothing beside it. The orbits of a run
+//! have two drives, the unbalance and torsion that friction feeds; their linear responses about the equilibrium show how much of an orbit each makes, and
+//! how much of that the mesh is off by.
 
 use std::fmt;
 
 use drillsweep_scenario::{NodeChoice, Scenario, WallLaw};
 use serde::{Deserialize, Serialize};
 
+use super::summary::OrbitSummary;
 use crate::beam::Shape;
 use crate::contact::{Plane, planes};
-use crate::freedom::{U, V};
+use crate::freedom::{DOFS, U, V};
 use crate::model::{Model, element_values};
+use crate::modes::{Receptance, Response, growing_torsion};
 use crate::statics::Equilibrium;
+
+/// Highest frequency of a torsional mode that drives lateral motion \[Hz\].
+const HIGHEST_DRIVE_HZ: f64 = 30.0;
 
 /// Strings of more elements are not refined: their equilibria take seconds.
 const MOST_ELEMENTS: usize = 1500;
@@ -42,11 +48,19 @@ pub struct MeshErrors {
     pub static_position: f64,
     /// C_f, mean over the string's length; absent without mud.
     pub friction_coefficient: Option<f64>,
+    /// Orbit size, the largest relative error of the recorded nodes; absent before a run, or if none moves.
+    #[serde(default)]
+    pub orbit_size: Option<f64>,
 }
 
 impl MeshEstimate {
     /// The estimate for a model about its equilibrium. It takes two more equilibria.
     pub fn of(model: &Model, equilibrium: &Equilibrium) -> Self {
+        Self::with_orbits(model, equilibrium, &[])
+    }
+
+    /// The same with the error of the `orbits` that a run about it has shown. Up to four responses more, on the own mesh and the finest.
+    pub fn with_orbits(model: &Model, equilibrium: &Equilibrium, orbits: &[OrbitSummary]) -> Self {
         let unknown = |reason: &str| MeshEstimate::Unknown { reason: reason.to_owned() };
         let touches = equilibrium.normal_force.iter().any(|&force| force > 0.0);
         if touches && model.scenario.contact.law == WallLaw::PerNode {
@@ -57,28 +71,39 @@ impl MeshEstimate {
         if model.elements.len() > MOST_ELEMENTS {
             return unknown("the string has too many elements to be meshed finer for an estimate");
         }
-        let own = Rest::of(model, equilibrium);
-        let [Some(half), Some(quarter)] = [0.5, 0.25].map(|factor| Rest::on_a_mesh(&model.scenario, factor))
+        let [Some((_, half)), Some((finest, at_rest))] =
+            [0.5, 0.25].map(|factor| on_a_mesh(&model.scenario, factor)).map(|found| {
+                found.map(|(model, equilibrium)| {
+                    let rest = Rest::of(&model, &equilibrium);
+                    ((model, equilibrium), rest)
+                })
+            })
         else {
             return unknown("no equilibrium was found on a finer mesh");
         };
+        let (own, quarter) = (Rest::of(model, equilibrium), at_rest);
+        let drives = (!orbits.is_empty()).then(|| Drives::of(model, equilibrium)).flatten();
+        let orbit_size = drives.and_then(|own| {
+            let finest = Drives::at(&finest.0, &finest.1, own.torsion_hz)?;
+            orbits.iter().filter_map(|orbit| own.error(&finest, orbit)).reduce(f64::max)
+        });
         let recorded = model.scenario.recording.nodes.iter().filter_map(|&choice| {
             let depth = match choice {
                 NodeChoice::Depth(depth) => depth,
                 NodeChoice::Node(_) => model.mesh.nodes[model.mesh.chosen_node(choice)?].measured_depth,
             };
             let radii = [&own, &half, &quarter].map(|rest| {
-                let [u, v] = rest.position_at(depth);
+                let [u, v] = rest.position.at(depth);
                 u.hypot(v)
             });
             (radii[2] > 0.0).then(|| error(radii, |a, b| (a - b).abs()) / radii[2])
         });
         let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let worst = own.position.iter().map(|&(depth, position)| {
-            error([position, half.position_at(depth), quarter.position_at(depth)], distance)
+        let worst = own.position.nodes.iter().map(|&(depth, position)| {
+            error([position, half.position.at(depth), quarter.position.at(depth)], distance)
         });
         let (mut friction_error, mut friction) = (0.0, 0.0);
-        for ((bottom, value), (top, _)) in own.friction.iter().zip(&own.position) {
+        for ((bottom, value), (top, _)) in own.friction.iter().zip(&own.position.nodes) {
             let middle = 0.5 * (top + bottom);
             if let (Some(half), Some(quarter)) = (half.friction_at(middle), quarter.friction_at(middle)) {
                 friction_error += (bottom - top) * error([*value, half, quarter], |a, b| (a - b).abs());
@@ -89,6 +114,7 @@ impl MeshEstimate {
             mean_radius: recorded.reduce(f64::max),
             static_position: worst.fold(0.0, f64::max) / (0.5 * model.scenario.well.hole_diameter),
             friction_coefficient: (friction > 0.0).then(|| friction_error / friction),
+            orbit_size,
         })
     }
 
@@ -113,6 +139,9 @@ impl fmt::Display for MeshEstimate {
                     "error of the equilibrium for its mesh, estimated: worst node {:.1e} of the hole's radius",
                     errors.static_position
                 )?;
+                if let Some(size) = errors.orbit_size {
+                    write!(formatter, ", orbits of recorded nodes {size:.1e}")?;
+                }
                 if let Some(radius) = errors.mean_radius {
                     write!(formatter, ", radius of recorded nodes {radius:.1e}")?;
                 }
@@ -133,54 +162,134 @@ fn error<T: Copy>([own, half, quarter]: [T; 3], distance: impl Fn(T, T) -> f64) 
     distance(own, quarter) + second / (order.exp2() - 1.0)
 }
 
-/// Where the string rests and what flows past it.
-struct Rest {
+fn on_a_mesh(scenario: &Scenario, factor: f64) -> Option<(Model, Equilibrium)> {
+    let mut finer = scenario.clone();
+    finer.mesh = finer.mesh.scaled(factor);
+    let model = Model::new(&finer).ok()?;
+    let equilibrium = Equilibrium::find(&model).ok()?;
+    Some((model, equilibrium))
+}
+
+/// Responses to the two drives of lateral motion about an equilibrium.
+struct Drives {
+    /// To the unbalance, at the speed of rotation; absent without one.
+    unbalance: Option<Amplitudes>,
+    /// To torsion that friction feeds, for one radian at the bit; absent if none grows.
+    torsion: Option<Amplitudes>,
+    /// Frequency of that torsion \[Hz\].
+    torsion_hz: Option<f64>,
+}
+
+impl Drives {
+    fn of(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
+        let growing = growing_torsion(model, equilibrium, HIGHEST_DRIVE_HZ);
+        let fastest = growing.iter().max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate));
+        Self::at(model, equilibrium, fastest.map(|mode| mode.frequency_hz))
+    }
+
+    /// With torsion at a given frequency \[Hz\]; `None` without any drive.
+    fn at(model: &Model, equilibrium: &Equilibrium, torsion_hz: Option<f64>) -> Option<Self> {
+        let rotation_hz = model.rotation_speed.abs() / std::f64::consts::TAU;
+        let unbalance = model.effects.unbalance.then(|| Receptance::about(model, equilibrium, rotation_hz));
+        let torsion = torsion_hz.map(|frequency| Receptance::about(model, equilibrium, frequency));
+        if unbalance.is_none() && torsion.is_none() {
+            return None;
+        }
+        Some(Self {
+            unbalance: unbalance
+                .flatten()
+                .map(|found| Amplitudes::of(model, &found.to_unbalance(model, equilibrium))),
+            torsion: torsion.flatten().map(|found| Amplitudes::of(model, &found.to_twist_of_bit())),
+            torsion_hz,
+        })
+    }
+
+    /// Relative error of the size of an orbit on this mesh, the finest being right: of what the unbalance makes of it, and of the rest, which torsion
+    /// makes if it grows; absent if neither response is known, or nothing moves.
+    fn error(&self, finest: &Drives, orbit: &OrbitSummary) -> Option<f64> {
+        let size = orbit.orbit_radius_rms;
+        let sizes = |of: fn(&Drives) -> Option<&Amplitudes>| {
+            let size_at = |drives| of(drives).map(|response| response.size_at(orbit.measured_depth));
+            Some((size_at(self)?, size_at(finest)?)).filter(|(_, finest)| *finest > 0.0)
+        };
+        let (unbalance, torsion) =
+            (sizes(|drives| drives.unbalance.as_ref()), sizes(|drives| drives.torsion.as_ref()));
+        let relative = |(own, finest): (f64, f64)| (own / finest - 1.0).abs();
+        let by_unbalance = unbalance.map_or(0.0, |(own, _)| own.min(size));
+        let by_torsion = (size * size - by_unbalance * by_unbalance).max(0.0).sqrt();
+        let rest = torsion.or(unbalance).map(relative)?;
+        (size > 0.0).then(|| (by_unbalance * unbalance.map_or(0.0, relative)).hypot(by_torsion * rest) / size)
+    }
+}
+
+/// Real and imaginary parts of the lateral amplitudes along a string.
+struct Amplitudes([Deflection; 2]);
+
+impl Amplitudes {
+    fn of(model: &Model, response: &Response) -> Self {
+        let part = |of: fn(&nalgebra::Complex<f64>) -> f64| {
+            let values: Vec<[f64; DOFS]> = response.iter().map(|node| node.each_ref().map(of)).collect();
+            Deflection::of(model, &values)
+        };
+        Self([part(|value| value.re), part(|value| value.im)])
+    }
+
+    /// Orbit size at a depth: root mean square distance from the mean position.
+    fn size_at(&self, depth: f64) -> f64 {
+        let square = |of: &Deflection| of.at(depth).iter().map(|value| 0.5 * value * value).sum::<f64>();
+        self.0.iter().map(square).sum::<f64>().sqrt()
+    }
+}
+
+/// Lateral displacements along a string.
+struct Deflection {
     /// Depth and (u, v) of the nodes \[m\].
-    position: Vec<(f64, [f64; 2])>,
+    nodes: Vec<(f64, [f64; 2])>,
     /// Shear parameters of the elements, with the deflections and slopes of their ends in the planes of u and v \[m, rad\].
     planes: Vec<(f64, [Plane<f64>; 2])>,
+}
+
+impl Deflection {
+    fn of(model: &Model, displacement: &[[f64; DOFS]]) -> Self {
+        let nodes = model.mesh.nodes.iter().zip(displacement);
+        let elements = model.elements.iter().enumerate();
+        Self {
+            nodes: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),
+            planes: elements
+                .map(|(e, element)| {
+                    (element.beam.shear_parameter(), planes(&element_values(displacement, e)))
+                })
+                .collect(),
+        }
+    }
+
+    /// (u, v) at a depth, between nodes as the beam deflects.
+    fn at(&self, depth: f64) -> [f64; 2] {
+        let below = self.nodes.partition_point(|(node, _)| *node < depth).clamp(1, self.nodes.len() - 1);
+        let (top, bottom) = (self.nodes[below - 1].0, self.nodes[below].0);
+        let place = ((depth - top) / (bottom - top)).clamp(0.0, 1.0);
+        let (shear_parameter, planes) = &self.planes[below - 1];
+        let shape = Shape::at(place, bottom - top, *shear_parameter).deflection;
+        planes.each_ref().map(|plane| shape.iter().zip(plane).map(|(shape, value)| shape * value).sum())
+    }
+}
+
+/// Position of the string at rest, and the flow past it.
+struct Rest {
+    position: Deflection,
     /// Depth of the lower end \[m\] and C_f of the elements; empty without mud.
     friction: Vec<(f64, f64)>,
 }
 
 impl Rest {
     fn of(model: &Model, equilibrium: &Equilibrium) -> Self {
-        let nodes = model.mesh.nodes.iter().zip(&equilibrium.displacement);
         let elements = model.mesh.elements.iter().zip(&equilibrium.flows);
         Self {
-            position: nodes.map(|(node, x)| (node.measured_depth, [x[U], x[V]])).collect(),
-            planes: model
-                .elements
-                .iter()
-                .enumerate()
-                .map(|(e, element)| {
-                    let values = element_values(&equilibrium.displacement, e);
-                    (element.beam.shear_parameter(), planes(&values))
-                })
-                .collect(),
+            position: Deflection::of(model, &equilibrium.displacement),
             friction: elements
                 .map(|(element, flow)| (element.top + element.length, flow.friction_coefficient))
                 .collect(),
         }
-    }
-
-    fn on_a_mesh(scenario: &Scenario, factor: f64) -> Option<Self> {
-        let mut finer = scenario.clone();
-        finer.mesh = finer.mesh.scaled(factor);
-        let model = Model::new(&finer).ok()?;
-        let equilibrium = Equilibrium::find(&model).ok()?;
-        Some(Self::of(&model, &equilibrium))
-    }
-
-    /// (u, v) at a depth, between nodes as the beam deflects.
-    fn position_at(&self, depth: f64) -> [f64; 2] {
-        let below =
-            self.position.partition_point(|(node, _)| *node < depth).clamp(1, self.position.len() - 1);
-        let (top, bottom) = (self.position[below - 1].0, self.position[below].0);
-        let place = ((depth - top) / (bottom - top)).clamp(0.0, 1.0);
-        let (shear_parameter, planes) = &self.planes[below - 1];
-        let shape = Shape::at(place, bottom - top, *shear_parameter).deflection;
-        planes.each_ref().map(|plane| shape.iter().zip(plane).map(|(shape, value)| shape * value).sum())
     }
 
     /// C_f of the element at a depth.

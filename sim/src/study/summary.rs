@@ -299,6 +299,7 @@ impl TransientSummary {
                 window: TimeWindow { from: 0.0, to: 1.0 },
                 weighting: Window::Rectangular,
                 base_frequencies_hz: Vec::new(),
+                windows_differ: None,
                 intervals: Vec::new(),
                 halves_differ: None,
                 growing_mode: None,

@@ -51,6 +51,9 @@ pub struct Settling {
     pub base_frequencies_hz: Vec<f64>,
     /// Intervals of the statistics of irregular motion, by recorded node; empty for other motion.
     pub intervals: Vec<OrbitInterval>,
+    /// The largest relative difference between orbit sizes of the windows that agree; absent but for regular motion.
+    #[serde(default)]
+    pub windows_differ: Option<f64>,
     /// The largest relative difference between orbit sizes, or radius deviations, of the first and the second half of a window over which
     /// the motion was not shown to have settled; absent for others.
     pub halves_differ: Option<f64>,
@@ -366,6 +369,7 @@ impl Settle {
             weighting: Window::Hann,
             base_frequencies_hz: course.base_frequencies(&(found.since..found.window.end)),
             intervals: Vec::new(),
+            windows_differ: Some(found.differ),
             halves_differ: None,
             growing_mode: None,
         })
@@ -387,6 +391,7 @@ impl Settle {
             weighting: Window::Rectangular,
             base_frequencies_hz: Vec::new(),
             intervals: batches.half_widths.into_iter().map(interval).collect(),
+            windows_differ: None,
             halves_differ: None,
             growing_mode: None,
         })
@@ -404,6 +409,7 @@ impl Settle {
             weighting: Window::Rectangular,
             base_frequencies_hz: Vec::new(),
             intervals: Vec::new(),
+            windows_differ: None,
             halves_differ: course.halves_differ(&samples, &self.promise),
             growing_mode: halves(&samples).and_then(|halves| self.growing_mode(course, &halves)),
         }

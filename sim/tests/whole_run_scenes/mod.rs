@@ -193,7 +193,7 @@ impl WholeRun {
             })
             .collect();
         let mesh = MeshEstimate::Unknown { reason: String::new() };
-        ResultErrors::new(&self.summary, &others, None, self.torsion.as_ref(), mesh).time
+        ResultErrors::new(&self.summary, &others, None, self.torsion.as_ref(), mesh, None).time
     }
 }
 

@@ -276,8 +276,12 @@ quantities! {
     AMPLIFICATION: "amplification", "", RATIO, "amplification";
     /// Growth of the distance from such a run, from the first half of that time to the second.
     AMPLIFICATION_GROWTH: "amplification_growth", "", RATE, "amplification growth";
+    /// Relative error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
+    PROMISED_ERROR: "promised_error", "", RATIO, "promised error";
     /// Estimated relative error of orbit statistics by the time steps; absent where histories part.
     TIME_ERROR: "time_error", "", RATIO, "time error";
+    /// Estimated relative error of orbit size by the window: differences between the windows of regular motion, half the confidence interval of irregular; absent if the motion has not settled or the window is fixed.
+    SAMPLING_ERROR: "sampling_error", "", RATIO, "sampling error";
     /// Standard deviation of orbit size over the ensemble, relative to its mean.
     RELATIVE_SPREAD: "relative_spread", "", RATIO, "relative spread";
     /// Estimated relative error of the static distance from the hole's axis by the mesh.
@@ -402,9 +406,9 @@ quantities! {
     ENERGY_ERROR: "energy_error", "", RATIO, "energy error";
     /// Error that the run itself estimates.
     ESTIMATED_ERROR: "estimated_error", "", RATIO, "estimated error";
-    /// Relative error of orbit size by the mesh.
+    /// Estimated relative error of orbit size by the mesh.
     MESH_ERROR: "mesh_error", "", RATIO, "mesh error";
-    /// Relative error of orbit size by mesh and time steps together.
+    /// Relative error of orbit size by mesh and time steps together; of a result by sampling too, and absent if one of them is not known.
     WHOLE_ERROR: "whole_error", "", RATIO, "whole error";
     /// Whether the accuracy's promise is kept.
     PROMISE: "promise", "", -, "promise";

@@ -58,8 +58,12 @@ function factsPart(heading, facts, more = []) {
 export function accuracyFacts({ summary }) {
   const percent = (/** @type {any} */ value) => (typeof value === "number" ? `${number(100 * value, 2)} %` : "not known");
   return [
-    ["Time steps: error of statistics", percent(summary.time_error)],
-    ["Mesh: error of the mean radius", percent(summary.mesh_error_mean_radius)],
+    ["Error of orbit size, promised", percent(summary.promised_error)],
+    ["Error of orbit size, stated", percent(summary.whole_error)],
+    ["of it by steps", percent(summary.time_error)],
+    ["of it by the mesh", percent(summary.mesh_error)],
+    ["of it by sampling", percent(summary.sampling_error)],
+    ["Mesh: error of the mean radius at rest", percent(summary.mesh_error_mean_radius)],
     ["Spread of an ensemble", percent(summary.relative_spread)],
     ["Error of a displacement at the end", say("error_estimate_displacement", summary.error_estimate_displacement, 2)],
     ["Resolved up to", say("resolved_hz", summary.resolved_hz)],
@@ -74,8 +78,8 @@ export function accuracyFacts({ summary }) {
  * @returns {[string, string][]}
  */
 export function accuracyReasons({ provenance = {} }) {
-  const { time, mesh, spread } = provenance.errors ?? {};
-  const reasons = [["Time steps", time?.condition], ["Mesh", mesh?.reason], ["Spread", spread?.reason]];
+  const { time, mesh, sampling, spread } = provenance.errors ?? {};
+  const reasons = [["Steps", time?.condition ?? time?.reason], ["Mesh", mesh?.reason], ["Sampling", sampling?.reason], ["Spread", spread?.reason]];
   return /** @type {[string, string][]} */ (reasons.filter(([, text]) => text));
 }
 

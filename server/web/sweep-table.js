@@ -31,7 +31,7 @@ export function table(context) {
 
   const standard = () => {
     const results = data.results().filter((name) => !axes.includes(name) && name !== "state");
-    const usual = [preferred(results), ...results.filter((name) => /^(orbit_radius_rms|friction_coefficient_max|largest_normal_force|time_error|resolved_hz|tension_top|torque_top)/.test(name))];
+    const usual = [preferred(results), ...results.filter((name) => /^(orbit_radius_rms|friction_coefficient_max|largest_normal_force|whole_error|time_error|resolved_hz|tension_top|torque_top)/.test(name))];
     return ["ordinal", "state", ...axes, ...new Set(usual.filter((name) => results.includes(name)))];
   };
   const shownNames = () => {

@@ -185,7 +185,7 @@ def test_statistics_effects_modes_and_cost_are_compared_in_tables(
     resolved = [float((point.summary or {})["resolved_hz"]) for point in has]
     shown = cells(page, "Accuracy", "Resolved up to")
     assert [float(text.split(" Hz")[0]) for text in (shown[0], shown[-1])] == pytest.approx(resolved, rel=1e-3)
-    assert len(cells(page, "Accuracy", "Mesh: error of the mean radius")) == len(shown)
+    assert len(cells(page, "Accuracy", "Mesh: error of the mean radius at rest")) == len(shown)
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
 

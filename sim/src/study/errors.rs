@@ -25,7 +25,8 @@ pub struct ResultErrors {
     /// Error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promised: Option<f64>,
-    /// Error of orbit size by steps, mesh and sampling together; absent if one of them is not known.
+    /// Error of orbit size by steps, mesh and sampling together, the root of the sum of their squares, as of independent parts (JCGM 100:2008); absent if
+    /// one of them is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whole: Option<f64>,
     /// Between runs that start next to each other.
@@ -149,7 +150,7 @@ impl ResultErrors {
         let of_mesh = mesh.estimate().and_then(|errors| errors.orbit_size);
         let whole = [time.unconditional(), of_mesh, sampling.orbit_size()]
             .into_iter()
-            .try_fold(0.0, |sum, part| Some(sum + part?));
+            .try_fold(0.0, |sum, part| Some(f64::hypot(sum, part?)));
         Self {
             time,
             mesh,
@@ -463,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn the_whole_error_is_the_sum_of_parts_that_are_all_known() {
+    fn the_whole_error_is_of_parts_that_are_all_known() {
         let mesh = |orbit_size| {
             MeshEstimate::Estimated(MeshErrors {
                 mean_radius: None,
@@ -485,8 +486,8 @@ mod tests {
         (settled.settling.regime, settled.settling.windows_differ) = (MotionRegime::Regular, Some(0.003));
         let whole = errors(&settled, Some(0.004));
         // A fifth of 10 um in 1 mm.
-        assert!((whole.whole.unwrap() - (0.002 + 0.004 + 0.003)).abs() < 1e-12, "{whole:?}");
-        assert!(whole.to_string().contains("2.00 % promised, 0.90 % stated"), "{whole}");
+        assert!((whole.whole.unwrap() - 29e-6_f64.sqrt()).abs() < 1e-12, "{whole:?}");
+        assert!(whole.to_string().contains("2.00 % promised, 0.54 % stated"), "{whole}");
         assert!(!whole.to_string().contains("MORE"));
         assert!(errors(&settled, Some(0.02)).to_string().ends_with("MORE than promised"));
         assert_eq!(errors(&settled, None).whole, None);
@@ -500,7 +501,7 @@ mod tests {
         for orbit in &mut scatters.orbits {
             orbit.interval = Some(OrbitInterval { orbit_radius_rms: 5e-5, radius_deviation: 0.0 });
         }
-        assert!((errors(&scatters, Some(0.0)).whole.unwrap() - 0.052).abs() < 1e-12);
+        assert!((errors(&scatters, Some(0.0)).whole.unwrap() - 0.05_f64.hypot(0.002)).abs() < 1e-12);
     }
 
     #[test]

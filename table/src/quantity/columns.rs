@@ -408,7 +408,7 @@ quantities! {
     ESTIMATED_ERROR: "estimated_error", "", RATIO, "estimated error";
     /// Estimated relative error of orbit size by the mesh.
     MESH_ERROR: "mesh_error", "", RATIO, "mesh error";
-    /// Relative error of orbit size by mesh and time steps together; of a result by sampling too, and absent if one of them is not known.
+    /// Relative error of orbit size by mesh and time steps together; of a result by sampling too, as independent parts, and absent if one of them is not known.
     WHOLE_ERROR: "whole_error", "", RATIO, "whole error";
     /// Whether the accuracy's promise is kept.
     PROMISE: "promise", "", -, "promise";

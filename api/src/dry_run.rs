@@ -172,8 +172,8 @@ mod tests {
             "large_mesh_factor": 2.0});
         let known_at = IndexMap::from([("draft".to_owned(), 3)]);
         let planned = DryRun::new(&expansion(), 40, 0, Some(known_at.clone()), Some(&speed.to_string()), 2);
-        // 60 points of 120,000 steps of 297 nodes.
-        let wanted = 60.0 * 120_000.0 * 297.0 * 3e-7;
+        // 60 points of 120,000 steps of 297 nodes, and of the twin over 20 of 60 s.
+        let wanted = 60.0 * (120_000.0 + 40_000.0) * 297.0 * 3e-7;
         assert!((planned.cpu_time.unwrap() / wanted - 1.0).abs() < 1e-12);
         assert_eq!(planned.wall_time, planned.cpu_time.map(|time| 0.5 * time));
         assert_eq!((planned.total, planned.known, planned.points.len()), (100, 40, 100));

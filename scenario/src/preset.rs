@@ -111,7 +111,9 @@ mod tests {
         for (name, _) in closed {
             let scene = preset(name).unwrap();
             assert_eq!(scene.damping, damped.damping, "{name}");
-            assert_eq!((scene.duration, scene.settles()), (damped.duration, true), "{name}");
+            // That of 1,000 m grows slowly into stick-slip.
+            let longest = if *name == "closed/string-1000m" { 600.0 } else { damped.duration };
+            assert_eq!((scene.duration, scene.settles()), (longest, true), "{name}");
             assert_eq!(scene.spectrum_windows(), None, "{name}");
             assert_eq!((&scene.operation, &scene.contact), (&damped.operation, &damped.contact), "{name}");
             assert_eq!(scene.recording.nodes.len(), 3, "{name}");

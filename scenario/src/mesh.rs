@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 /// How finely the string is cut: `"auto"`, by a factor finer or coarser than that, or target element lengths.
 ///
-/// With `auto` lengths follow from the string and its wall: a tool joint has eight elements, a body between tool joints sixteen, and whatever lies
+/// With `auto` lengths follow from the string and its wall: a tool joint has one element, a body between tool joints twelve, and whatever lies
 /// on the wall by itself (collars, stabilizers, plain pipe) elements of half the length (4 E I / kappa)^(1/4) over which a wall of
 /// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. It is meant for the contact law `per_length`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -3,6 +3,7 @@
 use drillsweep_scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use serde::Serialize;
 
+use super::mesh_estimate::MOST_ELEMENTS;
 use crate::model::{Model, ModelError};
 use crate::signal::sample_range;
 use crate::transient::{
@@ -13,6 +14,10 @@ use crate::transient::{
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
 const PER_NODE: u64 = 40_000;
+
+/// Bytes of a node for the finer meshes by which the error of the mesh is estimated: a model four times as fine with its equations of small motions,
+/// factored (`worker/tests/memory.rs` holds them below it).
+const PER_NODE_OF_FINER_MESHES: u64 = 70_000;
 
 /// Bytes of a sample of a window while its spectrum is computed: the motion, its transform in and out, the weights, the amplitudes
 /// and their frequencies, and what is stored of them.
@@ -63,8 +68,10 @@ impl Footprint {
         let recorded = Recorded::of(model);
         let study = model.scenario.cost_study.as_ref().map_or(0, |study| recorded.study_bytes(study));
         let snapshots = PlannedSnapshots::of(model);
+        let is_refined = model.effects.transient && model.elements.len() <= MOST_ELEMENTS;
+        let of_finer_meshes = if is_refined { PER_NODE_OF_FINER_MESHES } else { 0 };
         Self {
-            memory_bytes: PER_NODE * model.node_count() as u64
+            memory_bytes: (PER_NODE + of_finer_meshes) * model.node_count() as u64
                 + recorded.memory().max(snapshots.memory_of_table())
                 + snapshots.memory_of_blocks()
                 + study,

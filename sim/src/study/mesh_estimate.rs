@@ -21,7 +21,7 @@ use crate::statics::Equilibrium;
 const HIGHEST_DRIVE_HZ: f64 = 30.0;
 
 /// Strings of more elements are not refined: their equilibria take seconds.
-const MOST_ELEMENTS: usize = 1500;
+pub(super) const MOST_ELEMENTS: usize = 1500;
 
 /// The mesh's part of the error of the equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

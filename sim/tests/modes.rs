@@ -311,7 +311,7 @@ fn twist_of_a_driven_shaft_is_a_standing_wave() {
     scenario.contact.static_friction = 0.0;
     scenario.contact.dynamic_friction = 0.0;
     scenario.effects.set(Effect::Torsion, Switch::On);
-    let mut pipe = scenario.string.sections[0].clone();
+    let mut pipe = scenario.string.sections[0];
     (pipe.length, pipe.count, pipe.tool_joint) = (200.0, 1, None);
     scenario.string.sections = vec![pipe];
     scenario.string.gauges.clear();

@@ -450,7 +450,7 @@ def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Op
     shown = re.search(r"\(bias (\S+) Hz\)", lines.nth(1).inner_text())
     assert shown
     # To two digits.
-    assert float(shown[1].replace("−", "-")) == pytest.approx(bias, rel=0.05)
+    assert float(shown[1].replace("\N{MINUS SIGN}", "-")) == pytest.approx(bias, rel=0.05)
     for window in ("from=0.1&to=0.45", "from=0.1&to=0.5&window=rectangular"):
         page.goto("about:blank")
         page.goto(f"{client.server}/#/sweeps/{verified.id}/points/1?view=motion&node=1&{window}")

@@ -3,7 +3,7 @@
 //! The deflection between the nodes is the parabola through its values at both ends and in the middle, and so is the gap g = r - j0. The wall stores
 //! K_c/2 times the integral of g^2 over the part where the gap is positive; its forces are the exact derivatives of that energy, so that they take no work
 //! from any closed path, and they change without steps as parts of the element come into the wall, merge and leave it. (A Gauss rule on that part has
-//! neither property: its forces feed a string that moves through them, and Newton's method finds no equilibrium if elements are as long as the wall spreads a
+//! neither property: its forces can feed a string that moves through them, and Newton's method found no equilibrium on elements longer than the wall spreads a
 //! force.) They act at two points of the element, the Gauss points of the weight g, which carry the same force and the same first three
 //! moments as the whole.
 

@@ -7,7 +7,7 @@ use drillsweep_scenario::{
 use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::{GRAVITY, Model};
-use drillsweep_sim::modes::Receptance;
+use drillsweep_sim::modes::{Pencil, Receptance};
 use drillsweep_sim::signal::{orbit_statistics, sample_range};
 use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::mesh_estimate::MeshEstimate;
@@ -248,9 +248,8 @@ fn small_orbits_are_those_of_the_linear_response_to_the_unbalance() {
     let mut scenario = turning_pipe(60, 0.4);
     scenario.statics.friction = StartFriction::Sliding;
     let model = Model::new(&scenario).expect("has a model");
-    let response = Receptance::about(&model, &rest(&model), 2.0)
-        .expect("no resonance")
-        .to_unbalance(&model, &rest(&model));
+    let pencil = Pencil::about(&model, &rest(&model));
+    let response = Receptance::of(&pencil, 2.0).expect("no resonance").to_unbalance(&model);
     for (depth, in_time) in [4.0, 10.0, 20.0].into_iter().zip(orbits_of(&scenario)) {
         let [u, v, ..] = response[model.mesh.nearest_node(depth)];
         let linear = (0.5 * (u.norm_sqr() + v.norm_sqr())).sqrt();

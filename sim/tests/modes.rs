@@ -319,11 +319,12 @@ fn twist_of_a_driven_shaft_is_a_standing_wave() {
     scenario.recording.nodes.clear();
     let model = Model::new(&scenario).expect("valid");
     let equilibrium = Equilibrium::find(&model).expect("rests");
+    let pencil = Pencil::about(&model, &equilibrium);
     let material = &scenario.string.material;
     let speed = (material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio)) / material.density).sqrt();
     let length = *model.mesh.depths().last().expect("has nodes");
     for hz in [0.5, 3.0, 9.0] {
-        let response = Receptance::about(&model, &equilibrium, hz).expect("no resonance").to_twist_of_bit();
+        let response = Receptance::of(&pencil, hz).expect("no resonance").to_twist_of_bit();
         let number = TAU * hz / speed;
         for (depth, node) in model.mesh.depths().iter().zip(&response) {
             let exact = (number * depth).sin() / (number * length).sin();

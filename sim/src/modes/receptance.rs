@@ -6,33 +6,31 @@ use nalgebra::Complex;
 
 use super::Pencil;
 use super::shifted::ShiftedPencil;
+use crate::effect::unbalance;
 use crate::freedom::{DOFS, THETA_Z, U, V};
 use crate::model::Model;
-use crate::statics::Equilibrium;
 
 /// Amplitudes of all degrees of freedom, node by node from the top: the motion is their real part times exp(i w t).
 pub type Response = Vec<[Complex<f64>; DOFS]>;
 
 /// The equations of small motions at one frequency, factored: (K + i w C - w^2 M) x = f.
-pub struct Receptance {
+pub struct Receptance<'a> {
     factor: ShiftedPencil,
-    held: Vec<[bool; DOFS]>,
+    held: &'a [[bool; DOFS]],
 }
 
-impl Receptance {
-    /// About an equilibrium, contacts closed and sliding, at a frequency \[Hz\]; `None` at an undamped resonance.
-    pub fn about(model: &Model, equilibrium: &Equilibrium, frequency_hz: f64) -> Option<Self> {
-        let pencil = Pencil::about(model, equilibrium);
+impl<'a> Receptance<'a> {
+    /// Of small motions at a frequency \[Hz\]; `None` at an undamped resonance.
+    pub fn of(pencil: &'a Pencil, frequency_hz: f64) -> Option<Self> {
         let shift = Complex::new(0.0, TAU * frequency_hz);
         let factor = ShiftedPencil::new(shift, pencil.matrices(), &pencil.held)?;
-        Some(Self { factor, held: pencil.held })
+        Some(Self { factor, held: &pencil.held })
     }
 
-    /// Response to the model's mass unbalance \[m, rad\], if the frequency is that of the rotation.
-    pub fn to_unbalance(&self, model: &Model, equilibrium: &Equilibrium) -> Response {
-        let system = model.dynamic_system(equilibrium);
+    /// Response to the mass unbalance \[m, rad\] of the pencil's model, if the frequency is that of the rotation.
+    pub fn to_unbalance(&self, model: &Model) -> Response {
         let mut load = self.no_load();
-        for force in &system.unbalance {
+        for force in unbalance::forces(&model.mesh.nodes, model.rotation_speed) {
             let (sine, cosine) = force.phase.sin_cos();
             // A cos(w t + phase) along u, A sin(w t + phase) along v.
             let along_u = Complex::new(cosine, sine) * force.amplitude;
@@ -61,7 +59,7 @@ impl Receptance {
     }
 
     fn to(&self, mut load: Response) -> Response {
-        for (load, held) in load.iter_mut().zip(&self.held) {
+        for (load, held) in load.iter_mut().zip(self.held) {
             for (value, _) in load.iter_mut().zip(held).filter(|(_, held)| **held) {
                 *value = Complex::new(0.0, 0.0);
             }

@@ -14,7 +14,7 @@ use crate::beam::Shape;
 use crate::contact::{Plane, planes};
 use crate::freedom::{DOFS, U, V};
 use crate::model::{Model, element_values};
-use crate::modes::{Receptance, Response, growing_torsion};
+use crate::modes::{Pencil, Receptance, Response, growing_torsion};
 use crate::statics::Equilibrium;
 
 /// Highest frequency of a torsional mode that drives lateral motion \[Hz\].
@@ -190,16 +190,17 @@ impl Drives {
     /// With torsion at a given frequency \[Hz\]; `None` without any drive.
     fn at(model: &Model, equilibrium: &Equilibrium, torsion_hz: Option<f64>) -> Option<Self> {
         let rotation_hz = model.rotation_speed.abs() / std::f64::consts::TAU;
-        let unbalance = model.effects.unbalance.then(|| Receptance::about(model, equilibrium, rotation_hz));
-        let torsion = torsion_hz.map(|frequency| Receptance::about(model, equilibrium, frequency));
-        if unbalance.is_none() && torsion.is_none() {
+        let unbalance_hz = model.effects.unbalance.then_some(rotation_hz);
+        if unbalance_hz.is_none() && torsion_hz.is_none() {
             return None;
         }
+        let pencil = Pencil::about(model, equilibrium);
+        let response = |hz: Option<f64>, to: &dyn Fn(&Receptance<'_>) -> Response| {
+            Some(Amplitudes::of(model, &to(&Receptance::of(&pencil, hz?)?)))
+        };
         Some(Self {
-            unbalance: unbalance
-                .flatten()
-                .map(|found| Amplitudes::of(model, &found.to_unbalance(model, equilibrium))),
-            torsion: torsion.flatten().map(|found| Amplitudes::of(model, &found.to_twist_of_bit())),
+            unbalance: response(unbalance_hz, &|found| found.to_unbalance(model)),
+            torsion: response(torsion_hz, &|found| found.to_twist_of_bit()),
             torsion_hz,
         })
     }

@@ -185,7 +185,11 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
             }
         }
     }
+    // After the last heartbeat, which would enter it again.
     drop(heartbeat);
+    if let Err(error) = store.remove_worker(&id).await {
+        tracing::warn!(%error, "the worker's entry stays until it is stale");
+    }
     store.close().await;
     tracing::info!(worker = %id, "worker done");
     Ok(())
@@ -545,4 +549,33 @@ fn panic_text(error: tokio::task::JoinError) -> String {
 
 fn hex(key: &[u8; 32]) -> String {
     key.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A worker may be stopped before its first heartbeat.
+    #[test]
+    fn a_worker_that_ends_leaves_the_register() {
+        let directory = tempfile::tempdir().unwrap();
+        let config = WorkerConfig {
+            drain: true,
+            scratch: directory.path().to_owned(),
+            ..WorkerConfig::new(StoreConfig::in_directory(directory.path(), Role::Worker))
+        };
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let store = Store::open(&config.store).await.unwrap();
+            let speed = json!({ "instructions_per_second": 1.0 }).to_string();
+            store.keep_machine_speed("here", i64::from(PHYSICS_VERSION), &speed).await.unwrap();
+            for is_stopped in [true, false] {
+                for _ in 0..10 {
+                    let (_stop, stopped) = watch::channel(is_stopped);
+                    run(config.clone(), stopped).await.unwrap();
+                    assert_eq!(store.workers(i64::MAX / 2).await.unwrap(), []);
+                }
+            }
+        });
+    }
 }

@@ -65,7 +65,7 @@ pub(crate) struct Heartbeat {
 }
 
 impl Heartbeat {
-    /// Starts the thread; it registers `worker` and keeps its entry fresh while idle too.
+    /// Starts the thread, which keeps the entry of `worker` in the register fresh, while idle too, until it is dropped.
     pub(crate) fn start(config: StoreConfig, worker: WorkerRecord, lease: Duration) -> std::io::Result<Self> {
         let (jobs, inbox) = mpsc::channel();
         let thread = std::thread::Builder::new()
@@ -121,9 +121,6 @@ fn beat(
             }
             Err(RecvTimeoutError::Disconnected) => {
                 if let Some(store) = store {
-                    if let Err(error) = runtime.block_on(store.remove_worker(&worker.id)) {
-                        tracing::warn!(%error, "the worker's entry stays until it is stale");
-                    }
                     runtime.block_on(store.close());
                 }
                 return;

@@ -16,8 +16,11 @@ use crate::contact::{sliding_segment, sliding_tangent};
 use crate::model::{Model, element_values};
 use crate::statics::Equilibrium;
 
-/// Chains of more nodes are not solved mode by mode: the time grows with the square of their number.
+/// Nodes up to which all modes are looked at; of longer chains those below the frequency above which all decay.
 const MOST_NODES: usize = 700;
+
+/// Nodes times modes that are looked at: some tenths of a second.
+const MOST_VALUES: usize = 2_000_000;
 
 /// Relative width to which an eigenvalue is enclosed: far below the distance of neighbours.
 const ENCLOSED: f64 = 1e-9;
@@ -34,16 +37,16 @@ const STEPS_OF_A_PERIOD: f64 = 20.0;
 pub struct UndampedTorsion {
     /// Torsional modes of the mesh.
     pub modes: usize,
-    /// Those that grow; absent where the string is too long to look at every mode.
+    /// Those that grow; absent if the string has too many modes that may grow to look at each.
     pub growing_modes: Option<usize>,
-    /// Frequency of the highest mode that grows \[Hz\]; absent where none does. Of a string that is too long to look at every mode, the
-    /// frequency above which all decay, at most the mesh's highest.
+    /// Frequency of the highest mode that grows \[Hz\]; absent where none does. Without `growing_modes` the frequency above which all decay,
+    /// at most the mesh's highest.
     pub highest_hz: Option<f64>,
-    /// Growth of the highest mode's amplitude that grows \[1/s\]; absent where none does, or where the string is too long.
+    /// Growth of the highest mode's amplitude that grows \[1/s\]; absent where none does, or without `growing_modes`.
     pub highest_growth: Option<f64>,
-    /// The largest growth of any mode \[1/s\], negative where all decay; of a string that is too long, a bound.
+    /// The largest growth of any mode that is looked at \[1/s\], negative where all decay; without `growing_modes` a bound.
     pub largest_growth: f64,
-    /// Highest torsional frequency of the mesh \[Hz\]; of a string that is too long, a bound.
+    /// Highest torsional frequency of the mesh \[Hz\]; without `growing_modes` a bound.
     pub mesh_hz: f64,
     /// Whether modes grow up to where the mesh ends, so that mesh and step decide which torsion survives.
     pub up_to_the_mesh: bool,
@@ -61,8 +64,7 @@ pub struct TorsionalMode {
 impl UndampedTorsion {
     /// The assessment of a model about its equilibrium; `None` where twist is not solved for or friction does not turn the string.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
-        let chain = Chain::about(model, equilibrium)?;
-        Some(if chain.inertia.len() > MOST_NODES { chain.bound() } else { chain.assessment() })
+        Chain::about(model, equilibrium).map(|chain| chain.assessment())
     }
 
     /// The longest step \[s\] that resolves what grows; absent where nothing does.
@@ -197,16 +199,31 @@ impl Chain {
     }
 
     fn assessment(&self) -> UndampedTorsion {
-        let modes = self.modes();
+        let bound = self.bound();
+        let nodes = self.inertia.len();
+        let modes = if nodes <= MOST_NODES {
+            self.modes()
+        } else {
+            // None above grows.
+            let highest = (TAU * bound.highest_hz.unwrap_or(0.0)).powi(2);
+            if self.below(highest) * nodes > MOST_VALUES {
+                return bound;
+            }
+            self.modes_below(highest)
+        };
+        let mesh_hz = self.highest_eigenvalue().sqrt() / TAU;
         let growing = modes.iter().filter(|mode| mode.growth_rate > 0.0);
         let highest = growing.clone().next_back();
-        let mesh_hz = modes.last().map_or(0.0, |mode| mode.frequency_hz);
         UndampedTorsion {
-            modes: modes.len(),
+            modes: nodes,
             growing_modes: Some(growing.count()),
             highest_hz: highest.map(|mode| mode.frequency_hz),
             highest_growth: highest.map(|mode| mode.growth_rate),
-            largest_growth: modes.iter().fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth_rate)),
+            largest_growth: modes
+                .iter()
+                .map(|mode| mode.growth_rate)
+                .reduce(f64::max)
+                .unwrap_or(bound.largest_growth),
             mesh_hz,
             up_to_the_mesh: highest.is_some_and(|mode| mode.frequency_hz >= MESH_END * mesh_hz),
         }
@@ -242,12 +259,26 @@ impl Chain {
 
     /// All modes by frequency.
     fn modes(&self) -> Vec<TorsionalMode> {
-        let count = self.inertia.len();
+        self.modes_below(self.above_all())
+    }
+
+    /// A value above all eigenvalues, at most four times the highest.
+    fn above_all(&self) -> f64 {
         let mut above_all = 1.0;
-        while self.below(above_all) < count && above_all < f64::MAX {
+        while self.below(above_all) < self.inertia.len() && above_all < f64::MAX {
             above_all *= 4.0;
         }
-        self.modes_below(above_all)
+        above_all
+    }
+
+    fn highest_eigenvalue(&self) -> f64 {
+        let mut high = self.above_all();
+        let mut low = 0.25 * high;
+        while high - low > ENCLOSED * high {
+            let middle = 0.5 * (low + high);
+            if self.below(middle) == self.inertia.len() { high = middle } else { low = middle }
+        }
+        0.5 * (low + high)
     }
 
     /// The modes of eigenvalues below `highest` by frequency: eigenvalues enclosed by Sturm sequences, growth
@@ -339,7 +370,7 @@ fn no_zero(pivot: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::preset;
+    use drillsweep_scenario::{Scenario, preset};
 
     use super::*;
 
@@ -386,6 +417,23 @@ mod tests {
             let growth = 0.5 * 0.5 / (2.0 * 0.07 * (2.0 + phase.cos()));
             assert!((mode.growth_rate / growth - 1.0).abs() < 1e-6, "{n}: {mode:?} against {growth}");
         }
+    }
+
+    #[test]
+    fn what_grows_does_not_depend_on_the_number_of_nodes() {
+        // Elements a quarter as long: 1184 of them, of which the modes that decay in any case are not looked at.
+        let mut scenario = preset("paper-200m-damped").unwrap();
+        let found = |scenario: &Scenario| {
+            let model = Model::new(scenario).unwrap();
+            UndampedTorsion::about(&model, &Equilibrium::find(&model).unwrap()).unwrap()
+        };
+        let coarse = found(&scenario);
+        scenario.scale_mesh(0.25);
+        let fine = found(&scenario);
+        assert!(coarse.modes < MOST_NODES && fine.modes > MOST_NODES);
+        assert_eq!(fine.growing_modes, coarse.growing_modes);
+        let [coarse, fine] = [coarse, fine].map(|found| found.highest_hz.unwrap());
+        assert!((fine / coarse - 1.0).abs() < 1e-3, "{fine} and {coarse} Hz");
     }
 
     #[test]

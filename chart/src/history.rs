@@ -100,7 +100,7 @@ impl<'t> Rotation<'t> {
     /// That at the bit, or else that of the lowest node of the history.
     fn of(history: &'t Table, places: &[Place], bit: Option<&'t Bit>) -> Self {
         let lowest = ROTATION.map(|quantity| lowest(history, quantity));
-        let node = lowest.into_iter().flatten().find_map(|name| Name::parse(name)?.node);
+        let node = lowest.into_iter().flatten().find_map(|name| Name::parse(name)?.place?.node());
         let at_node = |_: &Quantity, name: &str| at_place(name, places);
         let Some(bit) = bit else { return Self::from_columns(history, lowest, at_node) };
         let depth = grouped(bit.measured_depth);
@@ -163,7 +163,8 @@ fn over_time(
 fn lowest<'t>(table: &'t Table, quantity: &Quantity) -> Option<&'t str> {
     let columns = table.columns.keys().filter_map(|name| {
         let parsed = Name::parse(name)?;
-        (parsed.quantity == quantity && parsed.variant == Variant::Value).then_some((parsed.node?, name))
+        (parsed.quantity == quantity && parsed.variant == Variant::Value)
+            .then_some((parsed.place?.node()?, name))
     });
     columns.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
 }

@@ -18,13 +18,16 @@ pub struct Place {
 
 /// What a column is; of a node that is among the `places`, where that lies and which way it moves.
 pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
-    let Some(parsed) = Name::parse(name) else { return words(name) };
-    let Some(place) = places.iter().find(|place| Some(place.node as usize) == parsed.node) else {
+    let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);
     };
-    let depth = grouped(place.measured_depth);
-    let direction = direction(parsed.quantity, place.low_side);
-    let elsewhere = Name { node: None, window: None, ..parsed };
+    let known = places.iter().find(|place| Some(place.node as usize) == of_name.node());
+    let Some(depth) = of_name.depth().or(known.map(|place| place.measured_depth)) else {
+        return words(name);
+    };
+    let depth = grouped(depth);
+    let direction = known.map(|place| direction(parsed.quantity, place.low_side)).unwrap_or_default();
+    let elsewhere = Name { place: None, window: None, ..parsed };
     let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
     format!("{elsewhere} at {depth} m MD{direction}{window}")
 }
@@ -87,6 +90,7 @@ mod tests {
             ("u_11", Some(0.0), "u, node 11"),
             ("spread_orbit_radius_rms_10", Some(0.0), "spread of orbit radius rms at 3 412 m MD"),
             ("line_amplitude_10_w2", None, "line amplitude at 3 412 m MD, window 2"),
+            ("line_amplitude_57_7m_w2", None, "line amplitude at 57.7 m MD, window 2"),
         ] {
             assert_eq!(label(name, low_side), words);
         }

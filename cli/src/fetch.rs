@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use drillsweep_api::{PointDetail, Sweep};
 use drillsweep_table::quantity::columns::ORBIT_MEAN_RADIUS;
 use drillsweep_table::quantity::tables::{self, Layout};
-use drillsweep_table::quantity::{Name, Variant};
+use drillsweep_table::quantity::{Name, Place, Variant};
 use indicatif::ProgressBar;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -164,11 +164,18 @@ fn points(
             }
         }
         if has(tables::HISTORY.name) || has(tables::SPECTRA.name) {
-            for node in point.summary.iter().flat_map(recorded_nodes) {
-                let node_and_format = format!("node={node}&window=hann&format={format}");
+            for place in point.summary.iter().flat_map(recorded_places) {
+                let (query, place) = match place.depth() {
+                    Some(depth) => (format!("depth={depth}"), format!("{depth}m")),
+                    None => {
+                        let node = place.node().unwrap_or_default();
+                        (format!("node={node}"), format!("node{node}"))
+                    }
+                };
+                let node_and_format = format!("{query}&window=hann&format={format}");
                 let Some(windows) = point.scenario.spectrum_windows() else {
                     // Of a run that settles only its window is kept.
-                    let name = format!("spectrum-node{node}.{format}");
+                    let name = format!("spectrum-{place}.{format}");
                     files.download(
                         client,
                         &format!("{path}/spectrum?{node_and_format}"),
@@ -179,7 +186,7 @@ fn points(
                 for window in windows {
                     let (from, to) = (json!(window.from), json!(window.to));
                     let query = format!("{node_and_format}&from={from}&to={to}");
-                    let name = format!("spectrum-node{node}-{from}-{to}s.{format}");
+                    let name = format!("spectrum-{place}-{from}-{to}s.{format}");
                     files.download(client, &format!("{path}/spectrum?{query}"), folder.join(name))?;
                 }
             }
@@ -191,10 +198,10 @@ fn points(
     Ok(())
 }
 
-/// Numbers of the nodes that a summary has orbits of.
-fn recorded_nodes(summary: &Map<String, Value>) -> impl Iterator<Item = usize> {
+/// The nodes that a summary has orbits of, by number or depth.
+fn recorded_places(summary: &Map<String, Value>) -> impl Iterator<Item = Place<'_>> {
     let of_orbit = |name: &Name<'_>| name.quantity == &ORBIT_MEAN_RADIUS && name.variant == Variant::Value;
-    summary.keys().filter_map(move |name| Name::parse(name).filter(of_orbit)?.node)
+    summary.keys().filter_map(move |name| Name::parse(name).filter(of_orbit)?.place)
 }
 
 /// The files as they are written, and those that cannot be had.

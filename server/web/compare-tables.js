@@ -5,7 +5,7 @@ import { Biases } from "./bias.js";
 import { each, noteNode } from "./compare-views.js";
 import { fill, h } from "./dom.js";
 import { accuracyFacts, accuracyReasons, costFacts } from "./point-about.js";
-import { biasOver, STATISTICS } from "./statistics.js";
+import { biasOver, recordedAs, STATISTICS } from "./statistics.js";
 import { say } from "./units.js";
 
 /** @typedef {import("./compare-views.js").Comparison} Comparison */
@@ -52,7 +52,8 @@ export async function drawStatistics(place, comparison) {
     const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
     const [node] = columns.node;
     noteNode(comparison, point, node, columns.measured_depth[0]);
-    const beside = biasOver(point.detail, window, (name) => bias.beside(`${name}_${node}`, point.ordinal));
+    const as = recordedAs(point.detail.scenario, node, columns.measured_depth[0]);
+    const beside = biasOver(point.detail, window, (name) => bias.beside(`${name}_${as}`, point.ordinal));
     /** @type {[string, string][]} */
     const facts = STATISTICS.map(([name, text]) => [text, say(name, columns[name][0]) + beside(name)]);
     return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);

@@ -9,7 +9,7 @@ import { generations } from "./newest.js";
 import { attend } from "./notices.js";
 import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "./orbit.js";
 import { adjust, canvas, draw, LINES } from "./plots.js";
-import { biasOver, FEWEST, spectrumWindow, STATISTICS } from "./statistics.js";
+import { biasOver, FEWEST, recordedAs, spectrumWindow, STATISTICS } from "./statistics.js";
 import { say, shown, unit } from "./units.js";
 
 /** Modes are looked for up to this frequency at most [Hz]. */
@@ -291,7 +291,8 @@ export function motion(context) {
     const { from, to } = span();
     const { columns, attributes } = windowed.statistics;
     const bias = biasOver(point, span(), context.bias);
-    showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${columns.node[0]}`), String(attributes.samples));
+    const as = recordedAs(point.scenario, columns.node[0], columns.measured_depth[0]);
+    showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${as}`), String(attributes.samples));
   }
 
   /**
@@ -315,7 +316,8 @@ export function motion(context) {
    * @returns {(name: string) => string}
    */
   function biasOf(frequency) {
-    const suffix = `_${windowed.lines.attributes.node}_w${spectrumWindow(point, span())}`;
+    const { node, measured_depth } = windowed.lines.attributes;
+    const suffix = `_${recordedAs(point.scenario, node, measured_depth)}_w${spectrumWindow(point, span())}`;
     const summarised = point.summary[`line_frequency_hz${suffix}`];
     // The summary weights by Hann's window.
     const isIt = weighting() === "hann" && typeof summarised === "number" && Math.abs(frequency - summarised) < windowed.lines.attributes.resolution / 2;

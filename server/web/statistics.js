@@ -45,6 +45,20 @@ export function spectrumWindow(point, window) {
 }
 
 /**
+ * How names of a summary's columns write a recorded node: its number, or the depth for which it is recorded.
+ * @param {any} scenario
+ * @param {number} node as the service numbers it
+ * @param {number} depth its measured depth [m]
+ * @returns {string}
+ */
+export function recordedAs({ recording: { nodes } }, node, depth) {
+  const depths = nodes.flatMap((/** @type {any} */ one) => (one.depth === undefined ? [] : [one.depth]));
+  if (!depths.length || nodes.some((/** @type {any} */ one) => one.node === node)) return String(node);
+  const nearest = depths.reduce((/** @type {number} */ a, /** @type {number} */ b) => (Math.abs(b - depth) < Math.abs(a - depth) ? b : a));
+  return `${nearest}m`.replace(".", "_");
+}
+
+/**
  * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
  * @param {any} point
  * @param {{from: number, to: number}} window [s]

@@ -22,20 +22,21 @@ export async function loadQuantities() {
 }
 
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
-const NUMBERS = /(?:_(\d+))?(?:_w(\d+))?$/;
+// A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
+const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 
 /**
  * What a name stands for: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
   if (registry[name]) return { entry: registry[name] };
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
-  const numbers = NUMBERS.exec(rest);
-  return { entry: registry[rest.replace(NUMBERS, "")], variant: variant?.[1], node: numbers?.[1], window: numbers?.[2] };
+  const place = PLACE.exec(rest);
+  return { entry: registry[rest.replace(PLACE, "")], variant: variant?.[1], depth: place?.[1]?.slice(0, -1).replace("_", "."), node: place?.[2], window: place?.[3] };
 }
 
 /**
@@ -43,9 +44,10 @@ function parse(name) {
  * @param {string} name
  */
 export function label(name) {
-  const { entry, node, window, variant } = parse(name);
+  const { entry, depth, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
   const parts = [variant ? `${variant.replaceAll("_", " ")} of ${entry.label}` : entry.label];
+  if (depth) parts[0] += ` at ${depth} m`;
   if (node) parts.push(`node ${node}`);
   if (window) parts.push(`window ${window}`);
   return parts.join(", ");

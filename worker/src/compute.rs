@@ -496,7 +496,7 @@ mod tests {
         Effect, NodeChoice, OrbitOutputs, Outputs, Snapshots, Switch, TimeWindow, preset,
     };
     use drillsweep_sim::study::footprint::Footprint;
-    use drillsweep_table::quantity::{Name, columns, tables};
+    use drillsweep_table::quantity::{Name, Place, columns, tables};
     use drillsweep_table::{Column, Table, parquet};
 
     use super::*;
@@ -644,12 +644,13 @@ mod tests {
             let table = read(artifact);
             assert_eq!(table.rows(), artifact.row_count);
             let columns = table.columns.keys().map(|column| Name::parse(column).expect(column));
-            let (by_node, once): (Vec<_>, Vec<_>) = columns.partition(|name| name.node.is_some());
+            let (by_node, once): (Vec<_>, Vec<_>) = columns.partition(|name| name.place.is_some());
             assert!(once.iter().map(|name| name.quantity).eq(layout.columns.iter().copied()), "{name}");
-            for node in by_node.chunk_by(|one, next| one.node == next.node) {
+            for node in by_node.chunk_by(|one, next| one.place == next.place) {
                 let rotation = [&columns::ROTATION_SPEED, &columns::TORQUE];
                 // Only the bit is recorded without having been asked for.
-                let expected = if node[0].node == Some(297) { &rotation[..] } else { layout.by_node };
+                let expected =
+                    if node[0].place == Some(Place::Node(297)) { &rotation[..] } else { layout.by_node };
                 assert!(node.iter().map(|name| name.quantity).eq(expected.iter().copied()), "{name}");
             }
         }

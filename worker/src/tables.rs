@@ -16,7 +16,7 @@ use drillsweep_sim::transient::{
 };
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::tables::{self, Layout};
-use drillsweep_table::quantity::{self, Variant};
+use drillsweep_table::quantity::{self, Place, Variant};
 use drillsweep_table::{Column, Quantity, Table};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -74,8 +74,8 @@ impl Row {
     }
 }
 
-/// The point's scalars under flat names; a name ends in the node's number where it belongs to a node, and in `_wK`
-/// where it belongs to the scenario's K-th spectrum window.
+/// The point's scalars under flat names; a name ends in the node's number, or the depth for which it is recorded, if it belongs to a node, and in `_wK`
+/// if it belongs to the scenario's K-th spectrum window.
 ///
 /// Of an ensemble the values are those of the undisturbed member; `ensemble_mean_` and `spread_` before a name make it the
 /// mean and the standard deviation over all members. A row with one member says so, and has no spread.
@@ -106,7 +106,7 @@ pub(crate) fn summary_row(
     row.0.extend(transient_row(transient).0);
     for orbit in &transient.orbits {
         if let Some(OrbitInterval { orbit_radius_rms, radius_deviation }) = orbit.interval {
-            let name = |of: &Quantity| Variant::Confidence.of(&of.at_node(orbit.node));
+            let name = |of: &Quantity| Variant::Confidence.of(&of.at(&place(orbit.recorded_as)));
             row.put(name(&ORBIT_RADIUS_RMS), orbit_radius_rms);
             row.put(name(&ORBIT_RADIUS_DEVIATION), radius_deviation);
         }
@@ -135,27 +135,36 @@ pub(crate) fn summary_row(
     row
 }
 
+/// How names of columns write a recorded node: by its number, or by the depth for which it is recorded.
+fn place(choice: NodeChoice) -> String {
+    match choice {
+        NodeChoice::Node(node) => node.to_string(),
+        NodeChoice::Depth(depth) => Place::of_depth(depth),
+    }
+}
+
 /// The scalars of one run in time.
 fn transient_row(transient: &TransientSummary) -> Row {
     let mut row = settling_row(transient.simulated_time, &transient.settling);
     for orbit in &transient.orbits {
-        let node = orbit.node;
-        row.put(ORBIT_OFFSET.at_node(node), orbit.offset);
-        row.put(ORBIT_MEAN_RADIUS.at_node(node), orbit.mean_radius);
-        row.put(ORBIT_LARGEST_RADIUS.at_node(node), orbit.largest_radius);
-        row.put(ORBIT_RADIUS_RMS.at_node(node), orbit.orbit_radius_rms);
-        row.put(ORBIT_RADIUS_DEVIATION.at_node(node), orbit.radius_deviation);
-        row.put(HIGH_FREQUENCY_RMS.at_node(node), orbit.high_frequency_rms);
+        let place = place(orbit.recorded_as);
+        row.put(ORBIT_OFFSET.at(&place), orbit.offset);
+        row.put(ORBIT_MEAN_RADIUS.at(&place), orbit.mean_radius);
+        row.put(ORBIT_LARGEST_RADIUS.at(&place), orbit.largest_radius);
+        row.put(ORBIT_RADIUS_RMS.at(&place), orbit.orbit_radius_rms);
+        row.put(ORBIT_RADIUS_DEVIATION.at(&place), orbit.radius_deviation);
+        row.put(HIGH_FREQUENCY_RMS.at(&place), orbit.high_frequency_rms);
     }
     let mut window_number = 0;
     let mut node_before = 0;
     for spectrum in &transient.spectra {
         window_number = if spectrum.node == node_before { window_number + 1 } else { 1 };
         node_before = spectrum.node;
-        row.put(BAND_RMS.in_window(spectrum.node, window_number), spectrum.band_rms);
+        let place = place(spectrum.recorded_as);
+        row.put(BAND_RMS.in_window(&place, window_number), spectrum.band_rms);
         if let Some(line) = spectrum.lines.first() {
-            row.put(LINE_FREQUENCY_HZ.in_window(spectrum.node, window_number), line.frequency_hz);
-            row.put(LINE_AMPLITUDE.in_window(spectrum.node, window_number), line.amplitude);
+            row.put(LINE_FREQUENCY_HZ.in_window(&place, window_number), line.frequency_hz);
+            row.put(LINE_AMPLITUDE.in_window(&place, window_number), line.amplitude);
         }
     }
     row.put(&CONTACT_COUNT, transient.contact_count);

@@ -18,7 +18,7 @@ fn of_columns<'a>(
     names: impl IntoIterator<Item = &'a str>,
     is_wanted: impl Fn(&Name<'_>) -> bool,
 ) -> Vec<u32> {
-    let node = |name: &str| u32::try_from(Name::parse(name).filter(&is_wanted)?.node?).ok();
+    let node = |name: &str| u32::try_from(Name::parse(name).filter(&is_wanted)?.place?.node()?).ok();
     let mut nodes: Vec<u32> = names.into_iter().filter_map(node).collect();
     nodes.sort_unstable();
     nodes.dedup();

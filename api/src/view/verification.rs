@@ -34,7 +34,7 @@ impl Statistic {
 
     /// That of a field of the summary, if its bias is reported.
     fn of(name: &str) -> Option<Self> {
-        let name = Name::parse(name).filter(|name| name.variant == Variant::Value && name.node.is_some())?;
+        let name = Name::parse(name).filter(|name| name.variant == Variant::Value && name.place.is_some())?;
         let is_it = |(quantity, _): &&(&Quantity, Statistic)| *quantity == name.quantity;
         Self::QUANTITIES.iter().find(is_it).map(|(_, statistic)| *statistic)
     }

@@ -240,8 +240,8 @@ impl Recording {
         };
         let Recorded { node, measured_depth, .. } = choice.among(&nodes)?;
         let is_wanted = |name: &str| {
-            Name::parse(name).is_some_and(|name| match name.node {
-                Some(of) => of == node as usize,
+            Name::parse(name).is_some_and(|name| match name.place {
+                Some(of) => of.node() == Some(node as usize),
                 None => name.quantity == &TIME,
             })
         };

@@ -858,9 +858,9 @@ pub(crate) async fn table(
         .await
 }
 
-/// The nodes that columns are of.
+/// The nodes that columns are of by number.
 fn nodes_of(fields: &[String]) -> Vec<u32> {
-    let node = |name: &String| u32::try_from(Name::parse(name)?.node?).ok();
+    let node = |name: &String| u32::try_from(Name::parse(name)?.place?.node()?).ok();
     fields.iter().filter_map(node).collect()
 }
 

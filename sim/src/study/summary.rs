@@ -1,6 +1,6 @@
 //! One row of scalars about a point: what a sweep's table shows.
 
-use drillsweep_scenario::{StartFriction, TimeWindow};
+use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use serde::Serialize;
 
 use crate::effect::contact;
@@ -81,6 +81,8 @@ pub struct TransientSummary {
 pub struct OrbitSummary {
     /// Node, from 1 at the top.
     pub node: usize,
+    /// Why it is recorded: its number or a depth.
+    pub recorded_as: NodeChoice,
     /// Its measured depth \[m\].
     pub measured_depth: f64,
     /// Window \[s\].
@@ -107,6 +109,8 @@ pub struct OrbitSummary {
 pub struct SpectrumSummary {
     /// Node, from 1 at the top.
     pub node: usize,
+    /// Why it is recorded: its number or a depth.
+    pub recorded_as: NodeChoice,
     /// Its measured depth \[m\].
     pub measured_depth: f64,
     /// Window \[s\].
@@ -169,7 +173,10 @@ impl TransientSummary {
         let histories = &records.histories;
         let samples = histories.samples();
         for (index, node) in histories.nodes().into_iter().enumerate() {
+            let is_it = |choice: &&NodeChoice| model.mesh.chosen_node(**choice) == Some(node);
+            let recorded_as = model.scenario.recording.nodes.iter().find(is_it).copied();
             let (node, measured_depth) = (node + 1, model.mesh.nodes[node].measured_depth);
+            let recorded_as = recorded_as.unwrap_or(NodeChoice::Node(node as u32));
             let motion = |window: TimeWindow| {
                 let samples = sample_range(window.from, window.to, records.rate_hz, samples);
                 let u = histories.read(index, Series::U, samples.clone())?;
@@ -179,6 +186,7 @@ impl TransientSummary {
             if let Some(orbit) = weighted_orbit_statistics(&u, &v, settling.weighting) {
                 orbits.push(OrbitSummary {
                     node,
+                    recorded_as,
                     measured_depth,
                     window: orbit_window,
                     offset: orbit.mean_u.hypot(orbit.mean_v),
@@ -205,6 +213,7 @@ impl TransientSummary {
                 });
                 spectra.push(SpectrumSummary {
                     node,
+                    recorded_as,
                     measured_depth,
                     window,
                     band_rms: band_rms(&band(Window::Rectangular)),
@@ -274,6 +283,7 @@ impl OrbitSummary {
     pub(super) fn of(node: usize, orbit_radius_rms: f64, radius_deviation: f64) -> Self {
         Self {
             node,
+            recorded_as: NodeChoice::Node(node as u32),
             measured_depth: 0.0,
             window: TimeWindow { from: 0.0, to: 1.0 },
             offset: 0.0,

@@ -12,7 +12,7 @@ pub mod tables;
 pub mod units;
 
 pub use export::{QuantityEntry, UnitEntry, entries, json};
-pub use name::{Name, Variant};
+pub use name::{Name, Place, Variant};
 pub use units::{Unit, Units};
 
 /// One quantity.
@@ -41,14 +41,19 @@ impl Quantity {
         format!("{}_{node}", self.name)
     }
 
+    /// The name of its column for a node by the text of its [`Place`]: its number, or a depth.
+    pub fn at(&self, place: &str) -> String {
+        format!("{}_{place}", self.name)
+    }
+
     /// The name of its column for one of several things that there are columns for, such as `orbit_size_2_percent` of `cost_cpu_time`.
     pub fn of(&self, detail: &str) -> String {
         format!("{}_{detail}", self.name)
     }
 
-    /// The name of its column for a node and a spectrum window, which is numbered from 1 as well.
-    pub fn in_window(&self, node: usize, window: usize) -> String {
-        format!("{}_{node}_w{window}", self.name)
+    /// The name of its column for a node by the text of its [`Place`] and a spectrum window, which is numbered from 1.
+    pub fn in_window(&self, place: &str, window: usize) -> String {
+        format!("{}_{place}_w{window}", self.name)
     }
 }
 

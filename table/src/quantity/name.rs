@@ -15,10 +15,70 @@ pub struct Name<'n> {
     pub detail: Option<&'n str>,
     /// What became of the quantity.
     pub variant: Variant,
-    /// Number of the node that it belongs to, 1 at the top.
-    pub node: Option<usize>,
+    /// The node that it belongs to.
+    pub place: Option<Place<'n>>,
     /// Number of the scenario's spectrum window that it belongs to, from 1.
     pub window: Option<usize>,
+}
+
+/// The place of a node in a column's name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place<'n> {
+    /// Its number, 1 at the top: `49`.
+    Node(usize),
+    /// The measured depth \[m\] for which it is recorded, on whatever mesh: `57_7m`.
+    Depth(&'n str),
+}
+
+impl<'n> Place<'n> {
+    /// The number of the node; absent for one that is recorded for its depth.
+    pub fn node(self) -> Option<usize> {
+        match self {
+            Place::Node(node) => Some(node),
+            Place::Depth(_) => None,
+        }
+    }
+
+    /// The measured depth \[m\] for which the node is recorded; absent for one by number.
+    pub fn depth(self) -> Option<f64> {
+        match self {
+            Place::Node(_) => None,
+            Place::Depth(depth) => depth.trim_end_matches('m').replace('_', ".").parse().ok(),
+        }
+    }
+
+    /// How a depth \[m\] is written in names of columns: `57_7m` for 57.7 m.
+    pub fn of_depth(depth: f64) -> String {
+        format!("{depth}m").replace('.', "_")
+    }
+
+    /// A name without the place at its end, and the place.
+    fn take(name: &'n str) -> (&'n str, Option<Self>) {
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        let Some((rest, last)) = name.rsplit_once('_') else { return (name, None) };
+        if is_number(last) {
+            return last.parse().map_or((name, None), |node| (rest, Some(Place::Node(node))));
+        }
+        if !last.strip_suffix('m').is_some_and(is_number) {
+            return (name, None);
+        }
+        match rest.rsplit_once('_').filter(|(_, whole)| is_number(whole)) {
+            Some((rest, _)) => (rest, Some(Place::Depth(&name[rest.len() + 1..]))),
+            None => (rest, Some(Place::Depth(last))),
+        }
+    }
+}
+
+/// `node 49`, `57.7 m`.
+impl fmt::Display for Place<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Node(node) => write!(formatter, "node {node}"),
+            Place::Depth(depth) => {
+                write!(formatter, "{} m", depth.trim_end_matches('m').replace('_', "."))
+            }
+        }
+    }
 }
 
 /// What became of a quantity.
@@ -79,7 +139,7 @@ impl<'n> Name<'n> {
     /// Takes a name apart; none where it is of no quantity of the vocabulary.
     pub fn parse(name: &'n str) -> Option<Self> {
         let alone =
-            |quantity| Name { quantity, detail: None, variant: Variant::Value, node: None, window: None };
+            |quantity| Name { quantity, detail: None, variant: Variant::Value, place: None, window: None };
         if let Some(quantity) = BY_NAME.get(name) {
             return Some(alone(quantity));
         }
@@ -93,8 +153,8 @@ impl<'n> Name<'n> {
         let (variant, rest) =
             Variant::ALL.into_iter().skip(1).find_map(of_variant).unwrap_or((Variant::Value, name));
         let (rest, window) = without_number(rest, "_w");
-        let (rest, node) = without_number(rest, "_");
-        BY_NAME.get(rest).map(|quantity| Name { variant, node, window, ..alone(quantity) })
+        let (rest, place) = Place::take(rest);
+        BY_NAME.get(rest).map(|quantity| Name { variant, place, window, ..alone(quantity) })
     }
 
     /// The units of the column. Biases are ratios, but for those of frequencies.
@@ -120,8 +180,10 @@ impl fmt::Display for Name<'_> {
         if let Some(detail) = self.detail {
             write!(formatter, " {}", detail.replace('_', " "))?;
         }
-        if let Some(node) = self.node {
-            write!(formatter, ", node {node}")?;
+        match self.place {
+            Some(place @ Place::Node(_)) => write!(formatter, ", {place}")?,
+            Some(place @ Place::Depth(_)) => write!(formatter, " at {place}")?,
+            None => {}
         }
         match self.window {
             Some(window) => write!(formatter, ", window {window}"),
@@ -167,12 +229,16 @@ mod tests {
             [&columns::LINE_AMPLITUDE, &columns::THETA_Z_RATE, &columns::ORBIT_RADIUS_RMS];
         for quantity in quantities {
             for variant in Variant::ALL {
-                for (name, node, window) in [
+                let shallow = Place::of_depth(0.05);
+                let deep = Place::of_depth(3400.0);
+                for (name, place, window) in [
                     (quantity.name.to_owned(), None, None),
-                    (quantity.at_node(282), Some(282), None),
-                    (quantity.in_window(49, 2), Some(49), Some(2)),
+                    (quantity.at_node(282), Some(Place::Node(282)), None),
+                    (quantity.in_window("49", 2), Some(Place::Node(49)), Some(2)),
+                    (quantity.at(&deep), Some(Place::Depth(&deep)), None),
+                    (quantity.in_window(&shallow, 2), Some(Place::Depth(&shallow)), Some(2)),
                 ] {
-                    let expected = Name { quantity, detail: None, variant, node, window };
+                    let expected = Name { quantity, detail: None, variant, place, window };
                     assert_eq!(Name::parse(&variant.of(&name)), Some(expected), "{name}");
                 }
             }
@@ -189,12 +255,23 @@ mod tests {
         assert_eq!(unit("reference_orbit_mean_radius_49"), Some("m"));
         assert_eq!(unit("bias_orbit_mean_radius_49"), Some("1"));
         assert_eq!(unit("bias_line_frequency_hz_49_w1"), Some("Hz"));
+        assert_eq!(unit("spread_orbit_radius_rms_57_7m"), Some("m"));
         assert_eq!(unit("cost_cpu_time_orbit_size_0_3_percent"), Some("s"));
         assert_eq!(unit("operation.rotation_speed_rpm"), Some("rpm"));
         assert_eq!(unit("string.sections[1].tool_joint.length"), Some("m"));
         assert_eq!(unit("string.sections[1].count"), None);
-        for unknown in ["49", "_49", "u_", "u_49x", "u_99999999999999999999999", "mud", "regime"] {
+        for unknown in
+            ["49", "_49", "u_", "u_49x", "u_99999999999999999999999", "u_m", "u_7_m", "mud", "regime"]
+        {
             assert_eq!(unit(unknown), None, "{unknown}");
+        }
+    }
+
+    #[test]
+    fn depths_are_those_that_were_written() {
+        for depth in [0.0, 11.7, 57.73, 980.0, 3412.25] {
+            let text = Place::of_depth(depth);
+            assert_eq!(Place::Depth(&text).depth(), Some(depth), "{text}");
         }
     }
 
@@ -204,6 +281,8 @@ mod tests {
         assert_eq!(label("friction_coefficient"), "friction coefficient C_f");
         assert_eq!(label("spread_orbit_radius_rms_49"), "spread of orbit radius rms, node 49");
         assert_eq!(label("line_amplitude_49_w1"), "line amplitude, node 49, window 1");
+        assert_eq!(label("line_amplitude_57_73m_w1"), "line amplitude at 57.73 m, window 1");
+        assert_eq!(label("orbit_radius_rms_980m"), "orbit radius rms at 980 m");
         assert_eq!(label("string.sections[1].length"), "section length");
         assert_eq!(label("cost_cpu_time_orbit_size_2_percent"), "cost cpu time orbit size 2 percent");
     }

@@ -11,7 +11,8 @@ from importlib.resources import files
 from typing import Any
 
 _VARIANT = re.compile(r"^(?:spread|ensemble_mean|confidence|reference|bias)_(.+)$")
-_NUMBERS = re.compile(r"(?:_\d+)?(?:_w\d+)?$")
+# A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
+_PLACE = re.compile(r"(?:_\d+(?:_\d+)?m|_\d+)?(?:_w\d+)?$")
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def quantity(name: str) -> Quantity | None:
     if name in known:
         return known[name]
     variant = _VARIANT.match(name)
-    return known.get(_NUMBERS.sub("", variant[1] if variant else name))
+    return known.get(_PLACE.sub("", variant[1] if variant else name))
 
 
 @cache

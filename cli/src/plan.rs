@@ -96,10 +96,22 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         format!("{} s simulated", plan.simulated_time)
     };
     writeln!(text, "run in time: {simulated}, {} degrees of freedom a node", plan.degrees_of_freedom)?;
-    writeln!(text, "  {:10} {:18} {:>9} {:>16}  processor time", "accuracy", "method", "step", "steps")?;
+    writeln!(
+        text,
+        "  {:10} {:>8}  {:18} {:>9} {:>16}  processor time",
+        "accuracy", "elements", "method", "step", "steps"
+    )?;
     for (i, planned) in plan.accuracies.iter().enumerate() {
-        let PlannedAccuracy { name, integrator, step, steps, fewest_steps, cpu_time, least_cpu_time } =
-            planned;
+        let PlannedAccuracy {
+            name,
+            elements,
+            integrator,
+            step,
+            steps,
+            fewest_steps,
+            cpu_time,
+            least_cpu_time,
+        } = planned;
         let steps = match (fewest_steps, steps) {
             (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
             (_, Some(steps)) => steps.to_string(),
@@ -112,7 +124,11 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         };
         let chosen = if i == 0 { "  <- as requested" } else { "" };
         let step = format!("{} ms", step * 1e3);
-        writeln!(text, "  {name:10} {:18} {step:>9} {steps:>16}  {time}{chosen}", integrator.name())?;
+        writeln!(
+            text,
+            "  {name:10} {elements:>8}  {:18} {step:>9} {steps:>16}  {time}{chosen}",
+            integrator.name()
+        )?;
     }
     if let (Some(break_away), Some(rotating)) = (plan.torque_top_break_away, plan.torque_top_rotating) {
         let (break_away, rotating) = (break_away / 1e3, rotating / 1e3);

@@ -44,6 +44,9 @@ const LONGEST_STEP_TOLERANCE: f64 = 0.08;
 /// the square of the step or faster, so the longest step goes with the root of the tolerance.
 const LONGEST_STEP: f64 = 8e-3;
 
+/// Factors on the lengths of the mesh `auto` that accuracies choose. Longer elements miss what they bend between contacts, whatever is allowed.
+const MESH_FACTORS: std::ops::RangeInclusive<f64> = 0.4..=2.0;
+
 /// A promised error and the tolerance that keeps it with room: smaller promises go with smaller tolerances in proportion.
 const FINE: [f64; 2] = [0.003, 0.01];
 
@@ -77,6 +80,14 @@ impl Accuracy {
             ) => Some(tolerance),
             Accuracy::Explicit(_) => None,
         }
+    }
+
+    /// The factor on the lengths of the mesh `auto` that goes with what the choice promises: 1 at `standard`, and where it promises nothing.
+    /// The error of a mesh falls with the square of its lengths (bending between contacts) or faster, so they go with the root of the error.
+    pub fn mesh_factor(&self) -> f64 {
+        let standard = AccuracyPreset::Standard.tolerance();
+        let allowed = self.promise().map_or(standard, |promise| promise.orbit_size);
+        (allowed / standard).sqrt().clamp(*MESH_FACTORS.start(), *MESH_FACTORS.end())
     }
 
     /// What the choice promises of statistics; absent where integrator and step are given, which promise nothing.

@@ -21,7 +21,7 @@ mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
-pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh};
+pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};

@@ -6,18 +6,21 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::Scenario;
+
 /// How finely the string is cut: `"auto"`, by a factor finer or coarser than that, or target element lengths.
 ///
-/// With `auto` lengths follow from the string and its wall: a tool joint has one element, a body between tool joints twelve, and whatever lies
-/// on the wall by itself (collars, stabilizers, plain pipe) elements of half the length (4 E I / kappa)^(1/4) over which a wall of
-/// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. It is meant for the contact law `per_length`.
+/// With `auto` lengths follow from the string, its wall and the accuracy: with the factor 1 a tool joint has one element, a body between tool joints eight, and
+/// whatever lies on the wall by itself (collars, stabilizers, plain pipe) elements of two thirds of the length (4 E I / kappa)^(1/4) over which a wall of
+/// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. The accuracy chooses the factor: 2 at `draft`, 1 at `standard`,
+/// 0.4 at `reference`. Depths whose motion is recorded are nodes. It is meant for the contact law `per_length`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum Mesh {
-    /// Lengths that follow from the string and its wall.
+    /// Lengths that follow from the string, its wall and the accuracy.
     Named(MeshName),
-    /// The same lengths, all multiplied.
+    /// Lengths that follow from the string and its wall, all multiplied by a factor.
     Scaled(ScaledMesh),
     /// Target element lengths.
     Lengths(ElementLengths),
@@ -28,16 +31,16 @@ pub enum Mesh {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum MeshName {
-    /// Lengths that follow from the string and its wall.
+    /// Lengths that follow from the string, its wall and the accuracy.
     Auto,
 }
 
-/// The mesh `auto` made finer or coarser.
+/// The mesh `auto` with a factor of its own in place of the accuracy's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ScaledMesh {
-    /// What multiplies all lengths of `auto`, above 0; usual 0.25 to 2: 0.5 makes every element half as long. Above 2 elements are
+    /// What multiplies all lengths of `auto`, above 0; usual 0.25 to 2: 0.5 makes every element half as long. Above 1.5 elements are
     /// longer than the length over which the wall spreads a bent pipe's force; a mesh of more than 20,000 elements is refused.
     pub auto: f64,
 }
@@ -63,17 +66,30 @@ pub struct ElementLengths {
     pub bit: f64,
 }
 
-impl Mesh {
-    /// Lengths that follow from the string and its wall.
-    pub const AUTO: Self = Mesh::Named(MeshName::Auto);
+/// A mesh with the factor on `auto` written out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub enum WrittenOutMesh {
+    /// What multiplies all lengths of `auto`.
+    Auto(f64),
+    /// Target element lengths.
+    Lengths(ElementLengths),
+}
 
-    /// The same mesh with all lengths multiplied.
-    #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
-        match self {
-            Mesh::Named(MeshName::Auto) => Mesh::Scaled(ScaledMesh { auto: factor }),
-            Mesh::Scaled(ScaledMesh { auto }) => Mesh::Scaled(ScaledMesh { auto: auto * factor }),
-            Mesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
+impl Scenario {
+    /// The mesh with the factor on `auto` that it gives, or else the accuracy.
+    pub fn written_out_mesh(&self) -> WrittenOutMesh {
+        match self.mesh {
+            Mesh::Named(MeshName::Auto) => WrittenOutMesh::Auto(self.accuracy.mesh_factor()),
+            Mesh::Scaled(ScaledMesh { auto }) => WrittenOutMesh::Auto(auto),
+            Mesh::Lengths(lengths) => WrittenOutMesh::Lengths(lengths),
+        }
+    }
+
+    /// Multiplies all lengths of the mesh, which then no longer follow the accuracy.
+    pub fn scale_mesh(&mut self, factor: f64) {
+        self.mesh = match self.written_out_mesh() {
+            WrittenOutMesh::Auto(auto) => Mesh::auto(auto * factor),
+            WrittenOutMesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
                 Mesh::Lengths(ElementLengths {
                     drillpipe: drillpipe * factor,
                     tool_joint: tool_joint * factor,
@@ -82,10 +98,20 @@ impl Mesh {
                     bit: bit * factor,
                 })
             }
-        }
+        };
+    }
+}
+
+impl Mesh {
+    /// Lengths that follow from the string, its wall and the accuracy.
+    pub const AUTO: Self = Mesh::Named(MeshName::Auto);
+
+    /// The lengths of `auto` multiplied by a factor.
+    pub fn auto(factor: f64) -> Self {
+        Mesh::Scaled(ScaledMesh { auto: factor })
     }
 
-    /// Whether lengths follow from the string and its wall.
+    /// Whether lengths follow from the string and its wall, with any factor.
     pub fn is_auto(&self) -> bool {
         matches!(self, Mesh::Named(MeshName::Auto) | Mesh::Scaled(_))
     }
@@ -159,7 +185,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::{Scenario, preset};
+    use crate::{Accuracy, AccuracyPreset, preset};
 
     fn read(value: Value) -> Result<Mesh, String> {
         serde_json::from_value(value).map_err(|error| error.to_string())
@@ -180,11 +206,31 @@ mod tests {
 
     #[test]
     fn scaling_multiplies_all_lengths() {
-        let scenario = preset("paper-200m").unwrap();
-        let mut half = scenario.mesh.scaled(0.5);
-        let ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit } = *half.lengths_mut().unwrap();
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.scale_mesh(0.5);
+        let ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit } =
+            *scenario.mesh.lengths_mut().unwrap();
         assert_eq!([drillpipe, tool_joint, collar, stabilizer, bit], [0.75, 0.15, 0.25, 0.25, 0.25]);
-        assert_eq!(Mesh::AUTO.scaled(0.5).scaled(0.5), Mesh::Scaled(ScaledMesh { auto: 0.25 }));
+        scenario.mesh = Mesh::auto(0.5);
+        scenario.scale_mesh(0.5);
+        assert_eq!(scenario.mesh, Mesh::auto(0.25));
+    }
+
+    #[test]
+    fn a_factor_stays_whatever_the_accuracy() {
+        let mut scenario = preset("paper-200m").unwrap();
+        let factors = AccuracyPreset::ALL.map(|accuracy| {
+            scenario.accuracy = Accuracy::Preset(accuracy);
+            scenario.mesh = Mesh::auto(0.75);
+            assert_eq!(scenario.written_out_mesh(), WrittenOutMesh::Auto(0.75));
+            scenario.mesh = Mesh::AUTO;
+            let auto = scenario.accuracy.mesh_factor();
+            assert_eq!(scenario.written_out_mesh(), WrittenOutMesh::Auto(auto));
+            scenario.scale_mesh(0.5);
+            assert_eq!(scenario.mesh, Mesh::auto(0.5 * auto));
+            auto
+        });
+        assert!(factors.is_sorted_by(|looser, tighter| looser > tighter), "{factors:?}");
     }
 
     #[test]
@@ -193,9 +239,9 @@ mod tests {
         for mesh in [scenario.mesh, Mesh::AUTO] {
             let half = Scenario { mesh, ..scenario.clone() }.with("mesh.auto", json!(0.5));
             let mut half = half.unwrap();
-            assert_eq!(half.mesh, Mesh::AUTO.scaled(0.5));
+            assert_eq!(half.mesh, Mesh::auto(0.5));
             *half.number_mut("mesh.auto").unwrap() = 0.25;
-            assert_eq!(half.mesh, Mesh::AUTO.scaled(0.25));
+            assert_eq!(half.mesh, Mesh::auto(0.25));
         }
     }
 }

@@ -66,7 +66,7 @@ pub fn preset(name: &str) -> Option<Scenario> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::StartFriction;
+    use crate::{Mesh, StartFriction};
 
     #[test]
     fn every_preset_parses_under_its_own_name() {
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_damped_case_differs_by_damping_wall_start_and_settled_windows_alone() {
+    fn the_damped_case_differs_by_damping_wall_mesh_start_and_recording_alone() {
         let (printed, mut damped) = (preset("paper-200m").unwrap(), preset("paper-200m-damped").unwrap());
         assert_eq!(
             (printed.damping.stiffness_proportional, damped.damping.stiffness_proportional),
@@ -97,6 +97,8 @@ mod tests {
         damped.damping = printed.damping;
         damped.statics = printed.statics;
         damped.contact.law = printed.contact.law;
+        assert_eq!(damped.mesh, Mesh::AUTO);
+        damped.mesh = printed.mesh;
         damped.duration = printed.duration;
         damped.recording = printed.recording.clone();
         damped.name.clone_from(&printed.name);

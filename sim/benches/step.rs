@@ -103,7 +103,7 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     scenario.accuracy = accuracy;
     scenario.recording.spectrum_windows = Some(Vec::new());
     scenario.recording.orbit_window = None;
-    scenario.mesh = scenario.mesh.scaled(lengths);
+    scenario.scale_mesh(lengths);
     let model = Model::new(&scenario).expect("the preset has a model");
     let equilibrium = Equilibrium::find(&model).expect("the preset has an equilibrium");
     let mut timed = Timed { elements: model.elements.len(), steps: 0, time: f64::INFINITY };

@@ -1,9 +1,9 @@
 //! The bytes that stand for a scenario.
 
 use drillsweep_scenario::{
-    ActiveEffects, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Mesh, MeshName, Mud,
-    NodeChoice, Operation, OrbitWindow, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section,
-    Snapshots, Statics, TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well, WindowName,
+    ActiveEffects, ContactLaw, CostStudy, DrillString, Gauge, Mud, NodeChoice, Operation, OrbitWindow,
+    Outputs, RayleighDamping, Recording, Scenario, Section, Snapshots, Statics, TimeStepping, TimeWindow,
+    ToolJoint, UnbalanceMass, Well, WindowName, WrittenOutMesh,
 };
 use serde::Serialize;
 
@@ -18,10 +18,12 @@ struct Canonical {
     operation: Operation,
     contact: ContactLaw,
     damping: RayleighDamping,
-    mesh: CanonicalMesh,
+    mesh: WrittenOutMesh,
     duration: f64,
     recording: CanonicalRecording,
     accuracy: TimeStepping,
+    /// Of orbit size and of the radius' deviation: a settled window ends by it, and results report it.
+    promised: Option<[f64; 2]>,
     effects: ActiveEffects,
     ensemble: u32,
     cost_study: Option<CostStudy>,
@@ -73,18 +75,10 @@ impl CanonicalRecording {
     }
 }
 
-/// A mesh whose encoding distinguishes its forms.
-#[derive(Serialize)]
-enum CanonicalMesh {
-    /// By what the lengths of `auto` are multiplied.
-    Auto(f64),
-    Lengths(ElementLengths),
-}
-
 /// The bytes that a result's cache key hashes: two scenarios have the same bytes exactly when they ask for the same numbers, however they
 /// are written. They are the postcard encoding (little-endian IEEE doubles, fields in their order, no names) of the scenario without its
-/// `name`, with a named accuracy written out as integrator and step, with the material of every section and tool joint, with what a length
-/// of wall has by default, with windows that follow the duration and none in place of a settled one, with the mesh `auto` as a factor of one, with every effect decided, and
+/// `name`, with a named accuracy written out as integrator, step and promise, with the material of every section and tool joint, with what a length
+/// of wall has by default, with windows that follow the duration and none in place of a settled one, with the factor on the mesh `auto` that the accuracy chooses, with every effect decided, and
 /// with -0.0 written as 0.0.
 ///
 /// Snapshots, which most scenarios do not ask for, stand behind all else where there are some, and leave no trace where there are none; so
@@ -92,6 +86,7 @@ enum CanonicalMesh {
 /// other change of the scenario's fields changes the encoding, so keys of different versions of the program must not be compared.
 pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
     let active = active_effects(scenario);
+    let mesh = scenario.written_out_mesh();
     // Taken apart in full, so that a new field cannot be forgotten.
     let Scenario {
         name: _,
@@ -102,7 +97,7 @@ pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
         contact,
         statics,
         damping,
-        mesh,
+        mesh: _,
         duration,
         recording,
         accuracy,
@@ -118,14 +113,11 @@ pub fn canonical_bytes(scenario: &Scenario) -> Vec<u8> {
         operation,
         contact: contact.written_out(),
         damping,
-        mesh: match mesh {
-            Mesh::Named(MeshName::Auto) => CanonicalMesh::Auto(1.0),
-            Mesh::Scaled(ScaledMesh { auto }) => CanonicalMesh::Auto(auto),
-            Mesh::Lengths(lengths) => CanonicalMesh::Lengths(lengths),
-        },
+        mesh,
         duration,
         recording,
         accuracy: accuracy.time_stepping(),
+        promised: accuracy.promise().map(|promise| [promise.orbit_size, promise.radius_deviation]),
         effects: active,
         ensemble,
         cost_study,
@@ -165,7 +157,7 @@ fn without_negative_zeros(scenario: &Scenario) -> Scenario {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, Material, Switch, preset};
+    use drillsweep_scenario::{Accuracy, AccuracyPreset, AccuracyTarget, Effect, Material, Switch, preset};
     use serde_json::{Value, json};
 
     use super::*;
@@ -175,10 +167,14 @@ mod tests {
     }
 
     #[test]
-    fn the_mesh_auto_is_a_factor_of_one() {
-        let with = |path: &str, value: Value| canonical_bytes(&paper().with(path, value).unwrap());
-        assert_eq!(with("mesh", json!("auto")), with("mesh.auto", json!(1.0)));
-        assert_ne!(with("mesh", json!("auto")), canonical_bytes(&paper()));
+    fn the_mesh_auto_is_the_factor_of_its_accuracy() {
+        for accuracy in AccuracyPreset::ALL {
+            let scenario = Scenario { accuracy: Accuracy::Preset(accuracy), ..paper() };
+            let with = |path: &str, value: Value| canonical_bytes(&scenario.with(path, value).unwrap());
+            let factor = scenario.accuracy.mesh_factor();
+            assert_eq!(with("mesh", json!("auto")), with("mesh.auto", json!(factor)));
+            assert_ne!(with("mesh", json!("auto")), canonical_bytes(&scenario));
+        }
     }
 
     #[test]
@@ -187,7 +183,7 @@ mod tests {
         let mut other = paper();
         other.name = "something else".into();
         assert_eq!(canonical_bytes(&other), bytes);
-        other.accuracy = Accuracy::Explicit(paper().accuracy.time_stepping());
+        other.accuracy = Accuracy::Target(AccuracyTarget::Statistics(0.02));
         assert_eq!(canonical_bytes(&other), bytes);
         let mut following = paper();
         following.recording.orbit_window = None;
@@ -203,6 +199,18 @@ mod tests {
             .and_then(|scenario| scenario.with("contact.damping_per_length", Value::from(2e4)));
         assert_eq!(canonical_bytes(&written.unwrap()), canonical_bytes(&by_length));
         assert_ne!(canonical_bytes(&by_length), bytes);
+    }
+
+    #[test]
+    fn equal_steps_with_another_promise_are_another_result() {
+        let with = |accuracy| canonical_bytes(&Scenario { accuracy, ..paper() });
+        let standard = Accuracy::Preset(AccuracyPreset::Standard);
+        let stepping = standard.time_stepping();
+        let others = [Accuracy::Target(AccuracyTarget::Trajectory(0.04)), Accuracy::Explicit(stepping)];
+        for other in others {
+            assert_eq!(other.time_stepping(), stepping);
+            assert_ne!(with(other), with(standard), "{other:?}");
+        }
     }
 
     #[test]

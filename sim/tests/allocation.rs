@@ -51,7 +51,7 @@ fn memory_grows_with_the_string_and_not_with_the_steps() {
         scenario.recording.nodes.truncate(1);
         scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
-        scenario.mesh = scenario.mesh.scaled(lengths);
+        scenario.scale_mesh(lengths);
         let mut nodes = 0;
         let bytes = measure(|| {
             let model = Model::new(&scenario).expect("the preset has a model");

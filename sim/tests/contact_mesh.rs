@@ -277,7 +277,7 @@ fn orbits_converge_at_second_order_or_faster() {
 fn radius_of_the_base_case(factor: f64) -> f64 {
     let mut scenario = preset("paper-200m").expect("shipped preset");
     scenario.contact.law = WallLaw::PerLength;
-    scenario.mesh = scenario.mesh.scaled(factor);
+    scenario.scale_mesh(factor);
     let model = Model::new(&scenario).expect("has a model");
     let [u, v, ..] = rest(&model).displacement[model.mesh.nearest_node(57.73)];
     u.hypot(v)
@@ -298,7 +298,7 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     let scaled = |factor: f64| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
         scenario.contact.law = WallLaw::PerLength;
-        scenario.mesh = scenario.mesh.scaled(factor);
+        scenario.scale_mesh(factor);
         let model = Model::new(&scenario).expect("has a model");
         let equilibrium = rest(&model);
         (model, equilibrium)
@@ -373,9 +373,11 @@ fn automatic_mesh_rests_where_a_fine_one_does() {
         };
         // Eight times as fine as any of these on wall and bodies, and with twice the elements of a joint: shorter ones there are lost in
         // the rounding of a bending stiffness that grows with the third power.
-        let mut lengths = given.mesh.scaled(0.0625);
-        lengths.lengths_mut().expect("has target lengths").tool_joint = 0.3 / 16.0;
-        let (fine_model, fine) = on(lengths);
+        let mut finest =
+            Scenario { mesh: preset("paper-200m").expect("shipped preset").mesh, ..given.clone() };
+        finest.scale_mesh(0.0625);
+        finest.mesh.lengths_mut().expect("has target lengths").tool_joint = 0.3 / 16.0;
+        let (fine_model, fine) = on(finest.mesh);
         // Place of the worst node, over the hole's radius; between the fine mesh's nodes on a straight line.
         let depths = fine_model.mesh.depths();
         let error = |(model, equilibrium): &(Model, Equilibrium)| {

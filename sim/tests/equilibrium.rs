@@ -472,7 +472,7 @@ fn a_string_on_a_wall_along_its_elements_rests_on_any_mesh() {
     let mut totals = Vec::new();
     for factor in [2.0, 1.0, 0.5, 0.25] {
         let mut scenario = preset("closed/string-1000m").unwrap();
-        scenario.mesh = scenario.mesh.scaled(factor);
+        scenario.scale_mesh(factor);
         let model = Model::new(&scenario).unwrap();
         let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("factor {factor}: {error}"));
         totals.push(rest.normal_force.iter().sum::<f64>());

@@ -44,7 +44,7 @@ fn torsion_grows_to_the_end_of_the_mesh_unless_damping_grows_with_frequency() {
     assert!(torsion.up_to_the_mesh && torsion.growing_modes > Some(280), "{torsion:?}");
     assert_eq!(modes.len(), model_nodes(&scenario) - 1);
     // A finer mesh only has more of them to grow.
-    scenario.mesh = scenario.mesh.scaled(0.5);
+    scenario.scale_mesh(0.5);
     let (finer, _) = judged(&scenario);
     let finer = finer.expect("twist takes part");
     assert!(finer.up_to_the_mesh && finer.highest_hz > torsion.highest_hz.map(|hz| 1.5 * hz), "{finer:?}");

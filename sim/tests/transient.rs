@@ -416,7 +416,7 @@ fn stiffness_by_length_makes_the_wall_the_same_for_every_mesh() {
     let statics = |factor: f64, law: WallLaw| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
         scenario.contact.law = law;
-        scenario.mesh = scenario.mesh.scaled(factor);
+        scenario.scale_mesh(factor);
         let model = Model::new(&scenario).expect("valid");
         let equilibrium = Equilibrium::find(&model).expect("rests");
         // Mean penetration of the collars, which lie on the wall along most of their length.

@@ -205,7 +205,7 @@ def test_the_plan_says_what_tables_and_snapshots_take(opened: Opens, client: Cli
     answer = client.plan("paper-200m", set=changes).data["plan"]["footprint"]
     tables, snapshots = (answer[f"{name}_bytes"] / 1000 for name in ("table", "snapshot"))
     plan = page.get_by_role("region", name="Plan")
-    said = f"about {tables:.0f} kB before compression at each accuracy, of that {snapshots:.0f} kB of snapshots"
+    said = f"about {tables:.0f} kB before compression, of that {snapshots:.0f} kB of snapshots"
     expect(plan.get_by_text(said)).to_be_visible()
 
 

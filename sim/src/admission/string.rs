@@ -117,7 +117,7 @@ fn mesh_targets(report: &mut Report, scenario: &Scenario) {
         scenario.mesh.is_auto()
             && scenario.recording.nodes.iter().any(|choice| matches!(choice, NodeChoice::Node(_))),
         "recording.nodes",
-        "node numbers are those of the mesh that \"auto\" makes: a depth is the same place on every mesh",
+        "node numbers are those of the mesh that \"auto\" and the accuracy make: a depth is the same place on every mesh",
     );
 }
 
@@ -345,11 +345,11 @@ mod tests {
         assert_eq!(warnings(by_length), []);
         problem("mesh.auto", |s| {
             by_length(s);
-            s.mesh = s.mesh.scaled(-0.5);
+            s.scale_mesh(-0.5);
         });
         let found = problem("mesh", |s| {
             by_length(s);
-            s.mesh = s.mesh.scaled(1e-3);
+            s.scale_mesh(1e-3);
         });
         assert!(found.message.contains("auto") && found.message.contains("20000"), "{found}");
         let found = warnings(|s| {
@@ -358,7 +358,7 @@ mod tests {
         });
         assert_eq!((found.len(), found[0].path.as_str()), (1, "mesh"));
         // The base case names its nodes by the numbers of its own mesh.
-        let found = warnings(|s| (s.mesh, s.contact.law) = (Mesh::AUTO, WallLaw::PerLength));
+        let found = warnings(|s| (s.mesh, s.contact.law) = (Mesh::auto(0.5), WallLaw::PerLength));
         assert_eq!((found.len(), found[0].path.as_str()), (1, "recording.nodes"));
     }
 

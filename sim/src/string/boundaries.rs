@@ -1,7 +1,7 @@
 //! Where the string must have nodes.
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, Material, Mesh, MeshName, ScaledMesh, Scenario, Section, SectionKind,
+    DrillString, ElementLengths, Material, Scenario, Section, SectionKind, WrittenOutMesh,
 };
 
 use super::auto;
@@ -61,10 +61,9 @@ fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
         let (body, joint) = auto::targets(section, scenario);
         (factor * body, factor * joint)
     };
-    match scenario.mesh {
-        Mesh::Named(MeshName::Auto) => scaled(1.0),
-        Mesh::Scaled(ScaledMesh { auto }) => scaled(auto),
-        Mesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
+    match scenario.written_out_mesh() {
+        WrittenOutMesh::Auto(factor) => scaled(factor),
+        WrittenOutMesh::Lengths(ElementLengths { drillpipe, tool_joint, collar, stabilizer, bit }) => {
             let body = match section.kind {
                 SectionKind::Drillpipe => drillpipe,
                 SectionKind::Collar => collar,

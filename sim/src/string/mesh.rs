@@ -8,7 +8,7 @@ use crate::contact::ContactNode;
 /// A string of more elements than this is refused.
 pub const MAX_ELEMENTS: usize = 20_000;
 
-/// A gauge or mass nearer to a boundary than this part of the target element length is put on the boundary:
+/// A gauge, mass or recorded depth nearer to a boundary than this part of the target element length is put on the boundary:
 /// an element that short would cost accuracy and stiffness for nothing.
 pub const SNAP_FRACTION: f64 = 0.05;
 
@@ -139,8 +139,8 @@ impl StringMesh {
     /// of section, tool joint, gauge and unbalance mass is a node; each stretch between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
-    /// Gauges and masses within [`SNAP_FRACTION`] of the target length of a boundary are moved to it. Where two
-    /// gauges meet at one node, the smaller clearance holds.
+    /// With the mesh `auto` depths whose motion is recorded are nodes, too. What lies within [`SNAP_FRACTION`] of the target length of a boundary is moved to it.
+    /// Where two gauges meet at one node, the smaller clearance holds.
     ///
     /// # Errors
     /// Sections without length, targets that are not positive, more than [`MAX_ELEMENTS`] elements, gauges or
@@ -153,7 +153,13 @@ impl StringMesh {
         let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
         on_string("gauge", gauges.clone(), length)?;
         on_string("unbalance mass", masses.clone(), length)?;
-        let places: Vec<f64> = gauges.chain(masses).collect();
+        // Node numbers are the user's if lengths are; elsewhere a depth is where the motion is read, on every mesh.
+        let is_recorded = |choice: &NodeChoice| match *choice {
+            NodeChoice::Depth(depth) if scenario.mesh.is_auto() && is_on_string(depth, length) => Some(depth),
+            NodeChoice::Depth(_) | NodeChoice::Node(_) => None,
+        };
+        let recorded = scenario.recording.nodes.iter().filter_map(is_recorded);
+        let places: Vec<f64> = gauges.chain(masses).chain(recorded).collect();
         let elements = cut(&boundaries::split(stretches, &places))?;
 
         let mut mesh = Self { nodes: bare_nodes(&elements, length, scenario.well.hole_diameter), elements };
@@ -286,7 +292,7 @@ fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Gauge, UnbalanceMass, preset};
+    use drillsweep_scenario::{Gauge, Mesh, UnbalanceMass, preset};
 
     use super::*;
 
@@ -452,6 +458,24 @@ mod tests {
         assert_eq!(mesh.chosen_node(NodeChoice::Depth(57.7)), Some(48));
         assert_eq!(mesh.chosen_node(NodeChoice::Depth(200.1)), None);
         assert_eq!(mesh.chosen_node(NodeChoice::Depth(f64::NAN)), None);
+    }
+
+    #[test]
+    fn recorded_depths_are_nodes_of_the_mesh_auto() {
+        let mut scenario = paper();
+        let depths = [11.7, 57.7, 192.5, 300.0];
+        scenario.recording.nodes = depths.map(NodeChoice::Depth).to_vec();
+        for factor in [0.4, 1.0, 1.5, 2.0] {
+            scenario.mesh = Mesh::auto(factor);
+            let mesh = StringMesh::new(&scenario).unwrap();
+            for depth in &depths[..3] {
+                let node = mesh.chosen_node(NodeChoice::Depth(*depth)).unwrap();
+                let off = (mesh.nodes[node].measured_depth - depth).abs();
+                assert!(off <= SNAP_FRACTION * 2.0, "{off} m off {depth} m");
+            }
+        }
+        scenario.mesh = paper().mesh;
+        assert_eq!(StringMesh::new(&scenario).unwrap().nodes.len(), 297, "numbers are the user's");
     }
 
     #[test]

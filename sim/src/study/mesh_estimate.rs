@@ -164,7 +164,7 @@ fn error<T: Copy>([own, half, quarter]: [T; 3], distance: impl Fn(T, T) -> f64) 
 
 fn on_a_mesh(scenario: &Scenario, factor: f64) -> Option<(Model, Equilibrium)> {
     let mut finer = scenario.clone();
-    finer.mesh = finer.mesh.scaled(factor);
+    finer.scale_mesh(factor);
     let model = Model::new(&finer).ok()?;
     let equilibrium = Equilibrium::find(&model).ok()?;
     Some((model, equilibrium))

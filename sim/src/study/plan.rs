@@ -2,8 +2,8 @@
 //! processor time at each accuracy.
 
 use drillsweep_scenario::{
-    Accuracy, AccuracyPreset, Integrator, NodeChoice, Recording, Scenario, Switch, TimeStepping, TimeWindow,
-    WallLaw,
+    Accuracy, AccuracyPreset, Integrator, Mesh, NodeChoice, Recording, Scenario, Switch, TimeStepping,
+    TimeWindow, WallLaw,
 };
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +12,7 @@ use crate::effect::{EffectDecision, decide_effects};
 use crate::model::{Model, ModelError};
 use crate::modes::{UndampedTorsion, static_stability};
 use crate::statics::Equilibrium;
+use crate::string::StringMesh;
 use crate::study::footprint::Footprint;
 use crate::study::mesh_estimate::MeshEstimate;
 use crate::study::summary::StaticsSummary;
@@ -23,7 +24,7 @@ use crate::transient::{longest_step, resolved_hz, shortest_run, step_count, tors
 pub struct Plan {
     /// Every effect, whether it takes part and why.
     pub effects: Vec<EffectDecision>,
-    /// Elements of the string.
+    /// Elements of the string at its own accuracy.
     pub elements: usize,
     /// Length of the shortest element \[m\].
     pub shortest_element: f64,
@@ -70,6 +71,8 @@ pub struct Plan {
 pub struct PlannedAccuracy {
     /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
     pub name: String,
+    /// Elements of its mesh: `auto` follows the accuracy.
+    pub elements: usize,
     /// Method.
     pub integrator: Integrator,
     /// Step \[s\]; the longest one where the step adapts itself.
@@ -180,7 +183,10 @@ impl Plan {
         let degrees_of_freedom = degrees_of_freedom(&model);
         let along_elements = model.effects.contact && scenario.contact.law == WallLaw::PerLength;
         let accuracies = if in_time { accuracies(scenario) } else { Vec::new() };
-        let planned = |(name, stepping): (&str, TimeStepping)| {
+        let planned = |(name, accuracy): (&str, Accuracy)| {
+            let stepping = accuracy.time_stepping();
+            let nodes = nodes_at(&model, accuracy);
+            let statics_cpu_time = speed.map(|speed| speed.statics_per_node * nodes as f64);
             let runs = u64::from(scenario.runs());
             let steps = step_count(&model, stepping).map(|steps| steps * runs);
             let cost = |steps: u64| {
@@ -193,6 +199,7 @@ impl Plan {
             let fewest_steps = steps.map(|steps| (steps as f64 * shortest_part).round() as u64);
             PlannedAccuracy {
                 name: name.to_owned(),
+                elements: nodes - 1,
                 integrator: stepping.integrator,
                 step: longest_step(&model, stepping),
                 steps,
@@ -240,8 +247,8 @@ impl Plan {
         self.torque_top_rotating = statics.torque_top_rotating;
         self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));
         self.warnings.extend(static_stability(&model, &equilibrium).and_then(|found| found.warning()));
-        for (planned, (_, stepping)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
-            let more = planned.step / torsion_step(&stepping, self.undamped_torsion.as_ref());
+        for (planned, (_, accuracy)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
+            let more = planned.step / torsion_step(&accuracy.time_stepping(), self.undamped_torsion.as_ref());
             if more > 1.0 {
                 planned.step /= more;
                 for steps in [&mut planned.steps, &mut planned.fewest_steps].into_iter().flatten() {
@@ -301,7 +308,7 @@ fn degrees_of_freedom(model: &Model) -> usize {
 }
 
 /// The scenario's own accuracy, then the named ones that it is not.
-fn accuracies(scenario: &Scenario) -> Vec<(&'static str, TimeStepping)> {
+fn accuracies(scenario: &Scenario) -> Vec<(&'static str, Accuracy)> {
     let named = [
         ("draft", AccuracyPreset::Draft),
         ("standard", AccuracyPreset::Standard),
@@ -315,8 +322,18 @@ fn accuracies(scenario: &Scenario) -> Vec<(&'static str, TimeStepping)> {
         Accuracy::Explicit(_) => "explicit",
     };
     let others = named.into_iter().filter(|(name, _)| *name != own);
-    let others = others.map(|(name, preset)| (name, Accuracy::Preset(preset).time_stepping()));
-    std::iter::once((own, scenario.accuracy.time_stepping())).chain(others).collect()
+    let others = others.map(|(name, preset)| (name, Accuracy::Preset(preset)));
+    std::iter::once((own, scenario.accuracy)).chain(others).collect()
+}
+
+/// Nodes of a model's string at an accuracy, which the mesh `auto` follows. A string that has too many then is as it is.
+fn nodes_at(model: &Model, accuracy: Accuracy) -> usize {
+    let scenario = &model.scenario;
+    if scenario.mesh != Mesh::AUTO || accuracy == scenario.accuracy {
+        return model.node_count();
+    }
+    let at_accuracy = Scenario { accuracy, ..scenario.clone() };
+    StringMesh::new(&at_accuracy).map_or(model.node_count(), |mesh| mesh.nodes.len())
 }
 
 impl MethodKind {
@@ -379,7 +396,7 @@ pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
         .collect();
     let mut large = run(MethodKind::GeneralizedAlpha, 6);
     large.is_large = true;
-    large.scenario.mesh = large.scenario.mesh.scaled(1.0 / LARGE_MESH);
+    large.scenario.scale_mesh(1.0 / LARGE_MESH);
     runs.push(large);
     runs.extend(MethodKind::ALL.map(|method| {
         let mut along = run(method, 6);
@@ -455,6 +472,23 @@ mod tests {
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
+    }
+
+    #[test]
+    fn the_mesh_auto_costs_what_each_accuracy_makes_of_it() {
+        let mut scenario = preset("paper-200m-damped").unwrap();
+        scenario.mesh = Mesh::AUTO;
+        let plan = Plan::new(&scenario, None).unwrap();
+        assert_eq!(plan.accuracies.len(), 3);
+        for planned in &plan.accuracies {
+            let accuracy = Accuracy::Preset(AccuracyPreset::named(&planned.name).unwrap());
+            let of_its_own = Plan::new(&Scenario { accuracy, ..scenario.clone() }, None).unwrap();
+            assert_eq!(planned.elements, of_its_own.elements, "{}", planned.name);
+        }
+        assert_ne!(plan.accuracies[1].elements, plan.accuracies[2].elements);
+        scenario.mesh = Mesh::auto(1.0);
+        let plan = Plan::new(&scenario, None).unwrap();
+        assert!(plan.accuracies.iter().all(|planned| planned.elements == plan.elements));
     }
 
     #[test]

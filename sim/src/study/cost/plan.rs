@@ -103,7 +103,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     rows.extend(study.meshes().into_iter().map(|factor| {
         let preset = AccuracyPreset::Reference;
         let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
-        planned.scenario.mesh = planned.scenario.mesh.scaled(factor);
+        planned.scenario.scale_mesh(factor);
         planned
     }));
     Ok(rows)

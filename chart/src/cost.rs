@@ -8,7 +8,7 @@ use crate::picture::{Drawing, Point, Series, WantedAccuracy, WorkPrecisionChart}
 /// The error that is drawn as a line across.
 const WANTED: f64 = 0.02;
 
-/// Error against processor time per simulated second: a line of the named accuracies, and a line a method with a point a step. The
+/// Error against processor time per simulated second, or of runs that settle that of the whole run: a line of the named accuracies, and a line a method with a point a step. The
 /// reference's two methods stand with the error of each against the other.
 pub fn work_precision(report: &CostReport, measure: Measure) -> Drawing {
     chart(report, measure).drawing()
@@ -16,8 +16,12 @@ pub fn work_precision(report: &CostReport, measure: Measure) -> Drawing {
 
 fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
     let mut series: Vec<(String, Vec<&CostRow>)> = Vec::new();
-    for row in report.compared() {
-        let name = series_name(row);
+    let meshes: &[CostRow] = if report.settles { &report.meshes } else { &[] };
+    for (row, name) in report
+        .compared()
+        .map(|row| (row, series_name(row)))
+        .chain(meshes.iter().map(|row| (row, mesh_series(row))))
+    {
         match series.iter_mut().find(|(known, _)| *known == name) {
             Some((_, rows)) => rows.push(row),
             None => series.push((name, vec![row])),
@@ -30,9 +34,10 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
             false => rows.sort_by(|a, b| order(b).total_cmp(&order(a))),
         }
         let point = |row: &CostRow| Point {
-            x: row.cpu_per_simulated_second,
+            x: if report.settles { row.cpu_time } else { row.cpu_per_simulated_second },
             y: measure.of(row),
             label: match row.tolerance {
+                _ if row.mesh_factor != 1.0 => format!("x {}", three_digits(row.mesh_factor)),
                 _ if name == PRESETS => row.name.clone(),
                 Some(tolerance) => format!("{tolerance:e}"),
                 None => step_text(row.step),
@@ -44,8 +49,14 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
     let of_scenario =
         if report.scenario.is_empty() { String::new() } else { format!(" of {}", report.scenario) };
     WorkPrecisionChart {
-        title: format!("What accuracy costs: runs{of_scenario} over {} s", report.duration),
-        x_label: "CPU seconds per simulated second".to_owned(),
+        title: match report.settles {
+            true => format!("What accuracy costs: runs{of_scenario} until they have settled"),
+            false => format!("What accuracy costs: runs{of_scenario} over {} s", report.duration),
+        },
+        x_label: match report.settles {
+            true => "CPU seconds of the run".to_owned(),
+            false => "CPU seconds per simulated second".to_owned(),
+        },
         y_label: label(measure, report),
         wanted: Some(WantedAccuracy { y: WANTED, label: "wanted: 2 %".to_owned() }),
         series: series.collect(),
@@ -54,7 +65,10 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
 
 /// What stands at the vertical axis.
 fn label(measure: Measure, report: &CostReport) -> String {
-    let window = || format!("over [{}, {}) s", report.orbit_window.from, report.orbit_window.to);
+    let window = || match report.settles {
+        true => "once settled".to_owned(),
+        false => format!("over [{}, {}) s", report.orbit_window.from, report.orbit_window.to),
+    };
     match (measure, report.histories_part_at) {
         (Measure::OrbitSize, _) => format!("relative error of orbit size {}", window()),
         (Measure::RadiusDeviation, _) => format!("relative error of std of radius {}", window()),
@@ -80,6 +94,11 @@ fn series_name(row: &CostRow) -> String {
     }
 }
 
+/// The series of a mesh, at the accuracy of its line.
+fn mesh_series(row: &CostRow) -> String {
+    format!("{}, other element lengths", row.name)
+}
+
 /// The name of a method as it is printed.
 fn printed_name(integrator: Integrator) -> &'static str {
     match integrator {
@@ -94,6 +113,7 @@ mod tests {
     use drillsweep_api::cost::CostErrors;
     use drillsweep_scenario::TimeWindow;
     use drillsweep_sim::study::cost::StatisticError;
+    use drillsweep_sim::transient::MotionRegime;
 
     use super::*;
     use crate::PNG_WIDTH;
@@ -119,6 +139,8 @@ mod tests {
             elements: 296,
             steps: (2.0 / step).round() as u64,
             step_subdivisions: 1,
+            simulated_time: 2.0,
+            regime: Some(MotionRegime::Fixed),
             cpu_time: 2.0 * cpu,
             cpu_per_simulated_second: cpu,
             speed_over_rk4: None,
@@ -149,6 +171,7 @@ mod tests {
         CostReport {
             scenario: "paper-200m".to_owned(),
             duration: 2.0,
+            settles: false,
             scenario_duration: 60.0,
             orbit_window: TimeWindow { from: 1.333, to: 2.0 },
             spectrum_window: None,
@@ -168,6 +191,7 @@ mod tests {
                 row(Integrator::Esdirk4, 5e-4, 0.8, 4e-3),
                 failed,
             ],
+            starts: Vec::new(),
             meshes: Vec::new(),
             effects: Vec::new(),
             recommendations: Vec::new(),

@@ -138,7 +138,7 @@ numbers!(OrbitOutputs: nodes, window; without decimation);
 numbers!(TimeWindow: from, to);
 numbers!(TimeStepping: step, tolerance, spectral_radius; without integrator, contact_sweeps);
 numbers!(CostStudy: duration, reference, methods, mesh_factors, total; without members, presets, effects);
-numbers!(StudyReference: methods, size_agreement, deviation_agreement);
+numbers!(StudyReference: methods, mesh_factor, size_agreement, deviation_agreement);
 numbers!(MethodSteps: steps, tolerance; without integrator, contact_sweeps);
 
 impl Numbers for Outputs {

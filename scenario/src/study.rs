@@ -11,7 +11,7 @@ use crate::{AccuracyPreset, Effect, Integrator, Scenario, TimeStepping};
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
     /// Simulated time of each run \[s\], 80 recording intervals or more and a whole number of them. Absent means the scenario's own
-    /// duration and windows, or 60 s at most where its window is settled; of any other duration, and of that, orbits are looked at
+    /// duration and windows: with a settled one each run goes on until its own statistics have settled. Of any other duration orbits are looked at
     /// over the last third, and spectra over the last sixth. A short one saves time and misses what comes late, such as stick-slip.
     #[serde(default)]
     pub duration: Option<f64>,
@@ -27,17 +27,19 @@ pub struct CostStudy {
     #[serde(default = "all_presets")]
     pub presets: Vec<AccuracyPreset>,
     /// Methods and their steps to compare besides; absent means `generalized_alpha` with 0.5, 0.25 and 0.125 ms and `esdirk4`
-    /// with 1, 0.5 and 0.25 ms, as far as they divide the recording interval. The reference's two methods are always shown.
+    /// with 1, 0.5 and 0.25 ms, as far as they divide the recording interval, and for runs that settle `rk4` with 0.95 of its stability limit on
+    /// the scenario's own mesh. The reference's two methods are always shown.
     #[serde(default)]
     pub methods: Option<Vec<MethodSteps>>,
-    /// Factors on the mesh's target element lengths, 0.1 to 10, each a run of its own at the accuracy `reference`; none unless
-    /// given, usual 2, 0.5 and 0.25. Factors near 1 show little; small ones cost time in inverse proportion, and without
-    /// `contact.law = "per_length"` the values need not converge.
+    /// Factors on the mesh's target element lengths, 0.1 to 10, each a run of its own at the accuracy `reference`, or of runs that settle at the
+    /// scenario's own; usual 2, 0.5 and 0.25. None unless given, but for runs that settle 2 and 0.5. Factors near 1 show little; small ones cost time
+    /// in inverse proportion, and without `contact.law = "per_length"` the values need not converge.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
     /// Wanted relative error of orbit size, mesh and time together, above 0 and below 1, usual 0.01 to 0.1: the cheapest mesh,
     /// method and tolerance for it are looked for; absent means not. Without `mesh_factors` the meshes are then those of the
-    /// factors 1, 0.5 and 0.25: nodes of the first are mostly nodes of the others, so that values are compared at the same depths.
+    /// factors 1, 0.5 and 0.25: nodes of the first are mostly nodes of the others, so that values are compared at the same depths. Not for runs that
+    /// settle: each of their lines has its whole error, and the recommendations name the cheapest.
     #[serde(default)]
     pub total: Option<f64>,
     /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
@@ -46,20 +48,15 @@ pub struct CostStudy {
     pub effects: bool,
 }
 
-/// Simulated time of each run of a study of a scenario whose window is settled \[s\], unless it says otherwise.
-const DURATION_OF_SETTLED: f64 = 60.0;
-
 impl Scenario {
-    /// Simulated time of each run of the scenario's cost study \[s\].
+    /// Simulated time of each run of the scenario's cost study \[s\], at most if they settle.
     pub fn study_duration(&self) -> f64 {
-        let Self { duration, recording, cost_study, .. } = self;
-        let rate = recording.rate_hz;
-        let usual = if self.settles() {
-            duration.min((DURATION_OF_SETTLED * rate).round() / rate)
-        } else {
-            *duration
-        };
-        cost_study.as_ref().and_then(|study| study.duration).unwrap_or(usual)
+        self.cost_study.as_ref().and_then(|study| study.duration).unwrap_or(self.duration)
+    }
+
+    /// Whether the runs of the scenario's cost study end when their statistics have settled.
+    pub fn study_settles(&self) -> bool {
+        self.settles() && self.cost_study.as_ref().is_none_or(|study| study.duration.is_none())
     }
 }
 
@@ -77,10 +74,14 @@ const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StudyReference {
-    /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30
-    /// contact sweeps.
+    /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30 contact sweeps;
+    /// for runs that settle `generalized_alpha` with 0.125 ms and `esdirk4` with 0.5 ms, both with up to 30.
     #[serde(default)]
     pub methods: Option<Vec<TimeStepping>>,
+    /// Factor on the element lengths that the scenario has at its own accuracy, 0.1 to 1; absent means 1, and 0.2 if runs settle and the wall's
+    /// stiffness belongs to the length. Errors of all lines are against this mesh: with 1 they are those of the steps alone.
+    #[serde(default)]
+    pub mesh_factor: Option<f64>,
     /// Relative difference of orbit size, mean radius and contact force up to which the two agree, above 0 and below 1; 0.01 unless
     /// given, usual 0.003 to 0.03. Too small leaves no reference in scenes that scatter; too large lets the reference's own error
     /// pass for that of a method.
@@ -170,7 +171,12 @@ impl Default for CostStudy {
 
 impl Default for StudyReference {
     fn default() -> Self {
-        Self { methods: None, size_agreement: one_percent(), deviation_agreement: three_percent() }
+        Self {
+            methods: None,
+            mesh_factor: None,
+            size_agreement: one_percent(),
+            deviation_agreement: three_percent(),
+        }
     }
 }
 

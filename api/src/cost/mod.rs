@@ -40,6 +40,7 @@ mod tests {
         Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NodeAgreement,
         NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, TotalChoice, TotalCost,
     };
+    use drillsweep_sim::transient::MotionRegime;
 
     use super::*;
 
@@ -76,6 +77,8 @@ mod tests {
             elements: 296,
             steps: (2.0 / step).round() as u64,
             step_subdivisions: 1,
+            simulated_time: 2.0,
+            regime: Some(MotionRegime::Fixed),
             cpu_time: 2.0 * cpu,
             cpu_per_simulated_second: cpu,
             speed_over_rk4: Some(4.2 / cpu),
@@ -140,6 +143,7 @@ mod tests {
         CostReport {
             scenario: "paper-200m".to_owned(),
             duration: 2.0,
+            settles: false,
             scenario_duration: 60.0,
             orbit_window: TimeWindow { from: 1.333, to: 2.0 },
             spectrum_window: Some(TimeWindow { from: 1.667, to: 2.0 }),
@@ -167,6 +171,7 @@ mod tests {
                     ..row(Integrator::Rk4, 1.0 / 16000.0, 1.0, 0.0)
                 },
             ],
+            starts: Vec::new(),
             meshes: vec![coarse, fine],
             effects: Vec::new(),
             recommendations: vec![Recommendation {

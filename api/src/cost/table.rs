@@ -6,7 +6,7 @@ use drillsweep_sim::study::cost::{
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::{Column, Table};
 
-/// One row a line of the study: its `role` (`reference`, `method`, `mesh` or `effect`), what it was, what it took, its errors against
+/// One row a line of the study: its `role` (`reference`, `method`, `start`, `mesh` or `effect`), what it was, what it took, its errors against
 /// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none. Where a whole
 /// error was asked for, `mesh_error` is what a mesh is off by, and a last row of the role `total` is the mesh and method chosen, with the parts of
 /// its error and the time expected for the scenario's own duration.
@@ -17,6 +17,7 @@ pub fn table(report: &CostReport) -> Table {
     let of_role = |role, rows| std::iter::repeat(role).zip(rows);
     let runs: Vec<(&str, &CostRow)> = of_role("reference", report.references.as_slice())
         .chain(of_role("method", &report.methods))
+        .chain(of_role("start", &report.starts))
         .chain(of_role("mesh", &report.meshes))
         .chain(of_role("effect", &report.effects))
         .chain(of_role("total", &chosen))
@@ -59,6 +60,8 @@ pub fn table(report: &CostReport) -> Table {
         .with(&ELEMENTS, counts(|row| row.elements as u64))
         .with(&STEPS, counts(|row| row.steps))
         .with(&STEP_SUBDIVISIONS, counts(|row| row.step_subdivisions.into()))
+        .with(&SIMULATED_TIME, numbers(|row| row.simulated_time))
+        .with(&MOTION_REGIME, texts(|row| row.regime.map(|regime| regime.name().to_owned())))
         .with(&CPU_TIME, numbers(|row| row.cpu_time))
         .with(&CPU_PER_SIMULATED_SECOND, numbers(|row| row.cpu_per_simulated_second))
         .with(&SPEED_OVER_RK4, numbers(|row| row.speed_over_rk4.unwrap_or(f64::NAN)));
@@ -101,6 +104,7 @@ fn chosen_row(report: &CostReport, choice: &TotalChoice) -> Option<CostRow> {
     Some(CostRow {
         mesh_factor: choice.mesh_factor,
         elements: choice.elements,
+        simulated_time: report.scenario_duration,
         cpu_time: choice.cpu_time,
         cpu_per_simulated_second: choice.cpu_time / report.scenario_duration,
         speed_over_rk4: None,
@@ -123,7 +127,7 @@ mod tests {
         assert_eq!(
             lines[0],
             "role,name,without_effect,integrator,step,tolerance,contact_sweeps,mesh_factor,elements,steps,step_subdivisions,\
-             cpu_time,cpu_per_simulated_second,speed_over_rk4,\
+             simulated_time,motion_regime,cpu_time,cpu_per_simulated_second,speed_over_rk4,\
              orbit_size_bias,orbit_size_half_width,orbit_size_spread,\
              radius_deviation_bias,radius_deviation_half_width,radius_deviation_spread,\
              mean_radius_bias,mean_radius_half_width,mean_radius_spread,\
@@ -137,7 +141,7 @@ mod tests {
         assert_eq!(roles, ["reference", "reference", "method", "method", "method", "mesh", "mesh"]);
         assert_eq!(
             lines[3],
-            "method,draft,,esdirk4,0.001,,2,1.0,296,2000,1,0.8,0.4,10.5,0.4,,,,,,0.04000000000000001,,,,,,,,,0.0,0.4,0,1,\
+            "method,draft,,esdirk4,0.001,,2,1.0,296,2000,1,2.0,fixed,0.8,0.4,10.5,0.4,,,,,,0.04000000000000001,,,,,,,,,0.0,0.4,0,1,\
              1.2000000000000002,0.0,0.0,,2.0,,,,"
         );
         assert!(lines[5].ends_with(",,,,,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[5]);
@@ -151,7 +155,10 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert!(lines[6].ends_with(",0.08,,,") && lines[7].ends_with(",0.005,,,"), "{csv}");
         // The steps are those of the run; 96 s are expected for the scenario's 60.
-        assert!(lines[8].starts_with("total,esdirk4,,esdirk4,0.0005,,2,0.5,585,4000,1,96.0,1.6,,"), "{csv}");
+        assert!(
+            lines[8].starts_with("total,esdirk4,,esdirk4,0.0005,,2,0.5,585,4000,1,60.0,fixed,96.0,1.6,,"),
+            "{csv}"
+        );
         assert!(lines[8].ends_with(",0.005,0.004,0.009,"), "{csv}");
     }
 

@@ -8,6 +8,8 @@ use drillsweep_sim::study::cost::{
     StatisticError, TotalCost,
 };
 
+use drillsweep_sim::transient::MotionRegime;
+
 use super::{step_text, three_digits};
 
 /// What stands in a cell without a value.
@@ -16,7 +18,13 @@ const ABSENT: &str = "-";
 /// The study in words and aligned columns.
 pub fn text(report: &CostReport) -> String {
     let mut text = head(report);
+    if report.settles {
+        text.push_str(
+            "errors are whole ones, of steps, mesh and sampling together; `until` is when a run had settled and ended, and CPU s are of all of it\n",
+        );
+    }
     text.push_str(&match report.histories_part_at {
+        _ if report.settles => String::new(),
         Some(time) => format!(
             "histories have parted after {} s (by the method, or by a disturbance of 1e-6 m): they are compared up to there, and \
              beyond it only statistics and lines mean anything\n",
@@ -41,11 +49,21 @@ pub fn text(report: &CostReport) -> String {
         text.push_str(&aligned_rows(&method_columns(&rows), &rows));
         text.push_str(&spurious_lines(&rows));
     }
+    let rows: Vec<&CostRow> = report.starts.iter().collect();
+    if !rows.is_empty() {
+        text.push_str("\nthe other start, against the reference (statistics and line heights in %)\n");
+        text.push_str(&aligned_rows(&mesh_columns(&rows), &rows));
+    }
     let rows: Vec<&CostRow> = report.meshes.iter().collect();
     if !rows.is_empty() {
-        text.push_str(
-            "\nmeshes at the accuracy reference, against the finest (statistics and line heights in %)\n",
-        );
+        text.push_str(match report.settles {
+            true => {
+                "\nmeshes at the scenario's accuracy, against the reference (statistics and line heights in %)\n"
+            }
+            false => {
+                "\nmeshes at the accuracy reference, against the finest (statistics and line heights in %)\n"
+            }
+        });
         text.push_str(&aligned_rows(&mesh_columns(&rows), &rows));
     }
     let rows: Vec<&CostRow> = report.effects.iter().collect();
@@ -79,10 +97,17 @@ fn head(report: &CostReport) -> String {
     let name = if report.scenario.is_empty() { "the scenario" } else { &report.scenario };
     let subject = if report.effects.is_empty() { "what accuracy costs" } else { "what each effect does" };
     let orbit = &report.orbit_window;
-    let mut text = format!(
-        "{subject}: runs of {name} over {} s, statistics over [{}, {}) s",
-        report.duration, orbit.from, orbit.to
-    );
+    let mut text = if report.settles {
+        format!(
+            "{subject}: runs of {name}, each until its statistics have settled, {} s at most",
+            report.duration
+        )
+    } else {
+        format!(
+            "{subject}: runs of {name} over {} s, statistics over [{}, {}) s",
+            report.duration, orbit.from, orbit.to
+        )
+    };
     if let Some(window) = &report.spectrum_window {
         let _ = write!(text, ", lines over [{}, {}) s", window.from, window.to);
     }
@@ -226,13 +251,7 @@ fn method_columns(rows: &[&CostRow]) -> Vec<Cells> {
 
 fn mesh_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let mut columns = run_columns(rows);
-    columns.splice(
-        1..1,
-        [
-            column("lengths", rows, |row| Some(format!("x {}", three_digits(row.mesh_factor)))),
-            column("elements", rows, |row| Some(row.elements.to_string())),
-        ],
-    );
+    columns.insert(1, column("lengths", rows, |row| Some(format!("x {}", three_digits(row.mesh_factor)))));
     columns.extend(change_columns(rows));
     columns
 }
@@ -263,6 +282,15 @@ fn change_columns(rows: &[&CostRow]) -> Vec<Cells> {
 
 fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let cut = rows.iter().any(|row| row.step_subdivisions > 1);
+    let has_settled = |row: &CostRow| row.regime.filter(|regime| *regime != MotionRegime::Fixed);
+    let settles = rows.iter().any(|row| has_settled(row).is_some());
+    let until = |row: &CostRow| {
+        has_settled(row).map(|regime| match regime {
+            MotionRegime::NotSettled => "NOT SETTLED".to_owned(),
+            _ => format!("{} s", three_digits(row.simulated_time)),
+        })
+    };
+    let elements = rows.windows(2).any(|pair| pair[0].elements != pair[1].elements);
     let is_implicit = |row: &CostRow| row.integrator != Integrator::Rk4;
     let ran = |row: &CostRow, cell: String| row.failure.is_none().then_some(cell);
     vec![
@@ -272,7 +300,10 @@ fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
         column("tolerance", rows, |row| row.tolerance.map(|tolerance| format!("{tolerance:e}"))),
         column("sweeps", rows, |row| is_implicit(row).then(|| row.contact_sweeps.to_string())),
         column("cut in", rows, |row| cut.then(|| row.step_subdivisions.to_string())),
+        column("elements", rows, |row| elements.then(|| row.elements.to_string())),
+        column("until", rows, until),
         column("steps", rows, |row| ran(row, row.steps.to_string())),
+        column("CPU s", rows, |row| settles.then(|| three_digits(row.cpu_time))),
         column("CPU s per s", rows, |row| ran(row, three_digits(row.cpu_per_simulated_second))),
     ]
 }
@@ -445,7 +476,7 @@ mod tests {
             ],
             "{text}"
         );
-        assert!(text.contains("  x 0.5         585"), "{text}");
+        assert!(text.contains("x 0.5    esdirk4  1 ms       2       585"), "{text}");
         let end = "recommended\n  2 % of orbit size: esdirk4 with a step of 0.5 ms\n\nwarning: a finer mesh meets a stiffer wall\n";
         assert!(text.ends_with(end), "{text}");
     }

@@ -118,6 +118,14 @@ fn check_reference(report: &mut Report, scenario: &Scenario, study: &CostStudy) 
             "must be greater than 0 and less than 1",
         );
     }
+    if let Some(factor) = reference.mesh_factor {
+        report.number(
+            factor,
+            format!("{PATH}.mesh_factor"),
+            |factor| (0.1..=1.0).contains(&factor),
+            "must be 0.1 to 1",
+        );
+    }
     let Some(methods) = &reference.methods else { return };
     let of_different_kind = matches!(methods.as_slice(), [a, b] if a.integrator != b.integrator);
     let names: Vec<_> = methods.iter().map(|method| method.integrator.name()).collect();

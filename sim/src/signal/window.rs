@@ -19,7 +19,7 @@ pub enum Window {
 
 impl Window {
     /// The weight of sample `n` of `count`.
-    pub(super) fn weight(self, n: usize, count: usize) -> f64 {
+    pub(crate) fn weight(self, n: usize, count: usize) -> f64 {
         match self {
             Window::Rectangular => 1.0,
             Window::Hann => 0.5 - 0.5 * (TAU * n as f64 / count as f64).cos(),

@@ -5,10 +5,10 @@ use drillsweep_scenario::{TimeStepping, TimeWindow};
 use super::Quantity;
 use crate::freedom::{U, V};
 use crate::model::Model;
-use crate::signal::{FullSpectrum, Window, full_spectrum, orbit_statistics, sample_range};
+use crate::signal::{FullSpectrum, Window, full_spectrum, sample_range, weighted_orbit_statistics};
 use crate::statics::Equilibrium;
 use crate::study::summary::energy_residual_ratio;
-use crate::transient::{NodeHistory, Records};
+use crate::transient::{MotionRegime, NodeHistory, Records};
 
 /// Histories are kept of so many members: one to compare, and one to part from it.
 const MEMBERS_WITH_HISTORIES: u32 = 2;
@@ -23,7 +23,13 @@ pub struct Measure {
     /// The longest step made \[s\].
     pub(in crate::study) longest_step: f64,
     pub(in crate::study) rate_hz: f64,
-    /// Lateral histories of the recorded nodes; none of members beyond the second.
+    /// Simulated time of the run \[s\].
+    pub(in crate::study) simulated_time: f64,
+    /// Window of the statistics \[s\].
+    pub(in crate::study) window: TimeWindow,
+    /// How the motion has settled.
+    pub(in crate::study) regime: MotionRegime,
+    /// Lateral histories of the recorded nodes; none of members beyond the second, or of runs that settle, each over a window of its own.
     pub(in crate::study) histories: Vec<NodeHistory>,
     pub(in crate::study) nodes: Vec<NodeMeasure>,
     /// Mean over the orbit window of the sum of all normal forces \[N\].
@@ -59,16 +65,27 @@ impl Measure {
     /// Keeps of a run, the `member` of its ensemble, what the study compares.
     pub fn new(model: &Model, equilibrium: &Equilibrium, records: &Records, member: u32) -> Self {
         let scenario = &model.scenario;
-        let orbit_window = records.settling.window;
-        let spectrum_window = scenario.spectrum_windows().unwrap_or_default().last().copied();
+        let settling = &records.settling;
+        let orbit_window = settling.window;
+        let spectrum_window = records.spectrum_windows(scenario).last().copied();
         let node = |history: &NodeHistory| {
             let depth = model.mesh.nodes[history.node].measured_depth;
-            NodeMeasure::new(depth, history, records.rate_hz, orbit_window, spectrum_window)
+            NodeMeasure::new(
+                depth,
+                history,
+                records.rate_hz,
+                (orbit_window, settling.weighting),
+                spectrum_window,
+            )
         };
         let samples = records.histories.first().map_or(0, |history| history.u.len());
         let counted = sample_range(orbit_window.from, orbit_window.to, records.rate_hz, samples).len();
         let impulse: f64 = records.contacts.iter().map(|contact| contact.impulse).sum();
-        let kept = if member < MEMBERS_WITH_HISTORIES { records.histories.as_slice() } else { &[] };
+        let kept = if member < MEMBERS_WITH_HISTORIES && !scenario.settles() {
+            records.histories.as_slice()
+        } else {
+            &[]
+        };
         let lateral = |history: &NodeHistory| NodeHistory {
             node: history.node,
             u: history.u.clone(),
@@ -84,6 +101,9 @@ impl Measure {
             subdivisions: records.effort.subdivisions,
             longest_step: records.effort.step_range[1],
             rate_hz: records.rate_hz,
+            simulated_time: records.simulated_time,
+            window: orbit_window,
+            regime: settling.regime,
             histories: kept.iter().map(lateral).collect(),
             nodes: records.histories.iter().map(node).collect(),
             contact_force: impulse * records.rate_hz / counted.max(1) as f64,
@@ -133,12 +153,13 @@ impl NodeMeasure {
         measured_depth: f64,
         history: &NodeHistory,
         rate_hz: f64,
-        orbit_window: TimeWindow,
+        (orbit_window, weighting): (TimeWindow, Window),
         spectrum_window: Option<TimeWindow>,
     ) -> Self {
         let cut = |window: TimeWindow| sample_range(window.from, window.to, rate_hz, history.u.len());
         let samples = cut(orbit_window);
-        let orbit = orbit_statistics(&history.u[samples.clone()], &history.v[samples.clone()]);
+        let (u, v) = (&history.u[samples.clone()], &history.v[samples.clone()]);
+        let orbit = weighted_orbit_statistics(u, v, weighting);
         let spectrum = |window| {
             let samples = cut(window);
             full_spectrum(&history.u[samples.clone()], &history.v[samples], rate_hz, Window::Hann)
@@ -148,15 +169,22 @@ impl NodeMeasure {
             orbit_size: orbit.map_or(0.0, |orbit| orbit.orbit_radius_rms),
             radius_deviation: orbit.map_or(0.0, |orbit| orbit.radius_deviation),
             mean_radius: orbit.map_or(0.0, |orbit| orbit.mean_radius),
-            torsional_speed: history.theta_z_rate.get(samples).map_or(0.0, deviation),
+            torsional_speed: history
+                .theta_z_rate
+                .get(samples)
+                .map_or(0.0, |rates| deviation(rates, weighting)),
             spectrum: spectrum_window.map(spectrum),
         }
     }
 }
 
-/// Standard deviation of samples about their mean.
-fn deviation(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+/// Standard deviation of weighted samples about their mean.
+fn deviation(values: &[f64], weighting: Window) -> f64 {
+    let weights = || (0..values.len()).map(|n| weighting.weight(n, values.len()));
+    let total = weights().sum::<f64>().max(f64::MIN_POSITIVE);
+    let mean = |value: &dyn Fn(f64) -> f64| {
+        values.iter().zip(weights()).map(|(&sample, weight)| weight * value(sample)).sum::<f64>() / total
+    };
+    let centre = mean(&|sample| sample);
+    mean(&|sample| (sample - centre).powi(2)).sqrt()
 }

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::ModelError;
 use crate::statics::StaticsError;
-use crate::transient::TransientError;
+use crate::transient::{MotionRegime, TransientError};
 
 /// What a study compares of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -106,14 +106,17 @@ impl Quantity {
 pub struct CostReport {
     /// Name of the scenario.
     pub scenario: String,
-    /// Simulated time of each run \[s\].
+    /// Simulated time of each run \[s\], at most if they settle.
     pub duration: f64,
+    /// Whether each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, against the
+    /// settled values of the two methods on a finer mesh.
+    pub settles: bool,
     /// Duration of the scenario itself \[s\]. Where the runs are shorter, the windows are not those that a summary has, and
     /// what comes later is not compared.
     pub scenario_duration: f64,
-    /// Window of orbit size, radius, contact force and torsional speed \[s\].
+    /// Window of orbit size, radius, contact force and torsional speed \[s\]; of runs that settle that of the reference's first method.
     pub orbit_window: TimeWindow,
-    /// Window of the lines \[s\]; absent where the scenario has none.
+    /// Window of the lines \[s\]; absent where the scenario has none, or runs have their own.
     pub spectrum_window: Option<TimeWindow>,
     /// Members of the ensemble that each method ran.
     pub members: u32,
@@ -127,8 +130,11 @@ pub struct CostReport {
     pub agreements: Vec<Agreement>,
     /// Presets, methods and steps.
     pub methods: Vec<CostRow>,
-    /// Meshes, at the accuracy `reference`, against the finest. With the contact law `per_node` a finer
-    /// mesh is another, stiffer wall, and these rows need not converge.
+    /// The other start at the scenario's accuracy: an equilibrium with friction at break-away if the scenario's slides, and the other way
+    /// round. Of runs that settle alone.
+    pub starts: Vec<CostRow>,
+    /// Meshes, at the accuracy `reference`, against the finest; of runs that settle at the scenario's own accuracy, against the reference.
+    /// With the contact law `per_node` a finer mesh is another, stiffer wall, and these rows need not converge.
     pub meshes: Vec<CostRow>,
     /// The scenario without one effect at a time, against the whole: what stands as an error is what the effect changes.
     pub effects: Vec<CostRow>,
@@ -148,7 +154,11 @@ impl CostReport {
 
     /// Number of lines, those of the reference included.
     pub fn rows(&self) -> usize {
-        self.references.len() + self.methods.len() + self.meshes.len() + self.effects.len()
+        self.references.len()
+            + self.methods.len()
+            + self.starts.len()
+            + self.meshes.len()
+            + self.effects.len()
     }
 
     /// The run of RK4 with fixed steps that speeds are relative to, that with the longest step; absent where none completed.
@@ -227,7 +237,7 @@ pub struct CostRow {
     pub tolerance: Option<f64>,
     /// Contact sweeps a solve at most (implicit methods).
     pub contact_sweeps: u32,
-    /// Factor on the mesh's target element lengths.
+    /// Factor on the mesh's target element lengths, next to the scenario's own at its own accuracy.
     pub mesh_factor: f64,
     /// Elements of the mesh.
     pub elements: usize,
@@ -235,12 +245,16 @@ pub struct CostRow {
     pub steps: u64,
     /// Parts into which each step was cut so that the contact sweeps are stable.
     pub step_subdivisions: u32,
+    /// Simulated time of the first member \[s\]; 0 where it failed.
+    pub simulated_time: f64,
+    /// Kind of motion over the window of the first member's statistics; absent where it failed.
+    pub regime: Option<MotionRegime>,
     /// Processor time of the run in time \[s\], mean of the members.
     pub cpu_time: f64,
     /// Processor time per simulated second.
     pub cpu_per_simulated_second: f64,
-    /// Speed relative to RK4 with the longest of its fixed steps, in the usual reference 0.95 of its stability limit on the mesh; absent
-    /// where the study has none.
+    /// Speed relative to RK4 with the longest of its fixed steps, usually 0.95 of its stability limit on the mesh, by processor time per simulated
+    /// second, or of runs that settle by that of the whole run; absent where the study has none.
     pub speed_over_rk4: Option<f64>,
     /// What it found, against the reference; absent where it failed.
     pub errors: Option<CostErrors>,

@@ -8,6 +8,7 @@ use drillsweep_scenario::{
 };
 
 use super::StudyError;
+use super::total::wall_depends_on_mesh;
 use crate::effect::{EffectDecision, decide_effects};
 use crate::model::Model;
 use crate::statics::Equilibrium;
@@ -17,9 +18,21 @@ use crate::transient::{recorded_nodes, rk4_stability_limit};
 /// Part of RK4's stability limit, found about the equilibrium, that its steps in the reference have.
 const BELOW_LIMIT: f64 = 0.95;
 
-/// Step \[s\] and most contact sweeps of the reference's ESDIRK4.
+/// Step \[s\] of the reference's ESDIRK4.
 const ESDIRK4_STEP: f64 = 1.25e-4;
-const ESDIRK4_SWEEPS: u32 = 30;
+
+/// Steps \[s\] of a reference for settled statistics, which take no history along, whose error grows: of generalized-alpha, since RK4's limit
+/// on a mesh so fine is a few microseconds, and of ESDIRK4.
+const SETTLED_STEPS: [f64; 2] = [1.25e-4, 5e-4];
+
+/// Most contact sweeps of the reference's implicit methods.
+const REFERENCE_SWEEPS: u32 = 30;
+
+/// Factor on the element lengths of `standard` that the reference of runs that settle has: twice as fine as what `reference` chooses.
+const REFERENCE_MESH: f64 = 0.2;
+
+/// Meshes of runs that settle, as factors on the scenario's own.
+const SETTLED_MESHES: [f64; 2] = [2.0, 0.5];
 
 /// One line of a study: one stepping of one scenario, run by one or more members.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +56,8 @@ pub enum Role {
     Twin,
     /// A method and step.
     Method,
+    /// The other start: an equilibrium with the other friction.
+    Start,
     /// A mesh, its target element lengths multiplied by `factor`.
     Mesh {
         /// Factor on all target element lengths.
@@ -63,6 +78,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     let study = scenario.cost_study.clone().unwrap_or_default();
     let model = Model::new(scenario)?;
     let duration = scenario.study_duration();
+    let settles = scenario.study_settles();
     let base = Scenario {
         recording: recording(scenario, duration, &model),
         duration,
@@ -73,40 +89,88 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     if study.effects {
         return Ok(ablation(scenario, &study, base));
     }
-    let row = |role, name: &str, accuracy| PlannedRow {
+    let row = |role, name: &str, base: &Scenario, accuracy| PlannedRow {
         role,
         name: name.to_owned(),
         scenario: Scenario { accuracy, ..base.clone() },
         members: 0..study.members,
     };
     let interval = 1.0 / base.recording.rate_hz;
+    // Lines of other steps have the mesh that the scenario has at its own accuracy.
+    let mut own = base.clone();
+    own.scale_mesh(1.0);
+    let has_limit = settles && !wall_depends_on_mesh(scenario);
+    let mut fine = own.clone();
+    fine.scale_mesh(study.reference.mesh_factor.unwrap_or(if has_limit { REFERENCE_MESH } else { 1.0 }));
+    let longest_rk4 = |on: &Scenario| {
+        let model = Model::new(on)?;
+        let limit = rk4_stability_limit(&model, &Equilibrium::find(&model)?)?;
+        Ok::<_, StudyError>(TimeStepping::fixed(Integrator::Rk4, part_of(interval, BELOW_LIMIT * limit)))
+    };
     let reference = match &study.reference.methods {
         Some(methods) => methods.clone(),
         None => {
-            let limit = rk4_stability_limit(&model, &Equilibrium::find(&model)?)?;
-            usual_reference(interval, limit)
+            let converged = |integrator, step| TimeStepping {
+                contact_sweeps: REFERENCE_SWEEPS,
+                ..TimeStepping::fixed(integrator, part_of(interval, step))
+            };
+            let [alpha, esdirk4] = SETTLED_STEPS;
+            if settles {
+                vec![converged(Integrator::GeneralizedAlpha, alpha), converged(Integrator::Esdirk4, esdirk4)]
+            } else {
+                vec![longest_rk4(&fine)?, converged(Integrator::Esdirk4, ESDIRK4_STEP)]
+            }
         }
     };
     let mut rows: Vec<_> = reference
         .into_iter()
         .zip(["A", "B"])
-        .map(|(stepping, name)| row(Role::Reference, name, Accuracy::Explicit(stepping)))
+        .map(|(stepping, name)| row(Role::Reference, name, &fine, Accuracy::Explicit(stepping)))
         .collect();
     rows.extend(
-        study.presets.iter().map(|&preset| row(Role::Method, preset.name(), Accuracy::Preset(preset))),
+        study.presets.iter().map(|&preset| row(Role::Method, preset.name(), &base, Accuracy::Preset(preset))),
     );
-    let methods = study.methods.clone().unwrap_or_else(|| usual_methods(interval));
+    let methods = match &study.methods {
+        Some(methods) => methods.clone(),
+        None if settles => vec![MethodSteps::fixed(Integrator::Rk4, vec![longest_rk4(&own)?.step])],
+        None => usual_methods(interval),
+    };
     let steppings = methods.iter().flat_map(MethodSteps::steppings);
     rows.extend(
-        steppings.map(|stepping| row(Role::Method, stepping.integrator.name(), Accuracy::Explicit(stepping))),
+        steppings.map(|stepping| {
+            row(Role::Method, stepping.integrator.name(), &own, Accuracy::Explicit(stepping))
+        }),
     );
-    rows.extend(study.meshes().into_iter().map(|factor| {
-        let preset = AccuracyPreset::Reference;
-        let mut planned = row(Role::Mesh { factor }, preset.name(), Accuracy::Preset(preset));
+    let own_name = name_of(&base.accuracy);
+    if has_limit {
+        let mut other = row(Role::Start, own_name, &base, base.accuracy);
+        other.scenario.statics.friction = base.statics.friction.other();
+        rows.push(other);
+    }
+    let meshes = match study.meshes() {
+        meshes if meshes.is_empty() && has_limit => SETTLED_MESHES.to_vec(),
+        meshes => meshes,
+    };
+    rows.extend(meshes.into_iter().map(|factor| {
+        let (name, accuracy) = if settles {
+            (own_name, base.accuracy)
+        } else {
+            (AccuracyPreset::Reference.name(), Accuracy::Preset(AccuracyPreset::Reference))
+        };
+        let mut planned = row(Role::Mesh { factor }, name, &own, accuracy);
         planned.scenario.scale_mesh(factor);
         planned
     }));
     Ok(rows)
+}
+
+/// A name for the lines that have the scenario's own accuracy.
+fn name_of(accuracy: &Accuracy) -> &'static str {
+    match accuracy {
+        Accuracy::Preset(preset) => preset.name(),
+        Accuracy::Target(_) => "tolerance",
+        Accuracy::Explicit(stepping) => stepping.integrator.name(),
+    }
 }
 
 /// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
@@ -128,11 +192,7 @@ fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<P
     for decision in &decisions {
         base.effects.set(decision.effect, if decision.active { Switch::On } else { Switch::Off });
     }
-    let name = match base.accuracy {
-        Accuracy::Preset(preset) => preset.name(),
-        Accuracy::Target(_) => "tolerance",
-        Accuracy::Explicit(stepping) => stepping.integrator.name(),
-    };
+    let name = name_of(&base.accuracy);
     let row = |role, members| PlannedRow { role, name: name.to_owned(), scenario: base.clone(), members };
     let mut rows = vec![row(Role::Reference, 0..study.members)];
     if study.members == 1 {
@@ -148,37 +208,31 @@ fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<P
 }
 
 /// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers, and
-/// where the duration is another one or the windows are settled, orbits over its last third and spectra over its last sixth: methods are
-/// compared over one window.
+/// if the duration is another one, orbits over its last third and spectra over its last sixth.
 fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
     let asked = &scenario.recording;
     let last = |part: f64| TimeWindow::last(part, duration, asked.rate_hz);
-    let is_own = duration == scenario.duration && !scenario.settles();
-    let spectrum_window = match scenario.spectrum_windows() {
-        Some(windows) if is_own => windows.last().copied(),
-        _ => Some(last(1.0 / 6.0)),
+    let (orbit_window, spectrum_windows) = if scenario.study_settles() {
+        (OrbitWindow::SETTLED, None)
+    } else {
+        let is_own = duration == scenario.duration && !scenario.settles();
+        let spectrum_window = match scenario.spectrum_windows() {
+            Some(windows) if is_own => windows.last().copied(),
+            _ => Some(last(1.0 / 6.0)),
+        };
+        let orbit_window = scenario.orbit_window().filter(|_| is_own).unwrap_or_else(|| last(1.0 / 3.0));
+        (OrbitWindow::Fixed(orbit_window), Some(spectrum_window.into_iter().collect()))
     };
-    let orbit_window = scenario.orbit_window().filter(|_| is_own).unwrap_or_else(|| last(1.0 / 3.0));
     let nodes = recorded_nodes(model).into_iter();
     Recording {
         rate_hz: asked.rate_hz,
         nodes: nodes.map(|node| NodeChoice::Depth(model.mesh.nodes[node].measured_depth)).collect(),
-        spectrum_windows: Some(spectrum_window.into_iter().collect()),
-        orbit_window: Some(OrbitWindow::Fixed(orbit_window)),
+        spectrum_windows,
+        orbit_window: Some(orbit_window),
         stability: false,
         outputs: Outputs::Full,
         snapshots: None,
     }
-}
-
-/// RK4 just below its stability limit \[s\], and ESDIRK4 with a small step and converged sweeps.
-fn usual_reference(interval: f64, limit: f64) -> Vec<TimeStepping> {
-    let rk4 = part_of(interval, BELOW_LIMIT * limit);
-    let esdirk4 = TimeStepping::fixed(Integrator::Esdirk4, part_of(interval, ESDIRK4_STEP));
-    vec![
-        TimeStepping::fixed(Integrator::Rk4, rk4),
-        TimeStepping { contact_sweeps: ESDIRK4_SWEEPS, ..esdirk4 },
-    ]
 }
 
 /// The usual steps as parts of the recording interval \[s\].
@@ -247,11 +301,52 @@ mod tests {
     }
 
     #[test]
-    fn a_study_of_a_settled_window_looks_at_the_last_third_of_a_minute() {
+    fn runs_that_settle_have_their_whole_error_against_a_finer_mesh() {
+        let of = |name: &str, change: &dyn Fn(&mut Scenario)| {
+            let mut scenario = preset(name).unwrap();
+            scenario.cost_study = Some(CostStudy::default());
+            change(&mut scenario);
+            validate(&scenario).unwrap();
+            plan(&scenario).unwrap()
+        };
+        let rows = of("paper-200m-damped", &|_| {});
+        assert!(rows.iter().all(|row| row.scenario.settles() && row.scenario.duration == 300.0));
+        let names: Vec<_> = rows.iter().map(|row| (row.role, row.name.as_str())).collect();
+        let expected = [
+            (Role::Reference, "A"),
+            (Role::Reference, "B"),
+            (Role::Method, "draft"),
+            (Role::Method, "standard"),
+            (Role::Method, "reference"),
+            (Role::Method, "rk4"),
+            (Role::Start, "standard"),
+            (Role::Mesh { factor: 2.0 }, "standard"),
+            (Role::Mesh { factor: 0.5 }, "standard"),
+        ];
+        assert_eq!(names, expected);
+        let elements = |index: usize| Model::new(&rows[index].scenario).unwrap().elements.len();
+        // A and B on one mesh, which is finer than that of any accuracy.
+        assert_eq!(elements(0), elements(1));
+        assert!(elements(0) > elements(4) && elements(4) > elements(3) && elements(3) > elements(2));
+        assert_eq!(elements(5), elements(3), "methods have the scenario's mesh");
+        let steps = |index: usize| rows[index].scenario.accuracy.time_stepping().step;
+        assert!(steps(5) < steps(0), "RK4's limit is that of its mesh");
+        assert_ne!(rows[6].scenario.statics.friction, rows[3].scenario.statics.friction);
+        // Without a limit of the mesh only steps are compared.
+        let rows = of("paper-200m", &|s| {
+            s.recording.orbit_window = Some(OrbitWindow::SETTLED);
+            s.recording.spectrum_windows = None;
+        });
+        assert!(rows.iter().all(|row| matches!(row.role, Role::Reference | Role::Method)));
+    }
+
+    #[test]
+    fn a_study_of_a_duration_looks_at_its_last_third() {
         let rows = planned(|s| {
             s.duration = 300.0;
             s.recording.orbit_window = Some(OrbitWindow::SETTLED);
             s.recording.spectrum_windows = None;
+            s.cost_study.as_mut().unwrap().duration = Some(60.0);
         });
         let scenario = &rows[0].scenario;
         assert_eq!((scenario.duration, scenario.settles()), (60.0, false));

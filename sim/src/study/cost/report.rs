@@ -8,6 +8,7 @@ use super::plan::{PlannedRow, Role};
 use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
 use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
 use crate::study::ensemble::parting_time;
+use crate::transient::MotionRegime;
 
 /// Energy residual, relative to the contacts' net work, from which on a reference is doubted.
 const UNSOUND_RESIDUAL: f64 = 0.01;
@@ -61,8 +62,11 @@ impl<'a> Ran<'a> {
             elements: first.map_or(0, |measure| measure.elements),
             steps: first.map_or(0, |measure| measure.steps),
             step_subdivisions: first.map_or(1, |measure| measure.subdivisions),
+            simulated_time: first.map_or(0.0, |measure| measure.simulated_time),
+            regime: first.map(|measure| measure.regime),
             cpu_time,
-            cpu_per_simulated_second: cpu_time / self.planned.scenario.duration,
+            cpu_per_simulated_second: cpu_time
+                / first.map_or(self.planned.scenario.duration, |measure| measure.simulated_time),
             speed_over_rk4: None,
             errors: None,
             failure: self.outcome.as_ref().err().cloned(),
@@ -135,12 +139,20 @@ pub fn report(
         .find(|own| !own.is_empty())
         .into_iter()
         .collect();
-    let meshes: Vec<CostRow> =
-        meshes.iter().map(|ran| compared(ran, Reference::new(&finest), true)).collect();
+    let settles = scenario.study_settles();
+    let meshes: Vec<CostRow> = meshes
+        .iter()
+        .map(|ran| match settles {
+            true => compared(ran, Some(reference), false),
+            false => compared(ran, Reference::new(&finest), true),
+        })
+        .collect();
+    let starts =
+        with_role(|role| *role == Role::Start).map(|ran| compared(ran, Some(reference), false)).collect();
     let effects = with_role(|role| matches!(role, Role::Without { .. }))
         .map(|ran| compared(ran, Some(reference), true))
         .collect();
-    set_speeds(&mut reference_rows, &mut methods);
+    set_speeds(&mut reference_rows, &mut methods, settles);
     let mut warnings = Vec::new();
     if base.duration < scenario.duration {
         warnings.push(format!(
@@ -149,30 +161,39 @@ pub fn report(
         ));
     }
     warn_of_references(&reference_rows, &agreements, &mut warnings);
+    let unsettled = reference_rows.iter().chain(&methods);
+    for row in unsettled.filter(|row| row.regime == Some(MotionRegime::NotSettled)) {
+        warnings.push(format!("{} has not settled after {} s", stepping_words(row), row.simulated_time));
+    }
     if !meshes.is_empty() && wall_depends_on_mesh(base) {
         warnings.push(WALL_OF_NODES.to_owned());
     }
     let mut report = CostReport {
         scenario: scenario.name.clone(),
         duration: base.duration,
+        settles,
         scenario_duration: scenario.duration,
-        orbit_window: base.orbit_window().unwrap_or_else(|| base.last_third()),
+        orbit_window: parts[0][0].window,
         spectrum_window: base.spectrum_windows().unwrap_or_default().last().copied(),
         members: study.members,
         histories_part_at,
         references: reference_rows,
         agreements,
         methods,
+        starts,
         meshes,
         effects,
         recommendations: Vec::new(),
         total: None,
         warnings,
     };
-    let wanted = RECOMMENDED.iter().flat_map(|&quantity| WANTED.map(|accuracy| (quantity, accuracy)));
+    let mut accuracies = WANTED.to_vec();
+    accuracies.extend(study.total.filter(|_| settles));
+    let wanted =
+        RECOMMENDED.iter().flat_map(|&quantity| accuracies.iter().map(move |&accuracy| (quantity, accuracy)));
     report.recommendations =
         wanted.filter_map(|(quantity, accuracy)| recommendation(&report, quantity, accuracy)).collect();
-    report.total = study.total.map(|wanted| total(&report, base, wanted));
+    report.total = study.total.filter(|_| !settles).map(|wanted| total(&report, base, wanted));
     Ok(report)
 }
 
@@ -199,13 +220,11 @@ pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a Cos
 }
 
 /// Enters how many times faster than RK4 with its longest fixed step each line is.
-fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow]) {
-    let Some(cost) = rk4(references.iter().chain(methods.iter())).map(|rk4| rk4.cpu_per_simulated_second)
-    else {
-        return;
-    };
+fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow], settles: bool) {
+    let cost_of = |row: &CostRow| if settles { row.cpu_time } else { row.cpu_per_simulated_second };
+    let Some(cost) = rk4(references.iter().chain(methods.iter())).map(cost_of) else { return };
     for row in references.iter_mut().chain(methods) {
-        let speed = cost / row.cpu_per_simulated_second;
+        let speed = cost / cost_of(row);
         row.speed_over_rk4 = (row.failure.is_none() && speed.is_finite()).then_some(speed);
     }
 }
@@ -268,9 +287,14 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
     let holds = |row: &&CostRow| one_that_holds(report, row).all(within);
     let difference = agreement.agreed_difference();
     let agree = difference <= accuracy;
-    let best = report.compared().filter(holds).min_by(|a, b| a.cpu_time.total_cmp(&b.cpu_time));
+    let meshes: &[CostRow] = if report.settles { &report.meshes } else { &[] };
+    let lines = report.compared().chain(meshes);
+    let best = lines.filter(holds).min_by(|a, b| a.cpu_time.total_cmp(&b.cpu_time));
     let best = best.filter(|_| agree);
-    let cpu_time = best.map(|row| row.cpu_per_simulated_second * report.scenario_duration);
+    let cpu_time = best.map(|row| match report.settles {
+        true => row.cpu_time,
+        false => row.cpu_per_simulated_second * report.scenario_duration,
+    });
     let depths = agreement.depths_without();
     let but = if depths.is_empty() { String::new() } else { format!(" (but at {})", depths_words(&depths)) };
     let wanted = format!("{} % of {}{but}", rounded(100.0 * accuracy), quantity.words());
@@ -281,11 +305,11 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
             });
             let confidence =
                 if report.members == 1 { "; one member, so that confidence is unknown" } else { "" };
+            let time = if report.settles { row.simulated_time } else { report.scenario_duration };
             format!(
-                "{wanted}: {}, {:.3} CPU s per simulated s, {cpu_time:.0} s for {} s{speed}{confidence}",
+                "{wanted}: {}, {:.3} CPU s per simulated s, {cpu_time:.0} s for {time} s{speed}{confidence}",
                 stepping_words(row),
-                row.cpu_per_simulated_second,
-                report.scenario_duration
+                row.cpu_per_simulated_second
             )
         }
         _ if !agree => format!(
@@ -324,7 +348,12 @@ pub(super) fn one_that_holds<'a>(
 /// A line in words: its name where it has one of its own, its method, step and tolerance.
 pub(super) fn stepping_words(row: &CostRow) -> String {
     let method = row.integrator.name();
-    let name = if row.name == method { String::new() } else { format!("{}, ", row.name) };
+    let mesh = if row.mesh_factor == 1.0 {
+        String::new()
+    } else {
+        format!("element lengths x {}, ", rounded(row.mesh_factor))
+    };
+    let name = if row.name == method { mesh } else { format!("{}, {mesh}", row.name) };
     let step = format!("{} ms", rounded(1e3 * row.step));
     match row.tolerance {
         Some(tolerance) => format!("{name}{method} with a tolerance of {tolerance:e} and steps up to {step}"),

@@ -6,7 +6,8 @@ use drillsweep_scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeSte
 
 use super::measure::NodeMeasure;
 use super::*;
-use crate::transient::NodeHistory;
+use crate::signal::Window;
+use crate::transient::{MotionRegime, NodeHistory};
 
 const RATE_HZ: f64 = 200.0;
 const DURATION: f64 = 30.0;
@@ -38,7 +39,10 @@ fn run(circles: &[(f64, f64)], twist: f64, contact_force: f64) -> Measure {
         subdivisions: 1,
         longest_step: 1e-3,
         rate_hz: RATE_HZ,
-        nodes: vec![NodeMeasure::new(50.0, &history, RATE_HZ, WINDOW, Some(WINDOW))],
+        simulated_time: DURATION,
+        window: WINDOW,
+        regime: MotionRegime::Fixed,
+        nodes: vec![NodeMeasure::new(50.0, &history, RATE_HZ, (WINDOW, Window::Rectangular), Some(WINDOW))],
         histories: vec![history],
         contact_force,
         energy: Some(1e-6),

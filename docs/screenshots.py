@@ -41,9 +41,9 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     """The link of each view."""
     links = {"sweeps": "#/sweeps", "new": f"#/new?from={sweep}"}
     for view in ("map", "scatter", "parallel", "effects", "table"):
-        links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_49"
+        links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_57_7m"
     links["sweep-failures"] = f"#/sweeps/{failed}?view=failures"
-    links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_49"
+    links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_57_7m"
     for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
     links["point-profiles"] += "&cursor=123.5"

@@ -21,9 +21,9 @@ end
 
 path = server + "/v1/sweeps/" + sweep.id;
 results = webread(path + "/table", "format", "csv", csv);
-disp(results(:, ["flow_rate", "mud_density", "friction_coefficient_max", "orbit_radius_rms_49"]));
+disp(results(:, ["flow_rate", "mud_density", "friction_coefficient_max", "orbit_radius_rms_57_7m"]));
 
 orbit = webread(path + "/points/1/orbit", "depth", 57.7, "format", "csv", csv);
-spectrum = webread(path + "/points/1/spectrum", "node", 49, "window", "hann", "format", "csv", csv);
+spectrum = webread(path + "/points/1/spectrum", "depth", 57.7, "window", "hann", "format", "csv", csv);
 figure; plot(1e3 * orbit.u, 1e3 * orbit.v); axis equal; xlabel("u [mm]"); ylabel("v [mm]");
 figure; plot(spectrum.frequency, 1e3 * spectrum.amplitude); xlabel("frequency [Hz]"); ylabel("amplitude [mm]");

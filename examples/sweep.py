@@ -12,7 +12,7 @@ for point in sweep.failures():
     print(point, point.error)
 
 table = sweep.table().to_pandas()
-print(table[["flow_rate", "mud_density", "friction_coefficient_max", "orbit_radius_rms_49"]].to_string(index=False))
+print(table[["flow_rate", "mud_density", "friction_coefficient_max", "orbit_radius_rms_57_7m"]].to_string(index=False))
 
 figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 5), layout="constrained")
 plot.orbit(sweep.point(1), depth=57.7, axes=left)

@@ -16,6 +16,6 @@ sweep=$(call "$server/v1/sweeps" --header 'content-type: application/json' --dat
 until call "$server/v1/sweeps/$sweep?wait=30s" | jq -er 'if .finished then true else null end' >/dev/null; do :; done
 
 call "$server/v1/sweeps/$sweep/table" |
-    jq -r '.columns | [.flow_rate, .mud_density, .friction_coefficient_max, .orbit_radius_rms_49] | transpose[] | @tsv'
-call "$server/v1/sweeps/$sweep/points/1/spectrum?node=49&window=hann" |
+    jq -r '.columns | [.flow_rate, .mud_density, .friction_coefficient_max, .orbit_radius_rms_57_7m] | transpose[] | @tsv'
+call "$server/v1/sweeps/$sweep/points/1/spectrum?depth=57.7&window=hann" |
     jq -c '.attributes.peaks[:3][] | {frequency, amplitude, whirl}'

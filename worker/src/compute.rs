@@ -541,7 +541,7 @@ mod tests {
     #[test]
     fn runs_from_both_starts_are_compared() {
         // Without unbalance the string stays where it slides; from break-away its friction falls, and it swings.
-        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        let mut scenario = damped();
         (scenario.duration, scenario.statics.start) = (0.3, Starts::Both);
         scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
@@ -567,6 +567,14 @@ mod tests {
         let row = computed.summary_row();
         assert_eq!((&row["starts_differ"], &row["starts_size_difference"]), (&json!(false), &json!(0.0)));
         assert_eq!(row["torque_top_break_away"], row["torque_top_rotating"]);
+    }
+
+    /// The damped base case on the paper's mesh, with the paper's nodes.
+    fn damped() -> Scenario {
+        let printed = preset("paper-200m").expect("shipped preset");
+        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        (scenario.mesh, scenario.recording.nodes) = (printed.mesh, printed.recording.nodes);
+        scenario
     }
 
     /// A shipped preset, run for its equilibrium and a hundredth of a second.
@@ -615,7 +623,7 @@ mod tests {
     #[test]
     fn tables_have_the_columns_that_the_vocabulary_lists_and_rows_only_what_it_knows() {
         let computed = |outputs| {
-            let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+            let mut scenario = damped();
             scenario.duration = 0.02;
             scenario.ensemble = 2;
             scenario.recording.stability = true;
@@ -661,7 +669,7 @@ mod tests {
 
     #[test]
     fn a_point_goes_on_from_wherever_it_was_suspended_with_all_its_samples() {
-        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        let mut scenario = damped();
         scenario.duration = 0.4;
         scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;
@@ -699,7 +707,7 @@ mod tests {
 
     #[test]
     fn a_run_that_settles_keeps_histories_of_its_window_and_the_course_of_all() {
-        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        let mut scenario = damped();
         scenario.duration = 0.6;
         assert!(scenario.settles());
         let computed = compute(&scenario, &Control::new()).expect("runs");
@@ -732,7 +740,7 @@ mod tests {
     fn the_bits_rotation_and_torque_are_recorded_whatever_nodes_are() {
         let of_bit = ["rotation_speed_297", "torque_297"];
         let history = |nodes: &[u32], outputs: Outputs, torsion: bool| {
-            let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+            let mut scenario = damped();
             scenario.duration = 0.1;
             scenario.recording.spectrum_windows = Some(Vec::new());
             scenario.recording.orbit_window = None;
@@ -762,7 +770,7 @@ mod tests {
 
     #[test]
     fn snapshots_are_the_histories_of_all_nodes_and_change_nothing_else() {
-        let mut scenario = preset("paper-200m-damped").expect("shipped preset");
+        let mut scenario = damped();
         scenario.duration = 0.4;
         scenario.recording.spectrum_windows = Some(Vec::new());
         scenario.recording.orbit_window = None;

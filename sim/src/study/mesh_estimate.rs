@@ -20,6 +20,9 @@ use crate::statics::Equilibrium;
 /// Highest frequency of a torsional mode that drives lateral motion \[Hz\].
 const HIGHEST_DRIVE_HZ: f64 = 30.0;
 
+/// Larger relative errors of orbit sizes are not stated: responses that differ so much are not those of small motions about one equilibrium.
+const LARGEST_ORBIT_ERROR: f64 = 0.5;
+
 /// Strings of more elements are not refined: their equilibria take seconds.
 pub(super) const MOST_ELEMENTS: usize = 1500;
 
@@ -48,7 +51,8 @@ pub struct MeshErrors {
     pub static_position: f64,
     /// C_f, mean over the string's length; absent without mud.
     pub friction_coefficient: Option<f64>,
-    /// Orbit size, the largest relative error of the recorded nodes; absent before a run, or if none moves.
+    /// Orbit size, the largest relative error of the recorded nodes; absent before a run, if none moves, and
+    /// beyond one half.
     #[serde(default)]
     pub orbit_size: Option<f64>,
 }
@@ -85,7 +89,8 @@ impl MeshEstimate {
         let drives = (!orbits.is_empty()).then(|| Drives::of(model, equilibrium)).flatten();
         let orbit_size = drives.and_then(|own| {
             let finest = Drives::at(&finest.0, &finest.1, own.torsion_hz)?;
-            orbits.iter().filter_map(|orbit| own.error(&finest, orbit)).reduce(f64::max)
+            let worst = orbits.iter().filter_map(|orbit| own.error(&finest, orbit)).reduce(f64::max);
+            worst.filter(|error| *error <= LARGEST_ORBIT_ERROR)
         });
         let recorded = model.scenario.recording.nodes.iter().filter_map(|&choice| {
             let depth = match choice {

@@ -135,6 +135,7 @@ pub(super) static ALL: &[Quantity] = &[
     field("cost_study.members", "", None, "members of a study's ensembles"),
     field("cost_study.mesh_factors", "", Some(&units::RATIO), "factors on the mesh"),
     field("cost_study.total", "", Some(&units::RATIO), "wanted relative error"),
+    field("cost_study.reference.mesh_factor", "", Some(&units::RATIO), "reference mesh factor"),
     field("cost_study.reference.size_agreement", "", Some(&units::RATIO), "agreement of sizes"),
     field("cost_study.reference.deviation_agreement", "", Some(&units::RATIO), "agreement of deviations"),
     field("cost_study.reference.methods.step", "h", Some(&units::TIME), "step of a reference"),

@@ -18,7 +18,7 @@ use serde_json::Value;
 use crate::client::{Client, DEFAULT_SERVER, ServerArguments, path_segment};
 use crate::print;
 use crate::scenario::{ScenarioArguments, parse_value};
-use crate::sweeps::{print_sweep, verification_line, warn_of_bias};
+use crate::sweeps::{print_sweep, verification_line, warn_of_bias, warn_of_doubts};
 use crate::text::{Alignment, columns, count, number};
 use crate::watch::{check, follow, warn_of_waiting};
 
@@ -198,6 +198,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
         tracing::info!("{}", verification_line(verification));
     }
     warn_of_bias(&sweep);
+    if !arguments.detach {
+        warn_of_doubts(&client, &sweep);
+    }
     if arguments.json {
         print(&serde_json::to_string_pretty(&sweep)?);
     }

@@ -177,6 +177,7 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     }
     print(&sweep_line(&sweep));
     warn_of_bias(&sweep);
+    warn_of_doubts(&client, &sweep);
     let names: Vec<&String> = points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
     let mut header = vec!["point", "state", "progress", "attempts"];
     header.extend(names.iter().map(|name| name.as_str()));
@@ -412,6 +413,46 @@ pub(crate) fn warn_of_bias(sweep: &Sweep) {
     }
 }
 
+/// Warns of points whose statistics have not settled, and of those that state a larger error than their accuracy promises. A sweep without runs in time
+/// has neither.
+pub(crate) fn warn_of_doubts(client: &Client, sweep: &Sweep) {
+    let fields = "ordinal,motion_regime,growing_mode_hz,whole_error,promised_error";
+    let path = format!("/v1/sweeps/{}/table?format=json&fields={fields}", path_segment(&sweep.id));
+    let Ok(table) = client.get::<Value>(&path) else { return };
+    for doubt in doubts(&table["columns"]) {
+        tracing::warn!("{doubt}");
+    }
+}
+
+/// What is to be doubted of the points of a table with these columns, in words.
+fn doubts(columns: &Value) -> Vec<String> {
+    let points = columns["ordinal"].as_array().map_or(0, Vec::len);
+    let number = |name: &str, row: usize| columns[name][row].as_f64();
+    let unsettled = |row: &usize| {
+        columns["motion_regime"][*row] == "not_settled" || number("growing_mode_hz", *row).is_some()
+    };
+    let exceeds = |row: &usize| {
+        number("whole_error", *row)
+            .zip(number("promised_error", *row))
+            .is_some_and(|(stated, promised)| stated > promised)
+    };
+    let found = |is_it: &dyn Fn(&usize) -> bool, words: &str| {
+        const NAMED: usize = 10;
+        let rows: Vec<usize> = (0..points).filter(is_it).collect();
+        let named: Vec<String> = rows.iter().take(NAMED).map(|&row| text(&columns["ordinal"][row])).collect();
+        let more = if rows.len() > NAMED { ", ..." } else { "" };
+        (!rows.is_empty())
+            .then(|| format!("{} of {points} points {words}: {}{more}", rows.len(), named.join(", ")))
+    };
+    [
+        found(&unsettled, "have not settled, or a mode still grows"),
+        found(&exceeds, "state a larger error than their accuracy promises"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
 fn print_point(point: &PointDetail) -> anyhow::Result<()> {
     print(&format!("point {} {}", point.row.ordinal, point.row.state));
     if let Some(error) = json!(point.row.error).as_object() {
@@ -485,6 +526,28 @@ mod tests {
             "created": "2026-01-01T00:00:00Z", "links": SweepLinks::new("a"),
         }))
         .unwrap()
+    }
+
+    #[test]
+    fn points_that_are_no_values_yet_are_named() {
+        let columns = json!({
+            "ordinal": [1, 2, 3, 4],
+            "motion_regime": ["regular", "not_settled", "fixed", null],
+            "growing_mode_hz": [null, null, 2.16, null],
+            "whole_error": [0.024, null, null, null],
+            "promised_error": [0.02, 0.02, 0.02, null],
+        });
+        assert_eq!(
+            doubts(&columns),
+            [
+                "2 of 4 points have not settled, or a mode still grows: 2, 3",
+                "1 of 4 points state a larger error than their accuracy promises: 1",
+            ]
+        );
+        assert!(doubts(&json!({ "ordinal": [1], "motion_regime": ["regular"] })).is_empty());
+        let many: Vec<_> = (1..=12).collect();
+        let columns = json!({ "ordinal": many, "motion_regime": vec!["not_settled"; 12] });
+        assert!(doubts(&columns)[0].ends_with("1, 2, 3, 4, 5, 6, 7, 8, 9, 10, ..."));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
-use crate::sweeps::{sweep_line, warn_of_bias};
+use crate::sweeps::{sweep_line, warn_of_bias, warn_of_doubts};
 
 #[derive(Args)]
 pub(crate) struct WatchArguments {
@@ -25,6 +25,7 @@ pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
     let sweep = follow(&client, &client.sweep_id(&arguments.sweep)?)?;
     warn_of_bias(&sweep);
+    warn_of_doubts(&client, &sweep);
     if arguments.json {
         print(&serde_json::to_string_pretty(&sweep)?);
     } else {

@@ -75,10 +75,10 @@ const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 #[serde(deny_unknown_fields)]
 pub struct StudyReference {
     /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30 contact sweeps;
-    /// for runs that settle `generalized_alpha` with 0.125 ms and `esdirk4` with 0.5 ms, both with up to 30.
+    /// for runs that settle `generalized_alpha` with 0.0625 ms and `esdirk4` with 1 ms, both with up to 30.
     #[serde(default)]
     pub methods: Option<Vec<TimeStepping>>,
-    /// Factor on the element lengths that the scenario has at its own accuracy, 0.1 to 1; absent means 1, and 0.2 if runs settle and the wall's
+    /// Factor on the element lengths that the scenario has at its own accuracy, 0.1 to 1; absent means 1, and 0.25 if runs settle and the wall's
     /// stiffness belongs to the length. Errors of all lines are against this mesh: with 1 they are those of the steps alone.
     #[serde(default)]
     pub mesh_factor: Option<f64>,

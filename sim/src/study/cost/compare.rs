@@ -52,7 +52,10 @@ impl<'a> Reference<'a> {
     }
 
     fn nodes(self, quantity: Quantity) -> usize {
-        if quantity.is_of_string() { 1 } else { self.first().nodes.len() }
+        match quantity.is_of_string() {
+            true => usize::from(self.first().contact_force.is_some()),
+            false => self.first().nodes.len(),
+        }
     }
 
     fn measured_depth(self, quantity: Quantity, node: usize) -> Option<f64> {

@@ -32,8 +32,8 @@ pub struct Measure {
     /// Lateral histories of the recorded nodes; none of members beyond the second, or of runs that settle, each over a window of its own.
     pub(in crate::study) histories: Vec<NodeHistory>,
     pub(in crate::study) nodes: Vec<NodeMeasure>,
-    /// Mean over the orbit window of the sum of all normal forces \[N\].
-    pub(in crate::study) contact_force: f64,
+    /// Mean over the orbit window of the sum of all normal forces \[N\]; absent for runs that settle, whose window is known at their end.
+    pub(in crate::study) contact_force: Option<f64>,
     /// Energy residual over the net work of the contacts; absent where there was none.
     pub(in crate::study) energy: Option<f64>,
     pub(in crate::study) error_estimate: f64,
@@ -106,7 +106,7 @@ impl Measure {
             regime: settling.regime,
             histories: kept.iter().map(lateral).collect(),
             nodes: records.histories.iter().map(node).collect(),
-            contact_force: impulse * records.rate_hz / counted.max(1) as f64,
+            contact_force: (!scenario.settles()).then(|| impulse * records.rate_hz / counted.max(1) as f64),
             energy: energy_residual_ratio(records),
             error_estimate: records.error.relative,
             hole_radius: 0.5 * scenario.well.hole_diameter,
@@ -140,7 +140,7 @@ impl Measure {
             Quantity::RadiusDeviation => of_node(|node| node.radius_deviation),
             Quantity::MeanRadius => of_node(|node| node.mean_radius),
             Quantity::TorsionalSpeed => of_node(|node| node.torsional_speed),
-            Quantity::ContactForce => self.contact_force,
+            Quantity::ContactForce => self.contact_force.unwrap_or(0.0),
             // Lines are not one number; they are compared line by line.
             Quantity::Lines => 0.0,
         }

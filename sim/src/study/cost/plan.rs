@@ -23,13 +23,13 @@ const ESDIRK4_STEP: f64 = 1.25e-4;
 
 /// Steps \[s\] of a reference for settled statistics, which take no history along, whose error grows: of generalized-alpha, since RK4's limit
 /// on a mesh so fine is a few microseconds, and of ESDIRK4.
-const SETTLED_STEPS: [f64; 2] = [1.25e-4, 5e-4];
+const SETTLED_STEPS: [f64; 2] = [6.25e-5, 1e-3];
 
 /// Most contact sweeps of the reference's implicit methods.
 const REFERENCE_SWEEPS: u32 = 30;
 
-/// Factor on the element lengths of `standard` that the reference of runs that settle has: twice as fine as what `reference` chooses.
-const REFERENCE_MESH: f64 = 0.2;
+/// Factor on the scenario's element lengths that the reference of runs that settle has: finer than the 0.4 of the accuracy `reference`.
+const REFERENCE_MESH: f64 = 0.25;
 
 /// Meshes of runs that settle, as factors on the scenario's own.
 const SETTLED_MESHES: [f64; 2] = [2.0, 0.5];

@@ -44,7 +44,7 @@ fn run(circles: &[(f64, f64)], twist: f64, contact_force: f64) -> Measure {
         regime: MotionRegime::Fixed,
         nodes: vec![NodeMeasure::new(50.0, &history, RATE_HZ, (WINDOW, Window::Rectangular), Some(WINDOW))],
         histories: vec![history],
-        contact_force,
+        contact_force: Some(contact_force),
         energy: Some(1e-6),
         error_estimate: 1e-4,
         hole_radius: 0.1,

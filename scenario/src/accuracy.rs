@@ -45,7 +45,7 @@ const LONGEST_STEP_TOLERANCE: f64 = 0.08;
 const LONGEST_STEP: f64 = 8e-3;
 
 /// Factors on the lengths of the mesh `auto` that accuracies choose. Longer elements miss what they bend between contacts, whatever is allowed.
-const MESH_FACTORS: std::ops::RangeInclusive<f64> = 0.4..=2.0;
+const MESH_FACTORS: std::ops::RangeInclusive<f64> = 0.4..=1.4;
 
 /// A promised error and the tolerance that keeps it with room: smaller promises go with smaller tolerances in proportion.
 const FINE: [f64; 2] = [0.003, 0.01];

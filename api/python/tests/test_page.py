@@ -632,7 +632,7 @@ def lists_asked_for(page: Page) -> list[str]:
 
 def submit_slow(client: Client, name: str) -> Sweep:
     """A sweep of one point that takes some seconds, also if it was computed before."""
-    changes = {"duration": 200, "accuracy": "draft", "recording.spectrum_windows": [], "recording.orbit_window": None}
+    changes = {"duration": 100, "accuracy": "draft", "recording.spectrum_windows": [], "recording.orbit_window": None}
     return client.run("paper-200m", set=changes, name=name, outputs="summary", cache="refresh")
 
 

@@ -418,13 +418,14 @@ pub(crate) fn warn_of_bias(sweep: &Sweep) {
 pub(crate) fn warn_of_doubts(client: &Client, sweep: &Sweep) {
     let fields = "ordinal,motion_regime,growing_mode_hz,whole_error,promised_error";
     let path = format!("/v1/sweeps/{}/table?format=json&fields={fields}", path_segment(&sweep.id));
+    // Without runs in time the table lacks these columns, and the service refuses them.
     let Ok(table) = client.get::<Value>(&path) else { return };
     for doubt in doubts(&table["columns"]) {
         tracing::warn!("{doubt}");
     }
 }
 
-/// What is to be doubted of the points of a table with these columns, in words.
+/// Warnings about the points of a table with these columns: those not settled, and those that state more than promised.
 fn doubts(columns: &Value) -> Vec<String> {
     let points = columns["ordinal"].as_array().map_or(0, Vec::len);
     let number = |name: &str, row: usize| columns[name][row].as_f64();

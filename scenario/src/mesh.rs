@@ -40,7 +40,7 @@ pub enum MeshName {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ScaledMesh {
-    /// What multiplies all lengths of `auto`, above 0; usual 0.25 to 2: 0.5 makes every element half as long. Above 1.5 elements are
+    /// Factor on all lengths of `auto`, above 0; usual 0.25 to 1.4: 0.5 makes every element half as long. Above 1.5 elements are
     /// longer than the length over which the wall spreads a bent pipe's force; a mesh of more than 20,000 elements is refused.
     pub auto: f64,
 }
@@ -69,7 +69,7 @@ pub struct ElementLengths {
 /// A mesh with the factor on `auto` written out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum WrittenOutMesh {
-    /// What multiplies all lengths of `auto`.
+    /// Factor on all lengths of `auto`.
     Auto(f64),
     /// Target element lengths.
     Lengths(ElementLengths),
@@ -111,7 +111,7 @@ impl Mesh {
         Mesh::Scaled(ScaledMesh { auto: factor })
     }
 
-    /// Whether lengths follow from the string and its wall, with any factor.
+    /// True if lengths follow from the string and its wall, with any factor.
     pub fn is_auto(&self) -> bool {
         matches!(self, Mesh::Named(MeshName::Auto) | Mesh::Scaled(_))
     }

@@ -54,7 +54,7 @@ impl Scenario {
         self.cost_study.as_ref().and_then(|study| study.duration).unwrap_or(self.duration)
     }
 
-    /// Whether the runs of the scenario's cost study end when their statistics have settled.
+    /// True if the runs of the scenario's cost study end when their statistics have settled.
     pub fn study_settles(&self) -> bool {
         self.settles() && self.cost_study.as_ref().is_none_or(|study| study.duration.is_none())
     }

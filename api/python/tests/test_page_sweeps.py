@@ -668,7 +668,7 @@ def test_the_list_is_asked_for_once_and_waits_for_nothing_beside_it(opened: Open
     page = opened("#/sweeps?tag=%3Cb%3Ebold&name=img+")
     beside = page.get_by_role("region", name="Workers and queue")
     expect(beside).to_contain_text("process")
-    # What the page that is left asks for late is not counted.
+    # Leave the page first: its late requests must not count.
     url = page.url
     page.goto("about:blank")
     asked: list[str] = []

@@ -8,28 +8,28 @@
 //! If stiffness belongs to a length, the same law acts along the elements: [`dynamic_segment`], [`implicit_segment`],
 //! [`static_segment`] and [`sliding_segment`] integrate it over the stretch of a [`ContactSegment`] that is in the wall. Gauges remain points.
 
-mod element;
+mod along_element;
+mod along_element_tangents;
 mod law;
 mod motion;
 mod rest;
-mod segment;
 mod sliding;
 mod wall;
 
 #[cfg(test)]
 mod tests;
 
-pub use element::{
+pub use along_element::{
+    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dot, dynamic_segment,
+    implicit_segment,
+};
+pub use along_element_tangents::{
     SlidingSegmentTangent, SmoothSegmentForce, StaticSegmentForce, planes, sliding_segment,
     smooth_static_segment, static_segment, whole_segment,
 };
 pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
 pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
-pub use segment::{
-    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dot, dynamic_segment,
-    implicit_segment,
-};
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;
 

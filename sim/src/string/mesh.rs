@@ -140,7 +140,7 @@ impl StringMesh {
     /// fewest equal elements no longer than its target.
     ///
     /// With the mesh `auto` depths whose motion is recorded are nodes, too. What lies within [`SNAP_FRACTION`] of the target length of a boundary is moved to it.
-    /// Where two gauges meet at one node, the smaller clearance holds.
+    /// Two gauges that meet at one node have the smaller clearance.
     ///
     /// # Errors
     /// Sections without length, targets that are not positive, more than [`MAX_ELEMENTS`] elements, gauges or

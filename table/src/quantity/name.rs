@@ -49,7 +49,8 @@ impl<'n> Place<'n> {
 
     /// How a depth \[m\] is written in names of columns: `57_7m` for 57.7 m.
     pub fn of_depth(depth: f64) -> String {
-        format!("{depth}m").replace('.', "_")
+        // Rounding may have left the top at -0.
+        format!("{}m", depth.abs()).replace('.', "_")
     }
 
     /// A name without the place at its end, and the place.
@@ -269,6 +270,7 @@ mod tests {
 
     #[test]
     fn depths_are_those_that_were_written() {
+        assert_eq!(Place::of_depth(-0.0), "0m");
         for depth in [0.0, 11.7, 57.73, 980.0, 3412.25] {
             let text = Place::of_depth(depth);
             assert_eq!(Place::Depth(&text).depth(), Some(depth), "{text}");

@@ -108,7 +108,7 @@ pub struct CostReport {
     pub scenario: String,
     /// Simulated time of each run \[s\], at most if they settle.
     pub duration: f64,
-    /// Whether each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, against the
+    /// True if each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, against the
     /// settled values of the two methods on a finer mesh.
     pub settles: bool,
     /// Duration of the scenario itself \[s\]. Where the runs are shorter, the windows are not those that a summary has, and

@@ -2,8 +2,8 @@
 
 use nalgebra::SMatrix;
 
+use super::along_element::{ContactSegment, Place, Plane};
 use super::law::ContactParameters;
-use super::segment::{ContactSegment, Place, Plane};
 use super::{ContactNode, smooth_static_contact};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};

@@ -199,6 +199,109 @@ fn spoiled_requests_are_refused_with_reasons() {
     assert!(peak < 1024, "{peak} MiB for requests of some kilobytes");
 }
 
+/// Processor time that a process has taken.
+fn processor_time(process: &Process) -> Duration {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.0.id())).unwrap();
+    // The name of the program, in parentheses, may have spaces.
+    let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    let ticks: u64 = fields[11..13].iter().map(|ticks| ticks.parse::<u64>().unwrap()).sum();
+    // A tick is a hundredth of a second for user programs, whatever the kernel's own are (proc(5)).
+    Duration::from_millis(10 * ticks)
+}
+
+/// Texts of a request in which one list, map or text is so many times as large.
+fn grown(request: &Value, place: &str, times: usize) -> String {
+    const MARK: &str = "the place that grows";
+    let mut rest = request.clone();
+    let grown = match std::mem::replace(rest.pointer_mut(place).unwrap(), MARK.into()) {
+        Value::String(text) => json!(text.repeat(times)).to_string(),
+        Value::Array(entries) => {
+            let entries: Vec<String> = entries.iter().map(Value::to_string).collect();
+            format!("[{}]", vec![entries.join(","); times].join(","))
+        }
+        Value::Object(members) => {
+            let value = members.values().next().map_or_else(|| "1".to_owned(), Value::to_string);
+            let added = (0..times).map(|number| format!("\"k{number}\":{value}"));
+            let members = members.iter().map(|(name, value)| format!("{}:{value}", json!(name)));
+            format!("{{{}}}", members.chain(added).collect::<Vec<_>>().join(","))
+        }
+        other => panic!("{other} does not grow"),
+    };
+    rest.to_string().replace(&json!(MARK).to_string(), &grown)
+}
+
+/// What a server may take, whatever is asked of it.
+const MOST_MEMORY: u64 = 300;
+
+/// The deadline of an expansion, with what is done before and after it.
+const MOST_TIME: Duration = Duration::from_secs(8);
+
+#[test]
+fn requests_of_any_size_take_bounded_time_and_memory() {
+    let data = tempfile::tempdir().unwrap();
+    let (process, server) = server(data.path());
+    let agent = agent();
+    let url = format!("{server}/v1/sweeps?dry_run=true");
+    let mut full = full_request();
+    full["tags"] = json!(["a"]);
+    full["set"]["recording.nodes"] = json!([{"node": 3}]);
+    full["scenario"]["recording"]["snapshots"] = json!({"rate_hz": 25.0, "nodes": [{"node": 3}]});
+    let listed = json!({"preset": "paper-200m", "design": "list", "points": [{"flow_rate": 0.01}]});
+    let mut bodies = Vec::new();
+    for request in [full, listed] {
+        let mut places = Vec::new();
+        pointers(&request, "", &mut places);
+        places.retain(|place| {
+            let value = request.pointer(place).unwrap();
+            value.is_array() || value.is_object() || value.is_string()
+        });
+        bodies.extend(places.into_iter().flat_map(|place| {
+            let request = request.clone();
+            [10, 1_000, 100_000].map(move |times| {
+                let name = format!("{place} x {times}");
+                (
+                    name,
+                    Box::new({
+                        let (request, place) = (request.clone(), place.clone());
+                        move || grown(&request, &place, times)
+                    }) as Box<dyn Fn() -> String>,
+                )
+            })
+        }));
+    }
+    let of = |before: &'static str, entry: &'static str, number: usize, after: &'static str| {
+        let body = move || format!("{before}{}{after}", vec![entry; number].join(","));
+        (format!("{number} {entry}"), Box::new(body) as Box<dyn Fn() -> String>)
+    };
+    bodies.extend([
+        of(r#"{"preset":"paper-200m","design":"list","points":["#, "{}", 5_000_000, "]}"),
+        of(r#"{"preset":"paper-200m","axes":{"flow_rate":{"values":["#, "1", 8_000_000, "]}}}"),
+        of(r#"{"preset":"paper-200m","set":{"well.survey":["#, "1", 8_000_000, "]}}"),
+        of(r#"{"preset":"paper-200m","set":{"well.survey":["#, r#"{"a":1}"#, 2_000_000, "]}}"),
+    ]);
+    for (name, body) in &bodies {
+        let before = processor_time(&process);
+        let answer = agent.post(&url).content_type("application/json").send(body());
+        // The server closes on a body that is too large: the rest of it is not taken.
+        let status = answer.map_or(413, |answer| check(answer).unwrap());
+        let took = processor_time(&process) - before;
+        assert!(took < MOST_TIME, "{name}: {took:?} of processor time for the answer {status}");
+        let peak = peak_memory(&process);
+        assert!(peak < MOST_MEMORY, "{name}: {peak} MiB");
+    }
+    // The largest that are valid, at once.
+    let grid = json!({"preset": "paper-200m", "axes": {
+        "flow_rate": {"from": 0.01, "to": 0.06, "count": 1_000},
+        "mud_density": {"from": 1200, "to": 2100, "count": 100}}});
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| check(agent.post(&url).send_json(&grid).unwrap()).unwrap());
+        }
+    });
+    let peak = peak_memory(&process);
+    assert!(peak < MOST_MEMORY, "{peak} MiB");
+}
+
 #[test]
 fn hostile_paths_and_parameters_are_refused_with_reasons() {
     let data = tempfile::tempdir().unwrap();

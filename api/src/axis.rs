@@ -2,13 +2,15 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::bounded;
+
 /// The values of one swept parameter, listed or spaced between two ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, try_from = "AxisFields")]
 pub enum Axis {
     /// `{"values": [...]}`: the values as listed, in that order.
     Values {
-        /// The values, in the units of the field; 1 or more.
+        /// The values, in the units of the field, 1 to 100,000.
         values: Vec<f64>,
     },
     /// `{"from", "to", "count", "scale"}`: `count` values from `from` to `to`, both ends included and exact.
@@ -136,7 +138,7 @@ impl Scale {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object with `values`, or with `from` and `to`")]
 struct AxisFields {
-    #[serde(default, deserialize_with = "present")]
+    #[serde(default, deserialize_with = "bounded::values")]
     values: Option<Vec<f64>>,
     #[serde(default, deserialize_with = "present")]
     from: Option<f64>,
@@ -192,8 +194,8 @@ mod schema {
     #[serde(deny_unknown_fields)]
     #[expect(dead_code, reason = "only described")]
     struct Values {
-        /// The values, in the units of the field; 1 or more.
-        #[schema(min_items = 1)]
+        /// The values, in the units of the field, 1 to 100,000.
+        #[schema(min_items = 1, max_items = 100_000)]
         values: Vec<f64>,
     }
 

@@ -158,7 +158,7 @@ fn mean_cpu_time(plans: &[Plan]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expand;
+    use crate::expand::tests::expand;
     use serde_json::json;
 
     #[test]

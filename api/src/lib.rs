@@ -7,11 +7,13 @@
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
 pub mod axis;
+mod bounded;
 pub mod cost;
 mod design;
 pub mod dry_run;
 pub mod event;
 pub mod expand;
+mod listed;
 pub mod point;
 pub mod preset;
 pub mod problem;
@@ -27,8 +29,10 @@ pub use axis::{Axis, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::{DeletedSweep, PointEvent};
 pub use expand::{
-    Expansion, PointKey, PointKeys, SweepPoint, check_patch, compose, expand, expand_added, key_text,
+    Expansion, Interruption, PointKey, PointKeys, SweepPoint, UNINTERRUPTED, check_patch, compose, expand,
+    expand_added, key_text,
 };
+pub use listed::ListedPoints;
 pub use point::{
     ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureClass, FailureList, MissingFile,
     PointDetail, PointError, PointLinks, PointList, PointRow, PointState, SelectedPointList,

@@ -17,6 +17,8 @@ pub enum ProblemKind {
     MalformedBody,
     /// The body is well-formed but what it asks for cannot be simulated.
     InvalidRequest,
+    /// What the body asks for takes too long to prepare.
+    TooMuchWork,
     /// A path, query or header parameter is missing, unknown or out of range.
     InvalidParameter,
     /// The body's media type is not accepted.
@@ -80,6 +82,7 @@ impl ProblemKind {
     pub const ALL: &'static [ProblemKind] = &[
         ProblemKind::MalformedBody,
         ProblemKind::InvalidRequest,
+        ProblemKind::TooMuchWork,
         ProblemKind::InvalidParameter,
         ProblemKind::UnsupportedMediaType,
         ProblemKind::Unauthorized,
@@ -134,6 +137,7 @@ impl ProblemKind {
         match self {
             ProblemKind::MalformedBody => ("malformed-body", "The body cannot be read", 400),
             ProblemKind::InvalidRequest => ("invalid-request", "The request cannot be simulated", 422),
+            ProblemKind::TooMuchWork => ("too-much-work", "The request takes too long to prepare", 422),
             ProblemKind::InvalidParameter => ("invalid-parameter", "A parameter is not valid", 400),
             ProblemKind::UnsupportedMediaType => {
                 ("unsupported-media-type", "The body's media type is not accepted", 415)
@@ -264,6 +268,25 @@ impl ProblemDetails {
         ProblemDetails { errors, ..ProblemDetails::new(ProblemKind::InvalidRequest, detail) }
     }
 
+    /// Shortens texts that repeat what was sent, so that no answer is as long as a hostile request.
+    pub fn shorten(&mut self) {
+        shorten(&mut self.detail, LONGEST_DETAIL);
+        for error in &mut self.errors {
+            shorten(&mut error.detail, LONGEST_DETAIL);
+            if let Some(pointer) = &mut error.pointer {
+                shorten(pointer, LONGEST_VALUE);
+            }
+            if error.got.as_ref().is_some_and(|got| got.to_string().len() > LONGEST_VALUE) {
+                let mut text = error.got.take().map_or_else(String::new, |got| match got {
+                    Value::String(text) => text,
+                    other => other.to_string(),
+                });
+                shorten(&mut text, LONGEST_VALUE);
+                error.got = Some(text.into());
+            }
+        }
+    }
+
     /// A path, query or header parameter that is not valid.
     pub fn invalid_parameter(name: &str, got: Option<&str>, detail: impl Into<String>) -> Self {
         let detail = detail.into();
@@ -318,6 +341,19 @@ impl std::fmt::Display for FieldProblem {
     }
 }
 
+/// Bytes of a detail, and of a pointer or value that was given, in a problem document.
+const LONGEST_DETAIL: usize = 20_000;
+const LONGEST_VALUE: usize = 1_000;
+
+/// Cuts a text to `most` bytes or somewhat less, with an ellipsis at its end.
+fn shorten(text: &mut String, most: usize) {
+    const ELLIPSIS: &str = "...";
+    if text.len() > most {
+        text.truncate(text.floor_char_boundary(most - ELLIPSIS.len()));
+        text.push_str(ELLIPSIS);
+    }
+}
+
 /// One member name as a token of a JSON Pointer (RFC 6901 section 3).
 pub fn pointer_token(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
@@ -332,6 +368,27 @@ mod tests {
     fn every_kind_has_its_own_uri() {
         let uris: HashSet<_> = ProblemKind::ALL.iter().map(|kind| kind.uri()).collect();
         assert_eq!(uris.len(), ProblemKind::ALL.len());
+    }
+
+    #[test]
+    fn no_text_of_a_problem_is_as_long_as_what_was_sent() {
+        let error = |got: Value| FieldProblem {
+            pointer: Some(format!("/set/{}", "k".repeat(5_000))),
+            parameter: None,
+            got: Some(got),
+            detail: format!("must not be {}", "\u{e4}".repeat(50_000)),
+        };
+        let errors =
+            vec![error("\u{e4}".repeat(5_000).into()), error(vec![1; 5_000].into()), error(7.into())];
+        let mut problem = ProblemDetails::invalid_request(errors);
+        problem.shorten();
+        for error in &problem.errors {
+            assert!(error.detail.len() <= LONGEST_DETAIL && error.detail.ends_with("..."));
+            assert!(error.pointer.as_ref().unwrap().len() <= LONGEST_VALUE);
+        }
+        let lengths = problem.errors.iter().map(|error| error.got.as_ref().unwrap().to_string().len());
+        assert!(lengths.max() <= Some(LONGEST_VALUE + 2), "{problem:?}");
+        assert_eq!(problem.errors[2].got, Some(7.into()));
     }
 
     #[test]

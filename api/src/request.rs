@@ -10,6 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::axis::Axis;
+use crate::bounded;
+use crate::listed::ListedPoints;
 use crate::problem::{FieldProblem, ProblemDetails};
 
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
@@ -37,7 +39,7 @@ pub struct SweepRequest {
     #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
-    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty", deserialize_with = "bounded::tags")]
     #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
@@ -49,8 +51,8 @@ pub struct SweepRequest {
     pub scenario: Option<Box<Scenario>>,
     /// Changes to the scenario, by the path of the field, such as `operation.rotation_speed_rpm` or
     /// `string.sections[1].count`. An object changes the fields it names; `null` removes what is optional. An
-    /// outer path is applied before those inside it.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    /// outer path is applied before those inside it. At most 200.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
     #[cfg_attr(feature = "openapi", schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120})))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
@@ -64,8 +66,9 @@ pub struct SweepRequest {
     pub design: Design,
     /// The swept parameters, by name: `flow_rate`, `mud_density`, or the path of any numeric field of the scenario, such as
     /// `operation.rotation_speed_rpm` or `string.sections[1].count`. In a grid the first axis varies slowest, in the order in which
-    /// they are written. A sweep has 100,000 points at most, the product of the axes' counts in a grid; without axes it has one.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    /// they are written. A sweep has at most 32 axes and 100,000 points, in a grid the product of the axes' counts; without axes it has
+    /// one point.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty", deserialize_with = "bounded::axes")]
     #[cfg_attr(
         feature = "openapi",
         schema(example = json!({
@@ -75,9 +78,12 @@ pub struct SweepRequest {
     )]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`, each with a value for every parameter that the first names.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "openapi", schema(example = json!([])))]
-    pub points: Vec<IndexMap<AxisName, f64>>,
+    #[serde(default, skip_serializing_if = "ListedPoints::is_empty")]
+    #[cfg_attr(
+        feature = "openapi",
+        schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))
+    )]
+    pub points: ListedPoints,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -127,7 +133,7 @@ pub struct RunRequest {
     #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
-    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty", deserialize_with = "bounded::tags")]
     #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
@@ -137,8 +143,8 @@ pub struct RunRequest {
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
-    /// Changes to the scenario, by the path of the field.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    /// Changes to the scenario, by the path of the field. At most 200.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
     #[cfg_attr(feature = "openapi", schema(example = json!({"mud.flow_rate": 0.04})))]
     pub set: BTreeMap<String, Value>,
     /// What is kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
@@ -180,16 +186,19 @@ pub struct AppendRequest {
     #[serde(default)]
     pub design: Design,
     /// The sweep's parameters with new values.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty", deserialize_with = "bounded::axes")]
     #[cfg_attr(
         feature = "openapi",
         schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))
     )]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "openapi", schema(example = json!([])))]
-    pub points: Vec<IndexMap<AxisName, f64>>,
+    #[serde(default, skip_serializing_if = "ListedPoints::is_empty")]
+    #[cfg_attr(
+        feature = "openapi",
+        schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))
+    )]
+    pub points: ListedPoints,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -207,11 +216,11 @@ pub struct AppendRequest {
 }
 
 impl AppendRequest {
-    /// The request for the added points alone, as a sweep of their own, of the sweep that `original` asked for.
+    /// The request for the added points alone, as a sweep of their own, next to the request `original` of the sweep.
     ///
     /// # Errors
-    /// When the parameters are not those of the sweep.
-    pub(crate) fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
+    /// The parameters are not those of the sweep.
+    pub fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
         let AppendRequest { design, axes, points, samples, seed, skip } = self;
         // Which of the points are verified is found once it is known which of them the sweep has not.
         let request =
@@ -237,9 +246,20 @@ impl AppendRequest {
 }
 
 impl SweepRequest {
-    /// Names of the swept parameters, those of listed points again with each.
+    /// Names of the swept parameters.
     pub(crate) fn names(&self) -> impl Iterator<Item = &AxisName> {
-        self.axes.keys().chain(self.points.iter().flat_map(IndexMap::keys))
+        self.axes.keys().chain(self.points.names())
+    }
+
+    /// Number of points, by the design; none of a grid with more than can be counted.
+    pub fn point_count(&self) -> Option<usize> {
+        let counts = self.axes.values().filter_map(Axis::count);
+        match self.design {
+            Design::Grid => counts.into_iter().try_fold(1, usize::checked_mul),
+            Design::Zip => Some(counts.max().unwrap_or(1)),
+            Design::List => Some(self.points.len()),
+            Design::LatinHypercube | Design::Sobol => Some(self.samples.unwrap_or(1) as usize),
+        }
     }
 
     /// Paths of the swept parameters.
@@ -265,7 +285,7 @@ pub struct SweepPatch {
     #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
     pub priority: Option<i32>,
     /// Words to find it by, in place of those that it has.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "bounded::new_tags")]
     #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Option<Vec<Tag>>))]
     pub tags: Option<BTreeSet<String>>,
     /// Whether the sweep, and all that belongs to it, is kept whatever its age.

@@ -4,6 +4,7 @@ use drillsweep_scenario::{Scenario, ScenarioRequest};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
+use crate::design::SOBOL_AXES;
 use crate::problem::{FieldProblem, ProblemDetails};
 
 /// The bounds of what the service accepts.
@@ -12,8 +13,16 @@ use crate::problem::{FieldProblem, ProblemDetails};
 pub struct Limits {
     /// Points in one sweep.
     pub points_per_sweep: usize,
+    /// Axes of one sweep, and parameters of a listed point.
+    pub axes_per_sweep: usize,
+    /// Changes (`set`) in one request.
+    pub changes_per_request: usize,
+    /// JSON values in one request body, those of `axes` and `points` not counted.
+    pub values_per_request: usize,
     /// Bytes in one request body.
     pub body_bytes: usize,
+    /// Bytes in the text of a scenario file.
+    pub scenario_file_bytes: usize,
     /// Entries in one page of a list.
     pub page_size: u32,
     /// Seconds for which one request may wait for a change.
@@ -34,6 +43,8 @@ pub struct Limits {
     pub requests_per_second: u32,
     /// Requests that an owner may make at once (the size of the token bucket).
     pub request_burst: u32,
+    /// Event streams that an owner may have open, and as many long polls.
+    pub held_answers_per_owner: usize,
     /// Points of an owner that may be queued or running.
     pub open_points_per_owner: u64,
 }
@@ -41,7 +52,11 @@ pub struct Limits {
 /// The limits in force, but for those of an owner: these are the defaults of what an operator sets.
 pub const LIMITS: Limits = Limits {
     points_per_sweep: 100_000,
+    axes_per_sweep: SOBOL_AXES,
+    changes_per_request: 200,
+    values_per_request: 50_000,
     body_bytes: 16 << 20,
+    scenario_file_bytes: 512 << 10,
     page_size: 500,
     wait_seconds: 60,
     lowest_priority: -10,
@@ -52,6 +67,7 @@ pub const LIMITS: Limits = Limits {
     tag_length: 100,
     requests_per_second: 200,
     request_burst: 1_000,
+    held_answers_per_owner: 100,
     open_points_per_owner: 500_000,
 };
 
@@ -115,15 +131,20 @@ impl ScenarioFile {
     /// # Errors
     /// The first place where the text is not of its format, or no scenario.
     pub fn read(&self) -> Result<ScenarioRequest, Box<ProblemDetails>> {
+        let refused = |detail: String| {
+            let error =
+                FieldProblem { pointer: Some("/text".to_owned()), parameter: None, got: None, detail };
+            Box::new(ProblemDetails::invalid_request(vec![error]))
+        };
+        let most = LIMITS.scenario_file_bytes;
+        if self.text.len() > most {
+            return Err(refused(format!("must have at most {most} bytes; it has {}", self.text.len())));
+        }
         let read = match self.format {
             ScenarioFormat::Toml => ScenarioRequest::from_toml(&self.text),
             ScenarioFormat::Json => ScenarioRequest::from_json(&self.text),
         };
-        read.map_err(|problem| {
-            let (pointer, detail) = (Some("/text".to_owned()), problem.to_string());
-            let error = FieldProblem { pointer, parameter: None, got: None, detail };
-            Box::new(ProblemDetails::invalid_request(vec![error]))
-        })
+        read.map_err(|problem| refused(problem.to_string()))
     }
 }
 

@@ -7,8 +7,8 @@ use anyhow::{Context, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use drillsweep_api::{
-    AppendRequest, Axis, AxisName, Design, FieldProblem, PlannedPoint, PlannedVerification, Scale, Sweep,
-    SweepRequest,
+    AppendRequest, Axis, AxisName, Design, FieldProblem, ListedPoints, PlannedPoint, PlannedVerification,
+    Scale, Sweep, SweepRequest,
 };
 use drillsweep_scenario::ScenarioRequest;
 use drillsweep_table::quantity::unit;
@@ -124,7 +124,7 @@ impl DesignArguments {
         AppendRequest {
             design: self.design,
             axes: named.chain(further).map(|(name, axis)| (AxisName::from(name), axis.clone())).collect(),
-            points: Vec::new(),
+            points: ListedPoints::default(),
             samples: self.samples,
             seed: self.seed,
             skip: self.skip,

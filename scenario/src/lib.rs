@@ -25,7 +25,7 @@ pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
-pub use request::ScenarioRequest;
+pub use request::{MOST_PROBLEMS, ScenarioRequest};
 pub use snapshots::Snapshots;
 pub use statics::{StartFriction, Starts, Statics};
 pub use strict::read_strictly;

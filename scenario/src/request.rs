@@ -8,6 +8,9 @@ use serde_json::Value;
 use crate::format::{from_table, from_value, not_json, table};
 use crate::{PRESETS, Problem, Problems, Scenario, preset};
 
+/// Problems of one request that are looked for at most.
+pub const MOST_PROBLEMS: usize = 100;
+
 /// A preset or a full scenario, and what to change in it:
 /// `{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "mud.density": 1500}}`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -59,8 +62,8 @@ impl ScenarioRequest {
     /// The scenario asked for. It is not validated yet.
     ///
     /// # Errors
-    /// No base or two, an unknown preset, and every change that cannot be made. Paths of the changes are paths
-    /// in the scenario.
+    /// No base or two, an unknown preset, and every change that cannot be made, of many the first [`MOST_PROBLEMS`]. Paths of the
+    /// changes are paths in the scenario.
     pub fn resolve(&self) -> Result<Scenario, Problems> {
         self.resolve_for_sweep(&[])
     }
@@ -87,6 +90,9 @@ impl ScenarioRequest {
             match scenario.with(path, value.clone()) {
                 Ok(changed) => scenario = changed,
                 Err(problem) => problems.push(problem),
+            }
+            if problems.len() == MOST_PROBLEMS {
+                break;
             }
         }
         if !problems.is_empty() {

@@ -1,4 +1,4 @@
-//! Reading objects as objects and names as names.
+//! Reading objects as objects, names as names and whole numbers as integers.
 //!
 //! Serde also takes a list for a struct (its entries for the fields, in their order) and `{"grid": null}` for the name `"grid"`. No schema
 //! describes either, and a list comes to mean other fields as soon as one is added.
@@ -24,6 +24,15 @@ pub fn read_strictly<'de, T: Deserialize<'de>, D: Deserializer<'de>>(format: D) 
 
 /// A deserializer, visitor, seed or access of serde's that reads structs and names strictly.
 pub(super) struct Strict<T>(pub(super) T);
+
+/// Declares methods of a deserializer that read an integer.
+macro_rules! read_whole {
+    ($($method:ident)*) => {$(
+        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
+            self.0.deserialize_any(Whole(visitor))
+        }
+    )*};
+}
 
 impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
     type Error = D::Error;
@@ -66,8 +75,13 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
         self.0.is_human_readable()
     }
 
+    read_whole! {
+        deserialize_i8 deserialize_i16 deserialize_i32 deserialize_i64 deserialize_i128 deserialize_u8 deserialize_u16 deserialize_u32
+        deserialize_u64 deserialize_u128
+    }
+
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
+        bool f32 f64 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
         identifier ignored_any
     }
 }
@@ -115,6 +129,44 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<V> {
 
     fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
         self.0.visit_map(Strict(members))
+    }
+}
+
+/// The visitor of an integer, which also takes a float without a fraction: to JSON Schema 2.0 is an integer, and some clients write
+/// integers so.
+struct Whole<V>(V);
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for Whole<V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    hand_on! {
+        visit_bool(bool) visit_i64(i64) visit_i128(i128) visit_u64(u64) visit_u128(u128) visit_char(char) visit_str(&str)
+        visit_borrowed_str(&'de str) visit_string(String) visit_bytes(&[u8]) visit_borrowed_bytes(&'de [u8]) visit_byte_buf(Vec<u8>)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<V::Value, E> {
+        /// Beyond it a float does not hold every integer.
+        const LARGEST: f64 = (1_u64 << 53) as f64;
+        if value.fract() == 0.0 && value.abs() <= LARGEST {
+            return self.0.visit_i64(value as i64);
+        }
+        self.0.visit_f64(value)
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<V::Value, E> {
+        self.0.visit_unit()
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<V::Value, A::Error> {
+        self.0.visit_seq(entries)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
+        self.0.visit_map(members)
     }
 }
 
@@ -309,6 +361,16 @@ mod tests {
             let _: Form = serde_json::from_str(&lax.to_string()).expect("serde takes it");
             let refused = read(lax.clone()).expect_err("another form");
             assert!(refused.contains(wanted), "{lax}: {refused}");
+        }
+    }
+
+    #[test]
+    fn floats_without_a_fraction_are_integers() {
+        assert_eq!(read_strictly::<u32, _>(json!(2.0)).unwrap(), 2);
+        assert_eq!(read_strictly::<Option<i64>, _>(json!(-3.0)).unwrap(), Some(-3));
+        assert_eq!(read_strictly::<f64, _>(json!(2.0)).unwrap(), 2.0);
+        for other in [json!(2.5), json!(-1.0), json!(1e10), json!(1e300), json!("2")] {
+            assert!(read_strictly::<u32, _>(other.clone()).is_err(), "{other}");
         }
     }
 

@@ -41,8 +41,14 @@ pub(crate) async fn collect(mut app: App) {
             continue;
         }
         match app.store.collect_garbage(&app.config.retention.policy, false).await {
-            Ok(garbage) => tracing::info!(deleted = %garbage.to_json(), "a collection has ended"),
-            Err(error) => tracing::error!(%error, "a collection failed; what it had deleted stays deleted"),
+            Ok(garbage) => {
+                app.metrics.collected(true);
+                tracing::info!(deleted = %garbage.to_json(), "a collection has ended");
+            }
+            Err(error) => {
+                app.metrics.collected(false);
+                tracing::error!(%error, "a collection failed; what it had deleted stays deleted");
+            }
         }
     }
 }

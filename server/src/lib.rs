@@ -15,6 +15,7 @@ mod router;
 mod serve;
 
 pub use app::Config;
+pub use app::expansions::ExpansionLimits;
 pub use app::limit::OwnerLimits;
 pub use app::retain::Retaining;
 pub use listen::ConnectionLimits;

@@ -18,6 +18,8 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::gauge::Gauge;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
@@ -74,11 +76,21 @@ pub(crate) struct InReserve;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peer(pub(crate) SocketAddr);
 
+/// Numbers of connections.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ConnectionCounts {
+    /// Open ones.
+    pub(crate) open: Gauge,
+    /// Those closed at once, since the start.
+    pub(crate) refused: Counter,
+}
+
 /// Serves connections until `shutdown` completes, then lets open requests end. A connection beyond the limits is closed at once.
 pub(crate) async fn serve_connections(
     listener: TcpListener,
     routes: Router,
     limits: &ConnectionLimits,
+    counts: ConnectionCounts,
     shutdown: impl Future<Output = ()>,
 ) {
     let places = Arc::new(Places::new(limits.clone()));
@@ -97,6 +109,7 @@ pub(crate) async fn serve_connections(
             () = &mut shutdown => break,
         };
         let Some(place) = places.take(address.ip()) else {
+            counts.refused.inc();
             tracing::debug!(%address, "a connection beyond the limits is closed");
             continue;
         };
@@ -119,6 +132,7 @@ pub(crate) async fn serve_connections(
         let stream = TokioIo::new(Patient { stream, patience: limits.write, waiting: None, refusal: None });
         let connection = builder.serve_connection(stream, TowerToHyperService::new(routes));
         let connection = connections.watch(connection);
+        let open = Open::new(counts.open.clone());
         tokio::spawn(async move {
             let outdone = async {
                 match &reserved {
@@ -132,11 +146,27 @@ pub(crate) async fn serve_connections(
                 },
                 () = outdone => tracing::debug!(%address, "a connection that asks nothing makes room"),
             }
-            drop(place);
+            drop((place, open));
         });
     }
     drop(listener);
     connections.shutdown().await;
+}
+
+/// An open connection in a gauge.
+struct Open(Gauge);
+
+impl Open {
+    fn new(gauge: Gauge) -> Self {
+        gauge.inc();
+        Self(gauge)
+    }
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        self.0.dec();
+    }
 }
 
 /// Places for connections.
@@ -227,7 +257,7 @@ impl Drop for Place {
 }
 
 /// What counts as one address: an address of IPv4, a /64 of IPv6, which is what one customer gets at least.
-fn network(address: IpAddr) -> IpAddr {
+pub(crate) fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {
             IpAddr::V6(Ipv6Addr::from_bits(address.to_bits() >> 64 << 64))

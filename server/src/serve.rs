@@ -12,7 +12,7 @@ use tokio::time::{Instant, MissedTickBehavior};
 
 use crate::app::{App, Config};
 use crate::collect::collect;
-use crate::listen::serve_connections;
+use crate::listen::{ConnectionCounts, serve_connections};
 use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
 use crate::router;
@@ -98,12 +98,14 @@ async fn serve_until_drained(
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         let limits = app.config.connections.clone();
-        tokio::spawn(
-            async move { serve_connections(listener, routes, &limits, std::future::pending()).await },
-        )
+        tokio::spawn(async move {
+            serve_connections(listener, routes, &limits, ConnectionCounts::default(), std::future::pending())
+                .await
+        })
     });
     let limits = app.config.connections.clone();
-    let serving = serve_connections(listeners.api, router::routes(&app), &limits, async move {
+    let counts = app.metrics.connections.clone();
+    let serving = serve_connections(listeners.api, router::routes(&app), &limits, counts, async move {
         shutdown.await;
         // The receivers cannot all be gone: the router holds one.
         let _ = stop.send(true);

@@ -2,15 +2,25 @@
 
 use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest};
 use drillsweep_sim::admission::validate;
-use indexmap::{IndexMap, IndexSet};
+use indexmap::IndexSet;
 
+use super::Interruption;
 use super::expansion::{number, set_number};
 use super::layout::{Layout, axis_pointer};
-use super::problems::Found;
+use super::problems::{Found, Written};
+use crate::problem::ProblemDetails;
 use crate::request::{AxisName, Design, SweepRequest};
 
 /// The scenario that the axes are applied to: preset or scenario, with the changes of `set`.
-pub(super) fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Scenario> {
+///
+/// # Errors
+/// That of the interruption.
+pub(super) fn resolve(
+    request: &SweepRequest,
+    written: &Written<'_>,
+    problems: &mut Found,
+    interruption: Interruption<'_>,
+) -> Result<Option<Scenario>, Box<ProblemDetails>> {
     match (&request.preset, &request.scenario) {
         (Some(_), Some(_)) => problems.push("", None, "`preset` and `scenario` exclude each other; give one"),
         (None, None) => problems.push("", None, "either `preset` or `scenario` must be given"),
@@ -26,22 +36,23 @@ pub(super) fn resolve(request: &SweepRequest, problems: &mut Found) -> Option<Sc
                 set: request.set.clone(),
             };
             let swept: Vec<&str> = swept(request).collect();
+            interruption()?;
             match scenario.resolve_for_sweep(&swept) {
                 Ok(mut scenario) => {
                     if let Some(outputs) = &request.outputs {
                         scenario.recording.outputs = outputs.clone();
                     }
-                    return Some(scenario);
+                    return Ok(Some(scenario));
                 }
                 Err(Problems(of_set)) => {
                     for problem in of_set {
-                        problems.add(request, |_| None, &problem);
+                        problems.add(written, |_| None, &problem);
                     }
                 }
             }
         }
     }
-    None
+    Ok(None)
 }
 
 /// Sets the swept fields to the values of the first point; false where one of them is no numeric field.
@@ -67,18 +78,22 @@ pub(super) fn set_fields(
 
 /// The problems of the scenario itself, when the axes cannot be expanded: a sweep's other mistakes are not
 /// kept back until its axes are right. What the axes would replace is not looked at.
-pub(super) fn check_without_axes(request: &SweepRequest, scenario: &Scenario, problems: &mut Found) {
+pub(super) fn check_without_axes(
+    request: &SweepRequest,
+    written: &Written<'_>,
+    scenario: &Scenario,
+    problems: &mut Found,
+) {
     let Err(Problems(of_scenario)) = validate(scenario) else { return };
     let replaced: IndexSet<&str> = swept(request).collect();
     for problem in of_scenario.iter().filter(|problem| !replaced.contains(problem.path.as_str())) {
-        problems.add(request, |_| None, problem);
+        problems.add(written, |_| None, problem);
     }
 }
 
-/// The paths of the fields that a request changes from point to point; those of a list of points may be told more than once.
+/// The paths of the fields that a request changes from point to point.
 fn swept(request: &SweepRequest) -> impl Iterator<Item = &str> {
-    let listed = request.points.iter().flat_map(IndexMap::keys);
-    request.axes.keys().chain(listed).map(AxisName::scenario_path)
+    request.names().map(AxisName::scenario_path)
 }
 
 #[cfg(test)]

@@ -173,7 +173,7 @@ mod tests {
     use drillsweep_scenario::preset;
 
     use super::*;
-    use crate::expand::expand;
+    use crate::expand::tests::expand;
     use crate::expand::tests::{expansion, problems, request};
 
     #[test]

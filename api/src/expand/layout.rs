@@ -1,12 +1,15 @@
 //! How many points a request has, and which values the axes have at each, by its design.
 
+use std::collections::HashMap;
+
+use drillsweep_scenario::MOST_PROBLEMS;
 use indexmap::IndexSet;
 use serde_json::{Value, json};
 
 use super::expansion::SweepPoint;
 use super::problems::Found;
 use crate::axis::Axis;
-use crate::design::{SOBOL_AXES, Sobol, latin_hypercube};
+use crate::design::{Sobol, latin_hypercube};
 use crate::problem::pointer_token;
 use crate::request::{AxisName, Design, SweepRequest};
 use crate::service::LIMITS;
@@ -34,9 +37,7 @@ impl<'a> Layout<'a> {
         let before = problems.len();
         let design = request.design;
         let names: Vec<AxisName> = match design {
-            Design::List => {
-                request.points.first().map(|point| point.keys().cloned().collect()).unwrap_or_default()
-            }
+            Design::List => request.points.names().to_vec(),
             _ => request.axes.keys().cloned().collect(),
         };
         check_design_members(request, problems);
@@ -57,15 +58,7 @@ impl<'a> Layout<'a> {
             }
         }
         check_names(request, &names, problems);
-        let total = match design {
-            Design::Grid => request
-                .axes
-                .values()
-                .try_fold(1, |total: usize, axis| total.checked_mul(axis.count().unwrap_or(1))),
-            Design::Zip => Some(request.axes.values().filter_map(Axis::count).max().unwrap_or(1)),
-            Design::List => Some(request.points.len()),
-            Design::LatinHypercube | Design::Sobol => Some(request.samples.unwrap_or(1) as usize),
-        };
+        let total = request.point_count();
         let limit = LIMITS.points_per_sweep;
         if total.is_none_or(|total| total > limit) {
             let (pointer, got) = match design {
@@ -95,8 +88,7 @@ impl<'a> Layout<'a> {
         let axes = self.request.axes.values();
         match &self.draw {
             Draw::Listed if self.request.design == Design::List => {
-                let point = &self.request.points[number];
-                self.names.iter().filter_map(|name| point.get(name).copied()).collect()
+                self.request.points.values(number).to_vec()
             }
             Draw::Listed => axes.zip(self.indices(number)).map(|(axis, index)| axis.value(index)).collect(),
             Draw::LatinHypercube(fractions) => {
@@ -204,15 +196,11 @@ fn check_design_members(request: &SweepRequest, problems: &mut Found) {
     }
 }
 
-/// Whether every field is swept once, and every listed point has the same parameters.
+/// Checks that every field is swept once, and that listed points have the same parameters.
 fn check_names(request: &SweepRequest, names: &[AxisName], problems: &mut Found) {
-    if names.len() > SOBOL_AXES {
-        let detail = format!("a sweep has at most {SOBOL_AXES} axes");
-        problems.push("/axes", Some(names.len().into()), detail);
-    }
-    for (index, name) in names.iter().enumerate() {
-        if let Some(other) = names[..index].iter().find(|other| other.scenario_path() == name.scenario_path())
-        {
+    let mut known: HashMap<&str, &AxisName> = HashMap::with_capacity(names.len());
+    for name in names {
+        if let Some(other) = known.insert(name.scenario_path(), name) {
             let pointer = match request.design {
                 Design::List => format!("/points/0/{}", pointer_token(name.as_str())),
                 _ => axis_pointer(name),
@@ -220,12 +208,10 @@ fn check_names(request: &SweepRequest, names: &[AxisName], problems: &mut Found)
             problems.push(pointer, None, format!("is the same field as {}", other.as_str()));
         }
     }
-    for (number, point) in request.points.iter().enumerate() {
-        if point.len() != names.len() || !names.iter().all(|name| point.contains_key(name)) {
-            let names: Vec<_> = names.iter().map(AxisName::as_str).collect();
-            let detail = format!("must have the same parameters as the first point: {}", names.join(", "));
-            problems.push(format!("/points/{number}"), None, detail);
-        }
+    for number in request.points.uneven().iter().take(MOST_PROBLEMS) {
+        let names: Vec<_> = names.iter().map(AxisName::as_str).collect();
+        let detail = format!("must have the same parameters as the first point: {}", names.join(", "));
+        problems.push(format!("/points/{number}"), None, detail);
     }
 }
 
@@ -236,7 +222,7 @@ pub(super) fn axis_pointer(name: &AxisName) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expand::expand;
+    use crate::expand::tests::expand;
     use crate::expand::tests::{expansion, pointers, request};
 
     #[test]

@@ -15,12 +15,18 @@ use base::{check_without_axes, resolve, set_fields};
 use layout::Layout;
 use members::check_members;
 use points::points;
-use problems::Found;
+use problems::{Found, Written};
 use references::references;
 
 use crate::problem::ProblemDetails;
-use crate::request::{AppendRequest, SweepRequest};
+use crate::request::SweepRequest;
 use crate::verify::sample;
+
+/// A check between steps of an expansion, which ends it by an error: its client has left, or it has taken too long.
+pub type Interruption<'a> = &'a dyn Fn() -> Result<(), Box<ProblemDetails>>;
+
+/// The interruption that never comes.
+pub const UNINTERRUPTED: Interruption<'static> = &|| Ok(());
 
 /// The points of a request, every one of them validated.
 ///
@@ -28,43 +34,49 @@ use crate::verify::sample;
 ///
 /// # Errors
 /// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request; of very
-/// many the first hundred.
-pub fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
+/// many the first hundred. That of the interruption.
+pub fn expand(
+    request: &SweepRequest,
+    interruption: Interruption<'_>,
+) -> Result<Expansion, Box<ProblemDetails>> {
     let mut problems = Found::default();
     check_members(request, &mut problems);
+    let written = Written::new(request);
     let layout = Layout::new(request, &mut problems);
-    let expansion = resolve(request, &mut problems).and_then(|mut base| {
-        let Some(layout) = layout else {
-            check_without_axes(request, &base, &mut problems);
-            return None;
-        };
-        let fields_hold = set_fields(request, &layout, &mut base, &mut problems);
-        if fields_hold {
-            let mut expansion = points(request, &layout, base, &mut problems);
-            if let Some(verify) = request.verify.filter(|_| problems.is_empty()) {
+    let mut expansion = None;
+    if let Some(mut base) = resolve(request, &written, &mut problems, interruption)? {
+        match layout {
+            Some(layout) if set_fields(request, &layout, &mut base, &mut problems) => {
+                expansion = Some(points(&written, &layout, base, &mut problems, interruption)?);
+            }
+            _ => check_without_axes(request, &written, &base, &mut problems),
+        }
+    }
+    match expansion {
+        Some(mut expansion) if problems.is_empty() => {
+            if let Some(verify) = request.verify {
                 let total = expansion.points.len();
                 let sample = sample(verify, total, 0, total);
-                expansion.verification =
-                    Some(Box::new(references(&expansion, &sample, "/verify", &mut problems)));
+                let references = references(&expansion, &sample, "/verify", &mut problems, interruption)?;
+                expansion.verification = Some(Box::new(references));
             }
-            return Some(expansion);
+            if problems.is_empty() { Ok(expansion) } else { Err(problems.into_refusal()) }
         }
-        check_without_axes(request, &base, &mut problems);
-        None
-    });
-    match expansion {
-        Some(expansion) if problems.is_empty() => Ok(expansion),
         _ => Err(problems.into_refusal()),
     }
 }
 
-/// The points that are to be added to the sweep that `original` asked for, as a sweep of their own. Their parameters have the
-/// names that they have in that sweep.
+/// The points of `added`, which are to be added to the sweep of `original` (see [`AppendRequest::of`](crate::AppendRequest::of)), as a sweep of their own. Their
+/// parameters have the names that they have in that sweep.
 ///
 /// # Errors
-/// As [`expand`]; also if their parameters are not those of the sweep.
-pub fn expand_added(added: AppendRequest, original: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
-    let mut expansion = expand(&added.of(original)?)?;
+/// As [`expand`].
+pub fn expand_added(
+    added: &SweepRequest,
+    original: &SweepRequest,
+    interruption: Interruption<'_>,
+) -> Result<Expansion, Box<ProblemDetails>> {
+    let mut expansion = expand(added, interruption)?;
     for name in &mut expansion.axes {
         if let Some(known) = original.names().find(|known| known.scenario_path() == name.scenario_path()) {
             *name = known.clone();
@@ -74,11 +86,15 @@ pub fn expand_added(added: AppendRequest, original: &SweepRequest) -> Result<Exp
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use serde_json::{Value, json};
 
-    use super::*;
+    use super::{Expansion, ProblemDetails, SweepRequest, UNINTERRUPTED};
     use crate::problem::FieldProblem;
+
+    pub(crate) fn expand(request: &SweepRequest) -> Result<Expansion, Box<ProblemDetails>> {
+        super::expand(request, UNINTERRUPTED)
+    }
 
     pub(super) fn request(body: Value) -> SweepRequest {
         serde_json::from_value(body).unwrap()

@@ -4,23 +4,30 @@ use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::transient::step_problem;
 
+use super::Interruption;
 use super::expansion::{Expansion, SweepPoint, set_number};
 use super::layout::Layout;
-use super::problems::{Found, MOST_PROBLEMS};
-use crate::request::{AxisName, SweepRequest};
+use super::problems::{Found, Written};
+use crate::problem::ProblemDetails;
+use crate::request::AxisName;
 
 /// All points. The first is validated in full, the others where the axes may have made a difference.
+///
+/// # Errors
+/// That of the interruption.
 pub(super) fn points(
-    request: &SweepRequest,
+    written: &Written<'_>,
     layout: &Layout<'_>,
     base: Scenario,
     problems: &mut Found,
-) -> Expansion {
+    interruption: Interruption<'_>,
+) -> Result<Expansion, Box<ProblemDetails>> {
     let mut warnings = Found::default();
     let mut points = Vec::with_capacity(layout.total);
     let mut scenario = base.clone();
     let paths: Vec<&str> = layout.names.iter().map(AxisName::scenario_path).collect();
     for (index, ordinal) in (0..layout.total).zip(1..) {
+        interruption()?;
         let values = layout.values(index);
         let set =
             paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
@@ -32,14 +39,14 @@ pub(super) fn points(
             Ok(of_scenario) => {
                 for Warning { path, message } in of_scenario {
                     let problem = Problem { path, got: String::new(), message };
-                    warnings.add(request, |path| layout.place(index, path), &problem);
+                    warnings.add(written, |path| layout.place(index, path), &problem);
                 }
             }
             Err(Problems(of_scenario)) => {
                 for problem in &of_scenario {
-                    problems.add(request, |path| layout.place(index, path), problem);
+                    problems.add(written, |path| layout.place(index, path), problem);
                 }
-                if problems.len() >= MOST_PROBLEMS {
+                if problems.is_full() {
                     break;
                 }
                 continue;
@@ -52,12 +59,13 @@ pub(super) fn points(
     // The stability limit of an explicit step takes an equilibrium to find: the extreme points stand for all.
     if problems.is_empty() {
         for index in layout.extremes(&expansion.points) {
+            interruption()?;
             if let Some(problem) = step_problem(&expansion.scenario(&expansion.points[index])) {
-                problems.add(request, |path| layout.place(index, path), &problem);
+                problems.add(written, |path| layout.place(index, path), &problem);
             }
         }
     }
-    expansion
+    Ok(expansion)
 }
 
 #[cfg(test)]

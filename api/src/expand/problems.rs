@@ -1,14 +1,14 @@
 //! What is wrong with a request, and where in it that is written.
 
-use drillsweep_scenario::Problem;
+use std::collections::HashMap;
+use std::iter::once;
+
+use drillsweep_scenario::{MOST_PROBLEMS, Problem};
 use indexmap::IndexMap;
 use serde_json::Value;
 
 use crate::problem::{FieldProblem, ProblemDetails, pointer_token};
 use crate::request::SweepRequest;
-
-/// Problems of one request that are reported at most: a hundred thousand points may each have their own.
-pub(super) const MOST_PROBLEMS: usize = 100;
 
 /// Distinct problems, in the order in which they were found, up to [`MOST_PROBLEMS`].
 #[derive(Default)]
@@ -16,7 +16,7 @@ pub(super) struct Found(IndexMap<(String, String), Option<Value>>);
 
 impl Found {
     pub(super) fn push(&mut self, pointer: impl Into<String>, got: Option<Value>, detail: impl Into<String>) {
-        if self.0.len() < MOST_PROBLEMS {
+        if !self.is_full() {
             self.0.entry((pointer.into(), detail.into())).or_insert(got);
         }
     }
@@ -24,10 +24,13 @@ impl Found {
     /// Notes a problem of a scenario, at the place of the request that decides the field: `place` knows the axes'.
     pub(super) fn add(
         &mut self,
-        request: &SweepRequest,
+        written: &Written<'_>,
         place: impl Fn(&str) -> Option<String>,
         problem: &Problem,
     ) {
+        if self.is_full() {
+            return;
+        }
         let got = match problem.got.as_str() {
             "" => None,
             got => Some(serde_json::from_str(got).unwrap_or_else(|_| got.into())),
@@ -36,10 +39,15 @@ impl Found {
         if let Some(pointer) = place(&problem.path) {
             return self.push(pointer, got, message);
         }
-        match written(request, &problem.path) {
+        match written.place(&problem.path) {
             (pointer, false) => self.push(pointer, got, message),
             (pointer, true) => self.push(pointer, got, format!("{}: {message}", problem.path)),
         }
+    }
+
+    /// True if no further problem is reported.
+    pub(super) fn is_full(&self) -> bool {
+        self.0.len() >= MOST_PROBLEMS
     }
 
     /// How many there are.
@@ -63,26 +71,39 @@ impl Found {
     }
 }
 
-/// Where in a request a field of the scenario is written outside the axes, and whether that is the preset that it
-/// names rather than the field itself.
-fn written(request: &SweepRequest, path: &str) -> (String, bool) {
-    let field = scenario_pointer(path);
-    if let Some(rest) = field.strip_prefix("/recording/outputs").filter(|_| request.outputs.is_some()) {
-        return (format!("/outputs{rest}"), false);
+/// Places of a request, outside of the axes, that decide fields of its scenario.
+pub(super) struct Written<'a> {
+    request: &'a SweepRequest,
+    /// Paths of `set`, by the JSON Pointers of the fields into the scenario.
+    set: HashMap<String, &'a str>,
+}
+
+impl<'a> Written<'a> {
+    pub(super) fn new(request: &'a SweepRequest) -> Self {
+        let set = request.set.keys().map(|path| (scenario_pointer(path), path.as_str())).collect();
+        Self { request, set }
     }
-    // The longest path wins: it was applied last.
-    let of_set = request
-        .set
-        .keys()
-        .filter_map(|path| Some((path, field.strip_prefix(&scenario_pointer(path))?)))
-        .filter(|(path, rest)| rest.is_empty() || (rest.starts_with('/') && !path.is_empty()))
-        .max_by_key(|(path, _)| path.len());
-    if let Some((path, rest)) = of_set {
-        return (format!("/set/{}{rest}", pointer_token(path)), false);
-    }
-    match request.scenario {
-        Some(_) => (format!("/scenario{field}"), false),
-        None => ("/preset".to_owned(), true),
+
+    /// The JSON Pointer of the place that decides a field, and true if that is the preset of the request rather than the field itself.
+    fn place(&self, path: &str) -> (String, bool) {
+        let field = scenario_pointer(path);
+        if let Some(rest) =
+            field.strip_prefix("/recording/outputs").filter(|_| self.request.outputs.is_some())
+        {
+            return (format!("/outputs{rest}"), false);
+        }
+        // The longest path wins: it was applied last.
+        let ends = once(field.len()).chain(field.rmatch_indices('/').map(|(end, _)| end));
+        let of_set = ends
+            .filter(|end| *end > 0 || field.is_empty())
+            .find_map(|end| Some((self.set.get(&field[..end])?, end)));
+        if let Some((path, end)) = of_set {
+            return (format!("/set/{}{}", pointer_token(path), &field[end..]), false);
+        }
+        match self.request.scenario {
+            Some(_) => (format!("/scenario{field}"), false),
+            None => ("/preset".to_owned(), true),
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::effect::active_effects;
 
+use super::Interruption;
 use super::expansion::{Expansion, SweepPoint, set_number};
 use super::problems::Found;
 use crate::problem::ProblemDetails;
@@ -16,10 +17,14 @@ impl Expansion {
     /// ordinals. Parameters of the accuracy itself are left out.
     ///
     /// # Errors
-    /// When there is nothing to verify, or the reference cannot run such a point; of the request as a whole.
-    pub fn references(&self, indices: &[usize]) -> Result<Expansion, Box<ProblemDetails>> {
+    /// When there is nothing to verify, or the reference cannot run such a point, of the request as a whole; that of the interruption.
+    pub fn references(
+        &self,
+        indices: &[usize],
+        interruption: Interruption<'_>,
+    ) -> Result<Expansion, Box<ProblemDetails>> {
         let mut problems = Found::default();
-        let references = references(self, indices, "", &mut problems);
+        let references = references(self, indices, "", &mut problems, interruption)?;
         match problems.is_empty() {
             true => Ok(references),
             false => Err(problems.into_refusal()),
@@ -34,7 +39,8 @@ pub(super) fn references(
     indices: &[usize],
     pointer: &str,
     problems: &mut Found,
-) -> Expansion {
+    interruption: Interruption<'_>,
+) -> Result<Expansion, Box<ProblemDetails>> {
     let mut base = expansion.base.clone();
     let reference = Accuracy::Preset(AccuracyPreset::Reference);
     if base.accuracy == reference {
@@ -62,6 +68,7 @@ pub(super) fn references(
     for (point, is_first) in
         indices.iter().map(|index| &expansion.points[*index]).zip(once(true).chain(repeat(false)))
     {
+        interruption()?;
         let values: Vec<f64> = kept.iter().map(|axis| point.values[*axis]).collect();
         let set =
             paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
@@ -72,6 +79,7 @@ pub(super) fn references(
         match checked {
             Ok(_) => points.push(SweepPoint::new(point.ordinal, values, &mut scenario)),
             // The point itself is valid: it is the reference that the scenario does not allow.
+            Err(_) if problems.is_full() => break,
             Err(Problems(of_scenario)) => {
                 for Problem { path, message, .. } in of_scenario {
                     problems.push(pointer, None, format!("the reference cannot run this: {path}: {message}"));
@@ -79,7 +87,7 @@ pub(super) fn references(
             }
         }
     }
-    Expansion { base, axes, points, verification: None, warnings: Vec::new() }
+    Ok(Expansion { base, axes, points, verification: None, warnings: Vec::new() })
 }
 
 #[cfg(test)]
@@ -88,8 +96,9 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
+    use crate::expand::tests::expand;
     use crate::expand::tests::{pointers, problems, request};
-    use crate::expand::{compose, expand, expansion::key};
+    use crate::expand::{compose, expansion::key};
 
     #[test]
     fn a_sample_is_verified_by_the_same_scenarios_at_the_reference() {

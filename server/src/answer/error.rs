@@ -1,6 +1,7 @@
 //! What a handler answers when it cannot answer: a problem document.
 
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -43,7 +44,9 @@ impl Error {
 
     /// A failure that is expected to pass after `wait`, which is told in whole seconds.
     pub(crate) fn unavailable_for(reason: &(impl std::fmt::Display + ?Sized), wait: Duration) -> Self {
-        tracing::warn!(%reason, "a request could not be served for the time being");
+        if let Some(unlogged) = REFUSALS.next() {
+            tracing::warn!(%reason, unlogged, "a request could not be served for the time being");
+        }
         let seconds = whole_seconds(wait);
         let detail = format!("the service is busy; try again in {seconds} s");
         Error { retry_after: Some(seconds), ..Error::new(ProblemKind::Unavailable, detail) }
@@ -67,6 +70,33 @@ impl Error {
     /// The problem, to be written out where the id of the request is known.
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem
+    }
+}
+
+/// Refusals in the log: a storm of them must not fill the disk.
+static REFUSALS: Sparse = Sparse::new(Duration::from_secs(1));
+
+/// Lines of the log of one kind, one in a time span at most.
+struct Sparse {
+    between: Duration,
+    state: Mutex<(Option<Instant>, u64)>,
+}
+
+impl Sparse {
+    const fn new(between: Duration) -> Self {
+        Self { between, state: Mutex::new((None, 0)) }
+    }
+
+    /// The number of lines left out since the last, if one is due.
+    fn next(&self) -> Option<u64> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let (last, unlogged) = &mut *state;
+        if last.is_some_and(|last| last.elapsed() < self.between) {
+            *unlogged += 1;
+            return None;
+        }
+        *last = Some(Instant::now());
+        Some(std::mem::take(unlogged))
     }
 }
 
@@ -121,5 +151,21 @@ impl IntoResponse for Error {
         }
         response.extensions_mut().insert(self);
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_one_kind_are_sparse_and_count_those_left_out() {
+        let sparse = Sparse::new(Duration::from_secs(3_600));
+        let lines = (0..100).filter_map(|_| sparse.next()).collect::<Vec<_>>();
+        assert_eq!(lines, [0]);
+        let each = Sparse::new(Duration::ZERO);
+        assert_eq!((each.next(), each.next()), (Some(0), Some(0)));
+        *sparse.state.lock().expect("nobody panics") = (None, 99);
+        assert_eq!(sparse.next(), Some(99));
     }
 }

@@ -1,170 +1,229 @@
 //! Extractors that answer with problems naming what is wrong: the field, the parameter, what would be valid.
 
+use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::HashSet;
 use std::fmt;
-use std::time::Duration;
 
 use axum::body::Bytes;
-use axum::extract::{FromRef, FromRequest, FromRequestParts, Request};
+use axum::extract::{FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
-use axum::http::{HeaderValue, StatusCode, header};
+use axum::http::{HeaderValue, header};
+use bytes::BytesMut;
 use drillsweep_api::problem::pointer_token;
 use drillsweep_api::{LIMITS, ProblemDetails, ProblemKind, read_strictly};
-use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
-use serde_json::Value;
+use futures::StreamExt as _;
+use headers::{ContentLength, HeaderMapExt as _};
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Deserializer, Error as DeserializeError, MapAccess, SeqAccess, Visitor,
+};
 use tokio::time::timeout;
 
 use crate::answer::error::Error;
+use crate::app::App;
+use crate::app::bodies::BodyMemory;
+use crate::guard::auth::Caller;
 
-/// A JSON body, together with the bytes that came in.
-pub(crate) struct Json<T> {
-    /// The body.
-    pub(crate) value: T,
+/// Bytes of a body that is read where the request is handled; larger ones are read in a place of their own.
+const SMALL_BODY: usize = 64 << 10;
+
+/// A small JSON body.
+pub(crate) struct Json<T>(pub(crate) T);
+
+/// A JSON body that may be large, as it was sent. It is read in a place for expansions.
+pub(crate) struct Body {
     /// As it was sent.
     pub(crate) bytes: Bytes,
+    /// Its memory, until the work on it has ended.
+    _memory: BodyMemory,
 }
 
-/// How long a body may take to come.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct BodyPatience(pub(crate) Duration);
-
-impl<T, S> FromRequest<S> for Json<T>
-where
-    T: DeserializeOwned,
-    S: Send + Sync,
-    BodyPatience: FromRef<S>,
-{
+impl<T: DeserializeOwned> FromRequest<App> for Json<T> {
     type Rejection = Error;
 
-    async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
-        let media_type = request.headers().get(header::CONTENT_TYPE);
-        let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
-        let essence = media_type.split(';').next().unwrap_or_default().trim();
-        if !essence.eq_ignore_ascii_case("application/json") {
-            let found = if essence.is_empty() { "without one" } else { essence };
-            let detail = format!("the body must come with Content-Type: application/json, not {found}");
-            return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
+    async fn from_request(request: Request, app: &App) -> Result<Self, Error> {
+        read_json(&receive(request, app, SMALL_BODY).await?.bytes).map(Json)
+    }
+}
+
+impl FromRequest<App> for Body {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Error> {
+        receive(request, app, LIMITS.body_bytes).await
+    }
+}
+
+/// Receives a body of JSON of at most `most` bytes, whose memory grows as it comes.
+async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error> {
+    let media_type = request.headers().get(header::CONTENT_TYPE);
+    let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
+    let essence = media_type.split(';').next().unwrap_or_default().trim();
+    if !essence.eq_ignore_ascii_case("application/json") {
+        let found = if essence.is_empty() { "without one" } else { essence };
+        let detail = format!("the body must come with Content-Type: application/json, not {found}");
+        return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
+    }
+    let encoding = request.headers().get(header::CONTENT_ENCODING).map(HeaderValue::as_bytes);
+    if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(b"identity")) {
+        let detail = "the body must be sent as it is, without Content-Encoding";
+        return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
+    }
+    let too_large = || Error::new(ProblemKind::BodyTooLarge, format!("a body has at most {most} bytes"));
+    // Before the first byte: a client that waits for `100 Continue` need not send any.
+    let length = request.headers().typed_get::<ContentLength>().map_or(0, |ContentLength(length)| length);
+    if length > most as u64 {
+        return Err(too_large());
+    }
+    let owner = request.extensions().get::<Caller>().map(Caller::budget).unwrap_or_default().to_owned();
+    let mut memory = app.bodies.begin(&owner);
+    let mut frames = request.into_body().into_data_stream();
+    let mut bytes = BytesMut::new();
+    let receiving = async {
+        while let Some(frame) = frames.next().await {
+            let interrupted = |_| Error::new(ProblemKind::MalformedBody, "the body was interrupted");
+            let frame = frame.map_err(interrupted)?;
+            if bytes.len() + frame.len() > most {
+                return Err(too_large());
+            }
+            if !memory.grow(bytes.len() + frame.len()) {
+                return Err(Error::unavailable("large bodies take all the memory that there is for them"));
+            }
+            bytes.extend_from_slice(&frame);
         }
-        let encoding = request.headers().get(header::CONTENT_ENCODING).map(HeaderValue::as_bytes);
-        if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(b"identity")) {
-            let detail = "the body must be sent as it is, without Content-Encoding";
-            return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
-        }
-        let BodyPatience(patience) = FromRef::from_ref(state);
-        let Ok(bytes) = timeout(patience, Bytes::from_request(request, state)).await else {
+        Ok(())
+    };
+    let patience = app.config.connections.body;
+    match timeout(patience, receiving).await {
+        Ok(received) => received?,
+        Err(_) => {
             let detail = format!("the body did not come within {} s", patience.as_secs_f64());
             return Err(Error::new(ProblemKind::RequestTimeout, detail));
-        };
-        let bytes = bytes.map_err(|rejection| {
-            if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
-                let detail = format!("a body has at most {} bytes", LIMITS.body_bytes);
-                Error::new(ProblemKind::BodyTooLarge, detail)
-            } else {
-                Error::new(ProblemKind::MalformedBody, "the body was interrupted")
-            }
-        })?;
-        let value = parse(&bytes)?;
-        Ok(Json { value, bytes })
+        }
     }
+    Ok(Body { bytes: bytes.freeze(), _memory: memory })
 }
 
-fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
-    let mut text = serde_json::Deserializer::from_slice(bytes);
-    if let Err(error) = serde_path_to_error::deserialize::<_, Unrepeated>(&mut text) {
-        let is_repeated = error.inner().is_data();
-        let pointer = if is_repeated { pointer(error.path()) } else { String::new() };
-        return Err(malformed(pointer, error.inner()));
-    }
-    read(bytes).or_else(|_| {
-        // Seen as JSON first, so that a value of another type is told from a text that is no JSON.
-        let mut body = serde_json::from_slice(bytes).map_err(|error| malformed(String::new(), &error))?;
-        write_whole(&mut body);
-        read(&serde_json::to_vec(&body).map_err(|error| Error::internal(&error))?)
-    })
+/// Memory at most that reading a body of `bytes` takes: a value of a change takes 80 bytes, and an object that holds it some 500; a
+/// listed value takes 8.
+pub(crate) fn memory_of_reading(bytes: usize) -> usize {
+    const OF_VALUE: usize = 300;
+    let values = (bytes / 2).min(LIMITS.values_per_request);
+    let listed = (2 * bytes).min(8 * LIMITS.points_per_sweep * LIMITS.axes_per_sweep);
+    values * OF_VALUE + listed
 }
 
-/// A type out of JSON, with the place of what is wrong. All bodies are read here: a second reader would be compiled for each of their types.
-fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
+/// Reads a type out of JSON, with the place of what is wrong.
+pub(crate) fn read_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     let (mut format, mut track) =
-        (serde_json::Deserializer::from_slice(text), serde_path_to_error::Track::new());
+        (serde_json::Deserializer::from_slice(bytes), serde_path_to_error::Track::new());
+    let left = Cell::new(LIMITS.values_per_request);
+    let count = Count { left: Some(&left), is_body: true };
+    if let Err(error) = count.deserialize(serde_path_to_error::Deserializer::new(&mut format, &mut track)) {
+        // What is no JSON is no member's fault.
+        let pointer = if error.is_data() { pointer(&track.path()) } else { String::new() };
+        return Err(malformed(pointer, &error));
+    }
+    let (mut format, mut track) =
+        (serde_json::Deserializer::from_slice(bytes), serde_path_to_error::Track::new());
     let value = read_strictly(serde_path_to_error::Deserializer::new(&mut format, &mut track))
         .map_err(|error| malformed(pointer(&track.path()), &error))?;
     format.end().map_err(|error| malformed(String::new(), &error))?;
     Ok(value)
 }
 
-/// JSON in which no object has a member twice: maps would take the last, and the client could have meant the other.
-struct Unrepeated;
+/// Members of the body whose values are not counted: their own readers bound them.
+const LISTS: [&str; 2] = ["axes", "points"];
 
-impl<'de> Deserialize<'de> for Unrepeated {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Unrepeated)
+/// Members of an object.
+const MOST_MEMBERS: usize = 200;
+
+/// Reads JSON for its size and for members that an object has twice, and keeps nothing: maps would take the last of these, and the
+/// client could have meant the other.
+#[derive(Clone, Copy)]
+struct Count<'c> {
+    /// Values that may still come; none of a list that is not counted.
+    left: Option<&'c Cell<usize>>,
+    is_body: bool,
+}
+
+impl Count<'_> {
+    /// Counts one value.
+    fn take<E: DeserializeError>(self) -> Result<(), E> {
+        let Some(left) = self.left else { return Ok(()) };
+        match left.get().checked_sub(1) {
+            Some(rest) => Ok(left.set(rest)),
+            None => {
+                let most = LIMITS.values_per_request;
+                Err(E::custom(format_args!(
+                    "a body has at most {most} values, those of axes and points not counted"
+                )))
+            }
+        }
     }
 }
 
-impl<'de> Visitor<'de> for Unrepeated {
-    type Value = Self;
+impl<'de> DeserializeSeed<'de> for Count<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<(), D::Error> {
+        format.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Count<'_> {
+    type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("JSON")
     }
 
-    fn visit_unit<E>(self) -> Result<Self, E> {
-        Ok(self)
+    fn visit_unit<E: DeserializeError>(self) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<Self, E> {
-        Ok(self)
+    fn visit_bool<E: DeserializeError>(self, _: bool) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_i64<E>(self, _: i64) -> Result<Self, E> {
-        Ok(self)
+    fn visit_i64<E: DeserializeError>(self, _: i64) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_u64<E>(self, _: u64) -> Result<Self, E> {
-        Ok(self)
+    fn visit_u64<E: DeserializeError>(self, _: u64) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_f64<E>(self, _: f64) -> Result<Self, E> {
-        Ok(self)
+    fn visit_f64<E: DeserializeError>(self, _: f64) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_str<E>(self, _: &str) -> Result<Self, E> {
-        Ok(self)
+    fn visit_str<E: DeserializeError>(self, _: &str) -> Result<(), E> {
+        self.take()
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Self, A::Error> {
-        while entries.next_element::<Self>()?.is_some() {}
-        Ok(self)
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        self.take()?;
+        let count = Count { is_body: false, ..self };
+        while entries.next_element_seed(count)?.is_some() {}
+        Ok(())
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Self, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<(), A::Error> {
+        self.take()?;
         let mut names = HashSet::new();
-        while let Some(name) = members.next_key::<String>()? {
+        while let Some(name) = members.next_key::<Cow<'_, str>>()? {
+            if names.len() == MOST_MEMBERS {
+                return Err(A::Error::custom(format_args!("an object has at most {MOST_MEMBERS} members")));
+            }
             if names.contains(&name) {
                 return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
             }
+            let is_list = self.is_body && LISTS.contains(&name.as_ref());
             names.insert(name);
-            members.next_value::<Self>()?;
+            members.next_value_seed(Count { left: self.left.filter(|_| !is_list), is_body: false })?;
         }
-        Ok(self)
-    }
-}
-
-/// Writes whole numbers without a decimal point: to JSON Schema 2.0 is an integer, and some clients write integers so.
-fn write_whole(body: &mut Value) {
-    /// Beyond it a float does not hold every integer.
-    const LARGEST: f64 = (1_u64 << 53) as f64;
-    match body {
-        Value::Array(entries) => entries.iter_mut().for_each(write_whole),
-        Value::Object(members) => members.values_mut().for_each(write_whole),
-        Value::Number(number) => {
-            let whole = number.as_f64().filter(|value| value.fract() == 0.0 && value.abs() <= LARGEST);
-            if let Some(whole) = whole.filter(|_| number.is_f64()) {
-                *body = Value::from(whole as i64);
-            }
-        }
-        _ => {}
+        Ok(())
     }
 }
 

@@ -13,6 +13,7 @@ use crate::answer::body;
 use crate::answer::error::{Error, Result};
 use crate::answer::eviction::{Eviction, Queue};
 use crate::answer::format::Answer;
+use crate::app::metrics::Occupancy;
 
 /// How long a request waits for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -25,6 +26,8 @@ pub(crate) struct Lane {
     units: Arc<Semaphore>,
     all: usize,
     waiting: Semaphore,
+    all_waiting: usize,
+    refused: AtomicU64,
     turns: Arc<Semaphore>,
     pace: Arc<Pace>,
     queue: Arc<Queue>,
@@ -77,6 +80,8 @@ impl Lane {
             units: Arc::new(Semaphore::new(units)),
             all: units,
             waiting: Semaphore::new(waiting),
+            all_waiting: waiting,
+            refused: AtomicU64::new(0),
             turns: Arc::new(Semaphore::new(at_once.max(1))),
             pace: Arc::default(),
             queue: Queue::new(grace),
@@ -95,6 +100,7 @@ impl Lane {
             return Ok(place);
         }
         let too_many = || {
+            self.refused.fetch_add(1, Ordering::Relaxed);
             let reason = "more large answers are asked for than can be computed at once";
             Error::unavailable_for(reason, self.pace.advice())
         };
@@ -104,6 +110,15 @@ impl Lane {
             Ok(Ok(permit)) => Ok(self.place(permit)),
             // The semaphore is never closed.
             Ok(Err(_)) | Err(_) => Err(too_many()),
+        }
+    }
+
+    /// Counts for the metrics, of units of `bytes` each.
+    pub(crate) fn measure(&self, bytes: usize) -> Occupancy {
+        Occupancy {
+            held: (self.all.saturating_sub(self.units.available_permits()) * bytes) as u64,
+            waiting: self.all_waiting.saturating_sub(self.waiting.available_permits()) as u64,
+            refused: self.refused.load(Ordering::Relaxed),
         }
     }
 

@@ -1,10 +1,11 @@
 //! What is counted for operators, as Prometheus text.
 
 use std::sync::Mutex;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use axum::http::{Method, StatusCode};
+use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_store::Census;
 use prometheus_client::encoding::EncodeLabelSet;
 use prometheus_client::encoding::text::encode;
@@ -15,6 +16,7 @@ use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::{Registry, Unit};
 
 use crate::answer::error::{Error, Result};
+use crate::listen::ConnectionCounts;
 
 /// The media type of [`Metrics::text`].
 pub(crate) const TEXT: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
@@ -22,12 +24,30 @@ pub(crate) const TEXT: &str = "application/openmetrics-text; version=1.0.0; char
 /// Upper ends \[s\] of the ranges in which requests are counted by their duration.
 const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.5, 2.0, 10.0];
 
+/// Use of a bounded resource.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Occupancy {
+    /// Held \[bytes\].
+    pub(crate) held: u64,
+    /// Requests that wait for it.
+    pub(crate) waiting: u64,
+    /// Requests refused since the start.
+    pub(crate) refused: u64,
+}
+
 /// What is counted.
 pub(crate) struct Metrics {
     registry: Mutex<Registry>,
     requests: Family<RequestLabels, Histogram>,
     streams: Gauge,
     pub(crate) expired_leases: Counter,
+    pub(crate) connections: ConnectionCounts,
+    /// Tokens that were not valid.
+    pub(crate) refused_tokens: Counter,
+    throttled: Family<OwnerLabel, Counter>,
+    collections: Family<OutcomeLabel, Counter>,
+    process: ProcessMetrics,
+    lanes: LaneMetrics,
     census: CensusGauges,
 }
 
@@ -41,6 +61,92 @@ struct RequestLabels {
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct StateLabel {
     state: &'static str,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct OwnerLabel {
+    owner: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct OutcomeLabel {
+    outcome: &'static str,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct BuildLabels {
+    version: &'static str,
+    physics_version: u32,
+}
+
+/// The process, by the names that are usual for it.
+#[derive(Default)]
+struct ProcessMetrics {
+    cpu: Counter<f64, AtomicU64>,
+    memory: Gauge,
+    files: Gauge,
+    start: Gauge<f64, AtomicU64>,
+}
+
+impl ProcessMetrics {
+    fn register(&self, registry: &mut Registry) {
+        registry.register_with_unit("cpu", "Processor time", Unit::Seconds, self.cpu.clone());
+        registry.register_with_unit("resident_memory", "Resident memory", Unit::Bytes, self.memory.clone());
+        registry.register("open_fds", "Open file descriptors", self.files.clone());
+        registry.register_with_unit("start_time", "Start since the epoch", Unit::Seconds, self.start.clone());
+    }
+
+    /// Reads the process's figures, on systems that show them.
+    fn read(&self) {
+        let Ok(process) = procfs::process::Process::myself() else { return };
+        if let Ok(stat) = process.stat() {
+            let ticks = procfs::ticks_per_second() as f64;
+            let cpu = (stat.utime + stat.stime) as f64 / ticks;
+            self.cpu.inner().store(cpu.to_bits(), Ordering::Relaxed);
+            self.memory.set((stat.rss * procfs::page_size()) as i64);
+            if let Ok(boot) = procfs::boot_time_secs() {
+                self.start.set(boot as f64 + stat.starttime as f64 / ticks);
+            }
+        }
+        if let Ok(files) = process.fd_count() {
+            self.files.set(files as i64);
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct LaneLabel {
+    lane: &'static str,
+}
+
+/// Use of what requests wait for.
+#[derive(Default)]
+struct LaneMetrics {
+    held: Family<LaneLabel, Gauge>,
+    waiting: Family<LaneLabel, Gauge>,
+    refused: Family<LaneLabel, Counter>,
+}
+
+impl LaneMetrics {
+    fn register(&self, registry: &mut Registry) {
+        registry.register_with_unit(
+            "lane_held",
+            "Memory that requests hold, by what they hold it for",
+            Unit::Bytes,
+            self.held.clone(),
+        );
+        registry.register("lane_waiting", "Requests that wait for such memory", self.waiting.clone());
+        registry.register("lane_refused", "Requests refused for lack of such memory", self.refused.clone());
+    }
+
+    fn set(&self, lanes: &[(&'static str, Occupancy)]) {
+        for (lane, occupancy) in lanes {
+            let label = LaneLabel { lane };
+            self.held.get_or_create(&label).set(occupancy.held as i64);
+            self.waiting.get_or_create(&label).set(occupancy.waiting as i64);
+            self.refused.get_or_create(&label).inner().store(occupancy.refused, Ordering::Relaxed);
+        }
+    }
 }
 
 /// What the database knows, read when it is asked for.
@@ -59,11 +165,14 @@ struct CensusGauges {
 
 impl Metrics {
     pub(crate) fn new() -> Self {
-        let mut registry = Registry::with_prefix("drillsweep");
+        let mut all = Registry::default();
+        let process = ProcessMetrics::default();
+        process.register(all.sub_registry_with_prefix("process"));
+        let registry = all.sub_registry_with_prefix("drillsweep");
         let requests =
             Family::<RequestLabels, Histogram>::new_with_constructor(|| Histogram::new(REQUEST_SECONDS));
-        let (streams, expired_leases, census) =
-            (Gauge::default(), Counter::default(), CensusGauges::default());
+        let (streams, expired_leases) = (Gauge::default(), Counter::default());
+        let (lanes, census) = (LaneMetrics::default(), CensusGauges::default());
         registry.register("event_streams", "Event streams that are open", streams.clone());
         registry.register_with_unit(
             "http_request_duration",
@@ -76,8 +185,50 @@ impl Metrics {
             "Expired leases of silent workers that this process has found",
             expired_leases.clone(),
         );
-        census.register(&mut registry);
-        Metrics { registry: Mutex::new(registry), requests, streams, expired_leases, census }
+        let connections = ConnectionCounts::default();
+        registry.register("connections", "Connections that are open", connections.open.clone());
+        registry.register(
+            "connections_refused",
+            "Connections that were closed at once, as beyond the limits",
+            connections.refused.clone(),
+        );
+        let refused_tokens = Counter::default();
+        registry.register(
+            "tokens_refused",
+            "Tokens that were unknown, expired or revoked",
+            refused_tokens.clone(),
+        );
+        let throttled = Family::<OwnerLabel, Counter>::default();
+        registry.register("throttled", "Requests beyond the rate of their owner", throttled.clone());
+        let collections = Family::<OutcomeLabel, Counter>::default();
+        registry.register(
+            "collections",
+            "Collections of expired data by this process, by outcome",
+            collections.clone(),
+        );
+        let build = Family::<BuildLabels, Gauge>::default();
+        build
+            .get_or_create(&BuildLabels {
+                version: env!("CARGO_PKG_VERSION"),
+                physics_version: PHYSICS_VERSION,
+            })
+            .set(1);
+        registry.register("build_info", "Version of the program and of its numbers", build);
+        lanes.register(registry);
+        census.register(registry);
+        Metrics {
+            registry: Mutex::new(all),
+            requests,
+            streams,
+            expired_leases,
+            connections,
+            refused_tokens,
+            throttled,
+            collections,
+            process,
+            lanes,
+            census,
+        }
     }
 
     /// Counts a request by the route that answered it.
@@ -86,10 +237,28 @@ impl Metrics {
         self.requests.get_or_create(&labels).observe(duration.as_secs_f64());
     }
 
-    /// Everything that is counted, with what the database knows and the number of event streams that are open.
-    pub(crate) fn text(&self, census: &Census, streams: usize) -> Result<String> {
+    /// Counts a request beyond the rate of its owner.
+    pub(crate) fn throttle(&self, owner: &str) {
+        self.throttled.get_or_create(&OwnerLabel { owner: owner.to_owned() }).inc();
+    }
+
+    /// Counts a collection of expired data.
+    pub(crate) fn collected(&self, has_succeeded: bool) {
+        let outcome = if has_succeeded { "succeeded" } else { "failed" };
+        self.collections.get_or_create(&OutcomeLabel { outcome }).inc();
+    }
+
+    /// Everything that is counted, with what the database knows, the number of event streams that are open, and the use of lanes.
+    pub(crate) fn text(
+        &self,
+        census: &Census,
+        streams: usize,
+        lanes: &[(&'static str, Occupancy)],
+    ) -> Result<String> {
         let registry = self.registry.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         self.streams.set(streams as i64);
+        self.process.read();
+        self.lanes.set(lanes);
         self.census.set(census);
         let mut text = String::new();
         encode(&mut text, &registry).map_err(|error| Error::internal(&error))?;

@@ -1,36 +1,42 @@
 //! What the handlers share, and how the service is set up.
 
+pub(crate) mod bodies;
 pub(crate) mod columns;
+pub(crate) mod expansions;
 pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
 pub(crate) mod readiness;
 pub(crate) mod retain;
+pub(crate) mod shares;
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::FromRef;
+use drillsweep_api::LIMITS;
 use drillsweep_store::Store;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::watch;
 
 use crate::answer::body::MEMORY_OF_BODY;
 use crate::answer::error::Result;
 use crate::answer::eviction::Eviction;
-use crate::answer::extract::BodyPatience;
 use crate::answer::stored::MEMORY_OF_FILE;
+use crate::app::bodies::Bodies;
 use crate::app::columns::KnownColumns;
+use crate::app::expansions::{ExpansionLimits, Expansions};
 use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
-use crate::app::metrics::Metrics;
+use crate::app::metrics::{Metrics, Occupancy};
 use crate::app::readiness::Readiness;
 use crate::app::retain::Retaining;
+use crate::app::shares::Shares;
+use crate::guard::strangers::Strangers;
 use crate::listen::ConnectionLimits;
 
-/// Event streams that may be open at once; each looks at the store some times a second.
-pub(crate) const EVENT_STREAMS: usize = 1_000;
+/// Event streams, and as many long polls, that may be open at once; each looks at the store some times a second.
+const HELD_ANSWERS: usize = 1_000;
 
 /// How the service keeps house.
 #[derive(Debug, Clone)]
@@ -47,7 +53,11 @@ pub struct Config {
     pub retention: Retaining,
     /// How many connections there may be, and how long they may take.
     pub connections: ConnectionLimits,
-    /// Large answers (tables, pictures, views of histories) that are computed at once, and as many plans and expansions of sweeps.
+    /// Memory that large bodies of requests take together \[bytes\], of which one owner may have half.
+    pub body_bytes: usize,
+    /// Expansions and plans of sweeps.
+    pub expansions: ExpansionLimits,
+    /// Large answers (tables, pictures, views of histories) that are computed at once.
     pub large_answers: usize,
     /// Bytes of memory that large answers take together. Those that take a quarter of it at most have half of it besides, for
     /// themselves, and so have files that are sent as they are stored.
@@ -60,6 +70,7 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
+        let cores = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         Config {
             reap_interval: Duration::from_secs(5),
             poll_interval: Duration::from_millis(200),
@@ -67,7 +78,14 @@ impl Default for Config {
             owner_limits: OwnerLimits::default(),
             retention: Retaining::default(),
             connections: ConnectionLimits::default(),
-            large_answers: std::thread::available_parallelism().map_or(2, std::num::NonZero::get),
+            body_bytes: 2 * LIMITS.body_bytes,
+            expansions: ExpansionLimits {
+                at_once: cores,
+                bytes: 100 << 20,
+                waiting: 256,
+                deadline: Duration::from_secs(5),
+            },
+            large_answers: cores,
             large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
             large_answer_grace: Duration::from_secs(10),
@@ -86,7 +104,11 @@ pub(crate) struct App {
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) readiness: Arc<Readiness>,
     /// Places for event streams.
-    pub(crate) streams: Arc<Semaphore>,
+    pub(crate) streams: Arc<Shares>,
+    /// Places for long polls.
+    pub(crate) polls: Arc<Shares>,
+    /// Addresses that send tokens which are not valid.
+    pub(crate) strangers: Arc<Strangers>,
     /// What has changed among all sweeps, for those event streams that tell of all.
     pub(crate) feed: Arc<Feed>,
     pub(crate) columns: Arc<KnownColumns>,
@@ -97,7 +119,9 @@ pub(crate) struct App {
     /// Memory for files that are sent as they are stored \[KiB\].
     files: Arc<Lane>,
     /// Places for expanding and planning sweeps, which searches an equilibrium, and for `rk4` estimates how long a step may be.
-    pub(crate) plans: Arc<Lane>,
+    pub(crate) expansions: Arc<Expansions>,
+    /// Memory for bodies of requests.
+    pub(crate) bodies: Arc<Bodies>,
 }
 
 impl App {
@@ -106,19 +130,24 @@ impl App {
             let grace = config.large_answer_grace;
             Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, grace))
         };
+        let metrics = Metrics::new();
+        let strangers = Strangers::new(metrics.refused_tokens.clone());
         App {
             store,
-            stopping,
             limiter: Arc::new(RequestLimiter::new(&config.owner_limits)),
-            metrics: Arc::new(Metrics::new()),
+            metrics: Arc::new(metrics),
             readiness: Arc::default(),
-            streams: Arc::new(Semaphore::new(EVENT_STREAMS)),
+            streams: Shares::new("event streams", HELD_ANSWERS, LIMITS.held_answers_per_owner),
+            polls: Shares::new("long polls", HELD_ANSWERS, LIMITS.held_answers_per_owner),
+            strangers: Arc::new(strangers),
             feed: Arc::default(),
             columns: Arc::default(),
             views: lane(config.large_answer_bytes / KIB),
             small_views: lane(config.large_answer_bytes / 2 / KIB),
             files: lane(config.large_answer_bytes / 2 / KIB),
-            plans: lane(config.large_answers),
+            expansions: Expansions::new(config.expansions.clone(), stopping.clone()),
+            bodies: Bodies::new(config.body_bytes),
+            stopping,
             config: Arc::new(config),
         }
     }
@@ -136,6 +165,17 @@ impl App {
         }
     }
 
+    /// Use of all that requests wait for, by name.
+    pub(crate) fn lanes(&self) -> [(&'static str, Occupancy); 5] {
+        [
+            ("views", self.views.measure(KIB)),
+            ("small_views", self.small_views.measure(KIB)),
+            ("files", self.files.measure(KIB)),
+            ("expansions", self.expansions.measure()),
+            ("bodies", self.bodies.measure()),
+        ]
+    }
+
     /// Takes the memory for a file that is sent as it is stored, with when it is evicted.
     pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Eviction)> {
         Ok(self.files.enter(kibibytes(MEMORY_OF_FILE)).await?.into_parts())
@@ -146,10 +186,4 @@ const KIB: usize = 1 << 10;
 
 fn kibibytes(bytes: u64) -> usize {
     usize::try_from(bytes).unwrap_or(usize::MAX).div_ceil(KIB)
-}
-
-impl FromRef<App> for BodyPatience {
-    fn from_ref(app: &App) -> Self {
-        BodyPatience(app.config.connections.body)
-    }
 }

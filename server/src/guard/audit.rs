@@ -18,8 +18,7 @@ pub(crate) fn note(
     uri: &Uri,
     response: &Response,
 ) {
-    let is_dry_run = uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
-    if is_reading(method) || is_dry_run || uri.path() == READS || !response.status().is_success() {
+    if is_reading(method, uri) || !response.status().is_success() {
         return;
     }
     // Of what was made.
@@ -37,10 +36,37 @@ pub(crate) fn note(
     );
 }
 
-/// Reads a scenario file, which comes as a body.
-const READS: &str = "/v1/scenarios";
+/// True of requests that change nothing: by their method, the reading of a scenario file, and the dry runs of the routes that have them.
+pub(crate) fn is_reading(method: &Method, uri: &Uri) -> bool {
+    let is_dry_run = || uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
+    match *method {
+        Method::GET | Method::HEAD | Method::OPTIONS => true,
+        Method::POST => match uri.path() {
+            "/v1/scenarios" => true,
+            "/v1/sweeps" | "/v1/runs" => is_dry_run(),
+            _ => false,
+        },
+        Method::DELETE => is_dry_run(),
+        _ => false,
+    }
+}
 
-/// Whether requests of this method change nothing.
-pub(crate) fn is_reading(method: &Method) -> bool {
-    matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dry_runs_are_those_of_routes_that_have_them() {
+        let is = |method: Method, target: &str| is_reading(&method, &target.parse().expect("a target"));
+        assert!(is(Method::GET, "/v1/sweeps") && is(Method::POST, "/v1/scenarios"));
+        assert!(
+            is(Method::POST, "/v1/sweeps?cache=only&dry_run=true")
+                && is(Method::POST, "/v1/runs?dry_run=true")
+        );
+        assert!(is(Method::DELETE, "/v1/sweeps/x?dry_run=true") && !is(Method::DELETE, "/v1/sweeps/x"));
+        for target in ["/v1/sweeps", "/v1/sweeps?dry_run=false", "/v1/sweeps/x/cancel?dry_run=true"] {
+            assert!(!is(Method::POST, target), "{target}");
+        }
+        assert!(!is(Method::PATCH, "/v1/sweeps/x?dry_run=true"));
+    }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use axum::body::Body;
 use axum::extract::{MatchedPath, RawPathParams, Request, State};
-use axum::http::{HeaderMap, Method, header};
+use axum::http::{HeaderMap, Method, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::ProblemKind;
@@ -19,6 +19,7 @@ use futures::StreamExt as _;
 use crate::answer::error::{Error, Result};
 use crate::app::App;
 use crate::guard::audit;
+use crate::listen::Peer;
 use crate::route::session::session_cookie;
 
 /// What everybody may ask for: health checks have no tokens, document and vocabulary are what a client begins with, and the page what people do.
@@ -77,7 +78,7 @@ impl Caller {
     }
 
     /// Whose budget of requests a request is taken from.
-    fn budget(&self) -> &str {
+    pub(crate) fn budget(&self) -> &str {
         match self {
             Caller::Local => "",
             Caller::Bearer(token) => &token.owner,
@@ -101,15 +102,15 @@ pub(crate) async fn guard(
         let id = params.iter().find(|(name, _)| *name == "id");
         id.map(|(_, value)| value.to_owned())
     });
-    match admit(&app, request.method(), request.headers(), route, id.as_deref()).await {
+    let peer = request.extensions().get().copied();
+    let (method, uri) = (request.method().clone(), request.uri().clone());
+    let headers = request.headers().clone();
+    match admit(&app, (&method, &uri, &headers), peer, route, id.as_deref()).await {
         Ok(caller) => {
-            let (method, uri) = (request.method().clone(), request.uri().clone());
-            let headers = request.headers().clone();
-            let peer = request.extensions().get().copied();
             request.extensions_mut().insert(caller.clone());
             let response = next.run(request).await;
             audit::note(caller.token(), peer, &method, &uri, &response);
-            if is_event_stream(&response) { while_admitted(app, headers, response) } else { response }
+            if is_event_stream(&response) { while_admitted(app, headers, peer, response) } else { response }
         }
         Err(error) => error.into_response(),
     }
@@ -120,12 +121,13 @@ fn is_event_stream(response: &Response) -> bool {
 }
 
 /// Ends a stream of events once who asked for it would not get it any more: it would outlive its token otherwise.
-fn while_admitted(app: App, headers: HeaderMap, response: Response) -> Response {
+fn while_admitted(app: App, headers: HeaderMap, peer: Option<Peer>, response: Response) -> Response {
     let is_refused = async move {
         loop {
             tokio::time::sleep(LOOK_AGAIN).await;
             // A database that is away says nothing about the token.
-            if identify(&app, &headers).await.is_err_and(|error| error.is_of(ProblemKind::Unauthorized)) {
+            if identify(&app, &headers, peer).await.is_err_and(|error| error.is_of(ProblemKind::Unauthorized))
+            {
                 return;
             }
         }
@@ -135,21 +137,24 @@ fn while_admitted(app: App, headers: HeaderMap, response: Response) -> Response 
 
 async fn admit(
     app: &App,
-    method: &Method,
-    headers: &HeaderMap,
+    (method, uri, headers): (&Method, &Uri, &HeaderMap),
+    peer: Option<Peer>,
     route: &str,
     id: Option<&str>,
 ) -> Result<Caller> {
-    let caller = identify(app, headers).await?;
-    app.limiter.admit(caller.budget())?;
+    let caller = identify(app, headers, peer).await?;
+    if let Err(error) = app.limiter.admit(caller.budget()) {
+        app.metrics.throttle(caller.budget());
+        return Err(error);
+    }
     if let Caller::Bearer(token) = &caller {
         tracing::debug!(token.id, token.owner, "admitted");
-        permit(app, token, method, route, id).await?;
+        permit(app, token, method, uri, route, id).await?;
     }
     Ok(caller)
 }
 
-async fn identify(app: &App, headers: &HeaderMap) -> Result<Caller> {
+async fn identify(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> Result<Caller> {
     let Some(value) = headers.get(header::AUTHORIZATION) else {
         // Pages of other sites cannot use it: the cookie is not sent with their requests (`SameSite`), and what they ask to be changed
         // is refused before (`CsrfLayer`).
@@ -169,15 +174,26 @@ async fn identify(app: &App, headers: &HeaderMap) -> Result<Caller> {
     // The scheme is written in any case (RFC 9110 section 11.1).
     let secret = value.to_str().ok().and_then(|value| value.split_once(' '));
     let secret = secret.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
-    let token = match secret.and_then(|(_, text)| TokenSecret::parse(text.trim())) {
-        Some(secret) => app.store.valid_token(&secret).await?,
-        None => None,
-    };
-    let Some(token) = token else {
-        return Err(Error::unauthorized("the token is unknown, expired or revoked"));
-    };
+    let token = valid_token(app, peer, secret.map_or("", |(_, text)| text)).await?;
     note_use(app, &token).await;
     Ok(Caller::Bearer(token))
+}
+
+/// The token of a text, if it is valid.
+///
+/// # Errors
+/// It is not (401), or too many of its address were not (429).
+pub(crate) async fn valid_token(app: &App, peer: Option<Peer>, text: &str) -> Result<TokenRecord> {
+    let secret = TokenSecret::parse(text.trim());
+    app.strangers.admit(peer, secret.as_ref())?;
+    if let Some(secret) = &secret
+        && let Some(token) = app.store.valid_token(secret).await?
+    {
+        app.strangers.know(secret);
+        return Ok(token);
+    }
+    app.strangers.refuse(peer, secret.as_ref());
+    Err(Error::unauthorized("the token is unknown, expired or revoked"))
 }
 
 async fn note_use(app: &App, token: &TokenRecord) {
@@ -215,10 +231,11 @@ async fn permit(
     app: &App,
     token: &TokenRecord,
     method: &Method,
+    uri: &Uri,
     route: &str,
     id: Option<&str>,
 ) -> Result<()> {
-    if audit::is_reading(method) || token.scope == TokenScope::Admin {
+    if audit::is_reading(method, uri) || token.scope == TokenScope::Admin {
         return Ok(());
     }
     if token.scope < TokenScope::Submit {

@@ -1,10 +1,15 @@
 //! How long requests take.
 
+use std::time::Duration;
+
 use axum::extract::{MatchedPath, Request, State};
 use axum::middleware::Next;
 use axum::response::Response;
 
 use crate::app::App;
+
+/// Time to the headers of an answer after which its request is logged.
+const SLOW: Duration = Duration::from_secs(2);
 
 /// Times every request; the route is that of the router, so that there are only as many as there are routes.
 pub(crate) async fn measure(
@@ -14,9 +19,14 @@ pub(crate) async fn measure(
     next: Next,
 ) -> Response {
     let start = std::time::Instant::now();
-    let method = request.method().clone();
+    let (method, uri) = (request.method().clone(), request.uri().clone());
     let response = next.run(request).await;
+    let took = start.elapsed();
+    // Long polls wait by request.
+    if took > SLOW && !uri.query().is_some_and(|query| query.contains("wait=")) {
+        tracing::info!(http.method = %method, http.target = %uri, seconds = took.as_secs_f64(), "slow request");
+    }
     let route = matched.map_or_else(|| "none".to_owned(), |matched| matched.as_str().to_owned());
-    app.metrics.count(&method, route, response.status(), start.elapsed());
+    app.metrics.count(&method, route, response.status(), took);
     response
 }

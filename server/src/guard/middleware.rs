@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
-use axum::extract::{DefaultBodyLimit, Request};
+use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Response, StatusCode, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
-use drillsweep_api::{LIMITS, PROBLEM_MEDIA_TYPE, ProblemKind};
+use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemKind};
 use headers::{ETag, HeaderMapExt, IfNoneMatch};
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -28,14 +28,20 @@ use crate::listen::InReserve;
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// Wraps the routes: request ids, spans, metrics, compression, types that are not guessed, copies that are still right, problem documents,
-/// encodings that nobody offers, overlong requests, panics, refusal of other sites' pages, tokens and rates, body limit; in this order from the outside.
+/// encodings that nobody offers, overlong requests, panics, refusal of other sites' pages, tokens and rates; in this order from the outside.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let worthwhile =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
     routes.layer(
         ServiceBuilder::new()
             .layer(SetRequestIdLayer::new(REQUEST_ID, RequestIds))
-            .layer(TraceLayer::new_for_http().make_span_with(span).on_request(()).on_response(log_response))
+            .layer(
+                TraceLayer::new_for_http()
+                    .make_span_with(span)
+                    .on_request(())
+                    .on_response(log_response)
+                    .on_failure(()),
+            )
             .layer(PropagateRequestIdLayer::new(REQUEST_ID))
             .layer(from_fn_with_state(app.clone(), measure::measure))
             .layer(
@@ -51,8 +57,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
             .layer(from_fn(keep_reserve))
-            .layer(from_fn_with_state(app.clone(), auth::guard))
-            .layer(DefaultBodyLimit::max(LIMITS.body_bytes)),
+            .layer(from_fn_with_state(app.clone(), auth::guard)),
     )
 }
 
@@ -203,6 +208,7 @@ async fn write_problems(request: Request, next: Next) -> Response<Body> {
     let mut response = next.run(request).await;
     let Some(error) = response.extensions_mut().remove::<Error>() else { return response };
     let mut problem = error.into_problem();
+    problem.shorten();
     problem.instance =
         id.and_then(|id| Some(format!("urn:drillsweep:request:{}", id.header_value().to_str().ok()?)));
     match serde_json::to_vec(&problem) {

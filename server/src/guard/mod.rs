@@ -5,3 +5,4 @@ pub(crate) mod auth;
 pub(crate) mod measure;
 pub(crate) mod middleware;
 pub(crate) mod quota;
+pub(crate) mod strangers;

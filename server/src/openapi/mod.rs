@@ -5,10 +5,10 @@ pub(crate) mod answers;
 mod vocabulary;
 
 use drillsweep_api::{
-    DeletedSweep, ExportManifest, PointEvent, PointList, ProblemDetails, SelectedPointList,
+    DeletedSweep, ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList,
 };
 use drillsweep_table::Table;
-use serde_json::json;
+use serde_json::{Value, json};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
 
@@ -21,7 +21,23 @@ use crate::route::{
 pub fn openapi_of_annotations() -> String {
     let mut document = json!(Document::openapi());
     vocabulary::describe(&mut document);
+    bound_members(&mut document);
     format!("{document:#}\n")
+}
+
+/// Adds the largest numbers of members, which annotations do not have.
+fn bound_members(document: &mut Value) {
+    for request in ["SweepRequest", "RunRequest", "AppendRequest"] {
+        let members = &mut document["components"]["schemas"][request]["properties"];
+        for (member, most) in [("set", LIMITS.changes_per_request), ("axes", LIMITS.axes_per_sweep)] {
+            if let Some(schema) = members.get_mut(member) {
+                schema["maxProperties"] = json!(most);
+            }
+        }
+        if let Some(points) = members.get_mut("points") {
+            points["items"]["maxProperties"] = json!(LIMITS.axes_per_sweep);
+        }
+    }
 }
 
 /// What the document says about the service as a whole, and whose annotations it is made of.

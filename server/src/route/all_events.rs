@@ -4,22 +4,25 @@ use std::collections::{HashMap, VecDeque};
 use std::convert::Infallible;
 use std::sync::Arc;
 
+use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::DeletedSweep;
 use serde::Deserialize;
-use tokio::sync::{OwnedSemaphorePermit, broadcast};
+use tokio::sync::broadcast;
 
 use crate::answer::error::Result;
 use crate::answer::extract::{Query, value};
 use crate::answer::records;
 use crate::app::App;
 use crate::app::feed::{News, Told};
+use crate::app::shares::Share;
+use crate::guard::auth::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
-use crate::route::events::{RETRY, last_seen, place_for_a_stream};
+use crate::route::events::{RETRY, last_seen};
 use crate::route::feed;
 
 /// By how much earlier than the last event a resumed stream begins \[ms\]: a change has the time at which it was begun, and is seen
@@ -66,11 +69,12 @@ pub(crate) struct AllEventsQuery {
 )]
 pub(crate) async fn follow(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Query(AllEventsQuery { owner, tag, after }): Query<AllEventsQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let after = last_seen(&headers, after)?;
-    let permit = place_for_a_stream(&app)?;
+    let permit = app.streams.take(caller.budget())?;
     let news = feed::join(&app).await?;
     let now = app.store.now_ms().await?;
     let since = after.map_or(i64::MAX, |after| after.saturating_sub(OVERLAP));
@@ -110,7 +114,7 @@ struct Follower {
     read: HashMap<String, i64>,
     read_at: i64,
     pending: VecDeque<Pending>,
-    _permit: OwnedSemaphorePermit,
+    _permit: Share,
 }
 
 /// An event to be sent.

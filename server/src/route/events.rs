@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::time::Duration;
 
+use axum::Extension;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -11,13 +12,14 @@ use axum::response::{IntoResponse, Response};
 use drillsweep_api::{PointEvent, Sweep};
 use drillsweep_store::Changes;
 use serde::Deserialize;
-use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::records;
 use crate::app::App;
+use crate::app::shares::Share;
+use crate::guard::auth::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load};
@@ -68,6 +70,7 @@ pub(crate) struct EventsQuery {
 )]
 pub(crate) async fn follow(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Path(id): Path<String>,
     Query(query): Query<EventsQuery>,
     headers: HeaderMap,
@@ -83,7 +86,7 @@ pub(crate) async fn follow(
     {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let permit = place_for_a_stream(&app)?;
+    let permit = app.streams.take(caller.budget())?;
     let changes = app.store.sweep_changes().await;
     let follower = Follower {
         app,
@@ -115,11 +118,6 @@ pub(crate) fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Optio
     Ok(after.map(|after: u64| i64::try_from(after).unwrap_or(i64::MAX)))
 }
 
-/// One of the places for event streams.
-pub(crate) fn place_for_a_stream(app: &App) -> Result<OwnedSemaphorePermit> {
-    app.streams.clone().try_acquire_owned().map_err(|_| Error::unavailable("all event streams are in use"))
-}
-
 /// One client's place in the events of a sweep. It holds nothing of the store between two looks, and is only asked for
 /// the next event when the client has taken the last: a slow client costs nothing but its place.
 struct Follower {
@@ -133,7 +131,7 @@ struct Follower {
     version: Option<i64>,
     pending: VecDeque<Event>,
     has_ended: bool,
-    _permit: OwnedSemaphorePermit,
+    _permit: Share,
 }
 
 impl Follower {

@@ -37,7 +37,7 @@ pub(crate) async fn alive() -> Json<Health> {
 /// Whether the service can work
 ///
 /// A scratch point is queued and claimed as a worker would, and taken back; a scratch blob is written, read and
-/// deleted.
+/// deleted. It is not ready either if submissions wait and none has been expanded for 15 s.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -50,6 +50,9 @@ pub(crate) async fn alive() -> Json<Health> {
     )
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
+    if app.expansions.is_stuck() {
+        return Err(Error::unavailable("expansions of sweeps wait, and none has begun for long"));
+    }
     let mut seen = app.readiness.0.lock().await;
     if seen.is_none_or(|instant| instant.elapsed() > FRESH) {
         *seen = None;

@@ -6,8 +6,8 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 
+use crate::app::App;
 use crate::app::metrics::TEXT;
-use crate::app::{App, EVENT_STREAMS};
 use crate::route::status::WORKER_SILENCE;
 
 /// `/metrics`, for the listener of its own.
@@ -18,7 +18,7 @@ pub(crate) fn router(app: App) -> Router {
 async fn show(State(app): State<App>) -> Response {
     let answer = async {
         let census = app.store.census(WORKER_SILENCE).await?;
-        app.metrics.text(&census, EVENT_STREAMS - app.streams.available_permits())
+        app.metrics.text(&census, app.streams.number(), &app.lanes())
     };
     match answer.await {
         Ok(text) => ([(header::CONTENT_TYPE, TEXT)], text).into_response(),

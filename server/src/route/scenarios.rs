@@ -1,14 +1,23 @@
 //! Preset scenarios, and scenario files.
 
+use axum::Extension;
+use axum::extract::State;
 use drillsweep_api::{
-    ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
+    LIMITS, ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
 };
 
 use crate::answer::error::{Error, Result};
-use crate::answer::extract::{self, Path};
+use crate::answer::extract::{self, Path, read_json};
 use crate::answer::json::Json;
+use crate::app::App;
+use crate::app::expansions::Work;
+use crate::guard::auth::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
+
+/// Memory at most that reading a byte of a scenario file takes, and a whole one \[bytes\].
+const MEMORY_OF_BYTE: usize = 100;
+const MEMORY_OF_FILE: usize = MEMORY_OF_BYTE * LIMITS.scenario_file_bytes;
 
 /// The preset scenarios
 #[cfg_attr(
@@ -41,9 +50,17 @@ pub(crate) async fn list() -> Json<ScenarioList> {
     )
 )]
 pub(crate) async fn read(
-    extract::Json { value: file, .. }: extract::Json<ScenarioFile>,
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    body: extract::Body,
 ) -> Result<Json<ScenarioRequest>> {
-    Ok(Json(file.read().map_err(|problem| *problem)?))
+    let memory = body.bytes.len().saturating_mul(MEMORY_OF_BYTE).min(MEMORY_OF_FILE);
+    let place = app.expansions.enter(caller.budget(), memory).await?;
+    let read = move |_: &mut Work| {
+        let file: ScenarioFile = read_json(&body.bytes)?;
+        Ok(file.read().map_err(|problem| *problem)?)
+    };
+    Ok(Json(place.run(read).await?.0))
 }
 
 /// One preset scenario in full

@@ -1,6 +1,7 @@
 //! What follows from a point's scenario alone: its plan and its modes. Both search an equilibrium, as dry runs do, and take their turn
 //! with these.
 
+use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
@@ -14,9 +15,14 @@ use crate::answer::format::{Format, Tag};
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
+use crate::app::expansions::Work;
+use crate::guard::auth::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 use crate::route::results::PointPath;
+
+/// Memory of an equilibrium with its modes, for a string of usual length \[bytes\].
+pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
 
 /// What a point's scenario calls for and takes
 ///
@@ -35,6 +41,7 @@ use crate::route::results::PointPath;
 )]
 pub(crate) async fn plan(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Path(PointPath { id, n }): Path<PointPath>,
     headers: HeaderMap,
 ) -> Result<Response> {
@@ -44,8 +51,9 @@ pub(crate) async fn plan(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.plans.enter(1).await?;
-    let plan: Plan = place.run(move || Ok(scene::plan(&point.scenario, speed.as_deref())?)).await?;
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let plan = move |_: &mut Work| Ok(scene::plan(&point.scenario, speed.as_deref())?);
+    let (plan, _memory): (Plan, _) = place.run(plan).await?;
     Ok(tag.on(Json(plan).into_response()))
 }
 
@@ -87,6 +95,7 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
 )]
 pub(crate) async fn modes(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Path(PointPath { id, n }): Path<PointPath>,
     Query(ModesQuery { to_hz }): Query<ModesQuery>,
     headers: HeaderMap,
@@ -96,8 +105,9 @@ pub(crate) async fn modes(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.plans.enter(1).await?;
-    let modes: Modes = place.run(move || Ok(scene::modes_up_to(&point.scenario, to_hz)?)).await?;
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let modes = move |_: &mut Work| Ok(scene::modes_up_to(&point.scenario, to_hz)?);
+    let (modes, _memory): (Modes, _) = place.run(modes).await?;
     Ok(tag.on(Json(modes).into_response()))
 }
 

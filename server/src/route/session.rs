@@ -1,5 +1,6 @@
 //! Sessions: how a browser logs in. It sends a token once, and keeps a cookie that its scripts cannot read.
 
+use axum::Extension;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::IntoResponse;
@@ -12,6 +13,8 @@ use crate::answer::extract;
 use crate::answer::json::Json;
 use crate::answer::records::timestamp;
 use crate::app::App;
+use crate::guard::auth::valid_token;
+use crate::listen::Peer;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
@@ -61,17 +64,12 @@ pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<i
 )]
 pub(crate) async fn open(
     State(app): State<App>,
+    peer: Option<Extension<Peer>>,
     headers: HeaderMap,
-    login: extract::Json<Login>,
+    extract::Json(login): extract::Json<Login>,
 ) -> Result<impl IntoResponse> {
     app.limiter.admit(LOGINS)?;
-    let token = match TokenSecret::parse(login.value.token.trim()) {
-        Some(secret) => app.store.valid_token(&secret).await?,
-        None => None,
-    };
-    let Some(token) = token else {
-        return Err(Error::unauthorized("the token is unknown, expired or revoked"));
-    };
+    let token = valid_token(&app, peer.map(|Extension(peer)| peer), &login.token).await?;
     let secret = app.store.open_session(&token).await?;
     let Some(session) = app.store.session(&secret).await? else {
         return Err(Error::unauthorized("the token has just expired or was revoked"));

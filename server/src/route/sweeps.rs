@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use axum::Extension;
-use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -22,11 +21,12 @@ use drillsweep_table::quantity::{Name, tables};
 use indexmap::{IndexMap, IndexSet};
 use jiff::Timestamp;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use tokio::runtime::Handle;
 use tokio::time::Instant;
 
 use crate::answer::artifact;
-use crate::answer::blocking::{blocking, to_the_end};
+use crate::answer::blocking::to_the_end;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{Answer, Format, PictureFormat};
@@ -35,6 +35,7 @@ use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
+use crate::app::expansions::{Memory, Work};
 use crate::guard::audit::Owner;
 use crate::guard::auth::Caller;
 use crate::guard::quota;
@@ -109,9 +110,9 @@ pub(crate) async fn create(
     Extension(caller): Extension<Caller>,
     Query(query): Query<SubmitQuery>,
     headers: HeaderMap,
-    extract::Json { value: request, bytes }: extract::Json<SweepRequest>,
+    body: extract::Body,
 ) -> Result<Response> {
-    submit(app, &caller, request, bytes, &query, &headers).await
+    submit::<SweepRequest>(app, &caller, body, &query, &headers).await
 }
 
 /// Submit a single run
@@ -142,39 +143,44 @@ pub(crate) async fn create_run(
     Extension(caller): Extension<Caller>,
     Query(query): Query<SubmitQuery>,
     headers: HeaderMap,
-    extract::Json { value: request, bytes }: extract::Json<RunRequest>,
+    body: extract::Body,
 ) -> Result<Response> {
-    submit(app, &caller, request.into(), bytes, &query, &headers).await
+    submit::<RunRequest>(app, &caller, body, &query, &headers).await
 }
 
-async fn submit(
+async fn submit<R: DeserializeOwned + Into<SweepRequest>>(
     app: App,
     caller: &Caller,
-    mut request: SweepRequest,
-    body: Bytes,
+    body: extract::Body,
     query: &SubmitQuery,
     headers: &HeaderMap,
 ) -> Result<Response> {
-    request.owner = caller.submits_as(request.owner)?;
-    let idempotency_key = idempotency_key(headers)?.map(|key| (key, request_hash(&body, query.cache)));
+    let idempotency_key = idempotency_key(headers)?.map(|key| (key, request_hash(&body.bytes, query.cache)));
     let cache = match query.cache {
         Cache::Reuse => CachePolicy::Reuse,
         Cache::Refresh => CachePolicy::Refresh,
         Cache::Only => CachePolicy::Only,
     };
-    // Validating, hashing and writing out thousands of points takes longer than a request may hold a thread.
-    let (expansion, new_sweep) = app
-        .plans
-        .enter(1)
-        .await?
-        .run(move || {
-            let expansion = expand(&request)?;
-            let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key)?;
-            Ok((expansion, new_sweep))
-        })
-        .await?;
+    let expanded = expand_body(&app, caller, &body, {
+        let caller = caller.clone();
+        move |request: R, work, memory| {
+            let mut request: SweepRequest = request.into();
+            request.owner = caller.submits_as(request.owner)?;
+            if !work.grow(memory_of_request(memory, &request)) {
+                return Ok(Err(memory_of_request(memory, &request)));
+            }
+            let expansion = expand(&request, &|| work.check())?;
+            let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key.clone())?;
+            Ok(Ok((expansion, new_sweep)))
+        }
+    });
+    let ((expansion, new_sweep), memory) = expanded.await?;
+    let kept = (body, memory);
     if query.dry_run {
-        return Ok(Json(plan(&app, expansion, cache).await?).into_response());
+        drop(new_sweep);
+        let answer = Json(plan(&app, caller, expansion, cache).await?).into_response();
+        drop(kept);
+        return Ok(answer);
     }
     if cache != CachePolicy::Only {
         let added = new_sweep.points.len() + new_sweep.verification.runs.len();
@@ -183,6 +189,7 @@ async fn submit(
     let store = app.store.clone();
     let (new_sweep, outcome) = to_the_end(async move {
         let outcome = store.submit_sweep(&new_sweep).await?;
+        drop(kept);
         Ok((new_sweep, outcome))
     })
     .await?;
@@ -197,6 +204,36 @@ async fn submit(
     let location = HeaderValue::try_from(&sweep.links.this).map_err(|error| Error::internal(&error))?;
     let owner = Extension(Owner(sweep.owner.clone()));
     Ok((StatusCode::CREATED, [(header::LOCATION, location)], owner, Tagged(sweep)).into_response())
+}
+
+/// Memory of an expanded point until it is stored \[bytes\].
+const MEMORY_OF_POINT: usize = 700;
+
+/// Memory that a request takes with all of its points, next to that of reading it \[bytes\].
+fn memory_of_request(of_reading: usize, request: &SweepRequest) -> usize {
+    let points = request.point_count().unwrap_or(usize::MAX).min(LIMITS.points_per_sweep);
+    of_reading + points * MEMORY_OF_POINT
+}
+
+/// Reads a body and expands its request in a place for expansions. Where the place has less memory than the request turns out to take,
+/// `expand` returns how much, and all is done again in a place of that size.
+async fn expand_body<R: DeserializeOwned, T: Send + 'static>(
+    app: &App,
+    caller: &Caller,
+    body: &extract::Body,
+    expand: impl Fn(R, &mut Work, usize) -> Result<std::result::Result<T, usize>> + Clone + Send + 'static,
+) -> Result<(T, Memory)> {
+    let of_reading = extract::memory_of_reading(body.bytes.len());
+    let mut memory = of_reading;
+    loop {
+        let place = app.expansions.enter(caller.budget(), memory).await?;
+        let (bytes, expand) = (body.bytes.clone(), expand.clone());
+        let expanded = place.run(move |work| expand(extract::read_json(&bytes)?, work, of_reading)).await?;
+        match expanded {
+            (Ok(expanded), memory) => return Ok((expanded, memory)),
+            (Err(needed), _) => memory = needed,
+        }
+    }
 }
 
 /// The problem that a sweep which computes nothing has points without an outcome.
@@ -220,7 +257,7 @@ fn not_computed(sweep: &NewSweep, points: &[i64], verifications: &[i64]) -> Erro
     Error::new(ProblemKind::NoResult, detail)
 }
 
-async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
+async fn plan(app: &App, caller: &Caller, expansion: Expansion, cache: CachePolicy) -> Result<DryRun> {
     let known = async |keys: PointKeys| match cache {
         CachePolicy::Refresh => Ok(0),
         CachePolicy::Reuse | CachePolicy::Only => app.store.known_results(&keys).await,
@@ -231,9 +268,9 @@ async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<Dry
     };
     let known_points = known(keys_of(Some(&expansion))).await?;
     let known_references = known(keys_of(expansion.verification.as_deref())).await?;
-    let place = app.plans.enter(1).await?;
-    let (expansion, by_accuracy) = place
-        .run(move || {
+    let place = app.expansions.enter(caller.budget(), 0).await?;
+    let ((expansion, by_accuracy), _) = place
+        .run(move |_| {
             let by_accuracy = expansion.keys_by_accuracy();
             Ok((expansion, by_accuracy))
         })
@@ -250,12 +287,12 @@ async fn plan(app: &App, expansion: Expansion, cache: CachePolicy) -> Result<Dry
     };
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let workers = app.store.workers(WORKER_SILENCE.as_millis() as i64).await?.len();
-    let place = app.plans.enter(1).await?;
-    let plan = move || {
+    let place = app.expansions.enter(caller.budget(), 0).await?;
+    let plan = move |_: &mut Work| {
         let speed = speed.as_deref();
         Ok(DryRun::new(&expansion, known_points, known_references, known_at, speed, workers))
     };
-    place.run(plan).await
+    Ok(place.run(plan).await?.0)
 }
 
 /// What distinguishes two requests with the same key.
@@ -422,12 +459,16 @@ pub(crate) enum Until {
 )]
 pub(crate) async fn show(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Path(id): Path<String>,
     Query(query): Query<ShowQuery>,
 ) -> Result<Tagged> {
     let sweep = load_findings(&app, &id).await?;
     match query.wait {
-        Some(wait) => Ok(Tagged(wait_for(&app, sweep, wait, query.until).await?)),
+        Some(wait) => {
+            let _share = app.polls.take(caller.budget())?;
+            Ok(Tagged(wait_for(&app, sweep, wait, query.until).await?))
+        }
         None => Ok(Tagged(sweep)),
     }
 }
@@ -568,7 +609,7 @@ pub(crate) async fn change(
     State(app): State<App>,
     Path(id): Path<String>,
     headers: HeaderMap,
-    extract::Json { value: patch, .. }: extract::Json<SweepPatch>,
+    extract::Json(patch): extract::Json<SweepPatch>,
 ) -> Result<Tagged> {
     check_patch(&patch)?;
     let current = load(&app, &id).await?.revision;
@@ -675,40 +716,43 @@ pub(crate) async fn delete(
 )]
 pub(crate) async fn append(
     State(app): State<App>,
+    Extension(caller): Extension<Caller>,
     Path(id): Path<String>,
-    extract::Json { value: request, .. }: extract::Json<AppendRequest>,
+    body: extract::Body,
 ) -> Result<Json<Sweep>> {
     let sweep = load(&app, &id).await?;
     let Some(original) = sweep.request else {
         return Err(Error::internal("a sweep was read without its request"));
     };
-    let request_json = records::write(&request)?;
     let verify = original.verify;
-    let (expansion, points) = app
-        .plans
-        .enter(1)
-        .await?
-        .run(move || {
-            let expansion = expand_added(request, &original)?;
-            let points = records::new_points(&expansion)?;
-            Ok((expansion, points))
-        })
-        .await?;
+    let expanded = expand_body(&app, &caller, &body, move |added: AppendRequest, work, memory| {
+        let request_json = records::write(&added)?;
+        let request = added.of(&original)?;
+        if !work.grow(memory_of_request(memory, &request)) {
+            return Ok(Err(memory_of_request(memory, &request)));
+        }
+        let expansion = expand_added(&request, &original, &|| work.check())?;
+        let points = records::new_points(&expansion)?;
+        Ok(Ok((request_json, expansion, points)))
+    });
+    let ((request_json, expansion, points), _memory) = expanded.await?;
     let (expansion, verification) = match verify {
         None => (expansion, NewVerification::default()),
         Some(verify) => {
             let lacking = app.store.lacking_points(&id, &points).await?;
             let verified = sweep.verification.as_ref().map_or(0, |verification| verification.counts.total);
             let total = sweep.counts.total as usize + lacking.len();
-            blocking(move || {
+            let place = app.expansions.enter(caller.budget(), 0).await?;
+            let verify = move |work: &mut Work| {
                 let sample = sample(verify, total, verified as usize, lacking.len());
                 // Ordinals of the expansion count from 1.
                 let sample: Vec<usize> =
                     sample.into_iter().map(|index| lacking[index] as usize - 1).collect();
-                let verification = records::new_verification(&expansion.references(&sample)?)?;
+                let references = expansion.references(&sample, &|| work.check())?;
+                let verification = records::new_verification(&references)?;
                 Ok((expansion, verification))
-            })
-            .await?
+            };
+            place.run(verify).await?.0
         }
     };
     quota::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use drillsweep_server::Config;
+use drillsweep_server::{Config, ExpansionLimits};
 use drillsweep_table::{Column, parquet};
 use serde_json::{Value, json};
 
@@ -303,6 +303,7 @@ async fn large_answers_beyond_their_places_are_refused_and_light_ones_are_not() 
         large_answers: 0,
         large_answer_bytes: 0,
         large_answers_waiting: 0,
+        expansions: ExpansionLimits { waiting: 0, ..Config::default().expansions },
         ..Config::default()
     });
     for view in ["points/1/history?format=csv", "points/1/orbit?node=49", "points/1/profile", "table"] {

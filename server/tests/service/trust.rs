@@ -6,6 +6,7 @@ use std::time::Duration;
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
 use axum::response::Response;
+use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_server::{Config, Listeners, OwnerLimits, ServeError, serve};
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
 use futures::StreamExt as _;
@@ -215,17 +216,32 @@ async fn metrics_have_a_listener_of_their_own() {
     assert!(get(api_address, "/metrics").await.starts_with("HTTP/1.1 404"));
     get(api_address, "/v1/sweeps/made-up-id").await;
     let text = get(metrics_address, "/metrics").await;
+    let version = env!("CARGO_PKG_VERSION");
     for line in [
         "drillsweep_work{state=\"queued\"} 1",
         "drillsweep_points{state=\"failed\"} 1",
         "drillsweep_sweeps 3",
         "drillsweep_results_that_disagree 1",
+        "drillsweep_connections 0",
+        "drillsweep_lane_waiting{lane=\"expansions\"} 0",
+        "drillsweep_lane_refused_total{lane=\"bodies\"} 0",
+        "drillsweep_tokens_refused_total 0",
+        &format!("drillsweep_build_info{{version=\"{version}\",physics_version=\"{PHYSICS_VERSION}\"}} 1"),
         "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"/v1/sweeps/{id}\",status=\"404\"} 1",
         "drillsweep_http_request_duration_seconds_count{method=\"GET\",route=\"none\",status=\"404\"} 1",
     ] {
         assert!(text.lines().any(|found| found == line), "{line} in\n{text}");
     }
     assert!(!text.contains("made-up-id"));
+    let value = |name: &str| -> f64 {
+        let line = text.lines().find(|line| line.starts_with(name)).unwrap();
+        line.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    // This process: some megabytes, some files, and it has begun within the hour.
+    assert!((1e6..1e10).contains(&value("process_resident_memory_bytes ")), "{text}");
+    assert!(value("process_open_fds ") >= 3.0 && value("process_cpu_seconds_total ") > 0.0);
+    let age = jiff::Timestamp::now().as_second() as f64 - value("process_start_time_seconds ");
+    assert!((-2.0..3_600.0).contains(&age), "{age}");
     stop.send(()).unwrap();
     service.await.unwrap().unwrap();
 }

@@ -1,0 +1,200 @@
+//! Addresses that send tokens which are not valid: limited, logged and counted.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::net::{IpAddr, Ipv4Addr};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use drillsweep_api::ProblemKind;
+use drillsweep_store::TokenSecret;
+use prometheus_client::metrics::counter::Counter;
+
+use crate::answer::error::{Error, Result};
+use crate::listen::{Peer, network};
+
+/// Refused tokens of one address at once, and per second over longer times.
+const BURST: f64 = 20.0;
+const PER_SECOND: f64 = 0.5;
+
+/// Time between two lines of the log about one address.
+const BETWEEN_LINES: Duration = Duration::from_secs(60);
+
+/// Addresses that are kept; those that are longest silent are forgotten beyond.
+const MOST_ADDRESSES: usize = 10_000;
+
+/// Tokens that were valid lately: they are looked up whatever else comes from their address, which may be that of a proxy.
+const MOST_KNOWN: usize = 1_000;
+
+/// Refused tokens, by address.
+#[derive(Default)]
+pub(crate) struct Strangers {
+    state: Mutex<State>,
+    /// Tokens refused since the start.
+    refused: Counter,
+}
+
+#[derive(Default)]
+struct State {
+    addresses: HashMap<IpAddr, Stranger>,
+    known: HashSet<String>,
+    in_order: VecDeque<String>,
+}
+
+struct Stranger {
+    /// Refused tokens, less those that time has forgiven.
+    level: f64,
+    at: Instant,
+    /// Time of the last line of the log, and refused tokens since then.
+    logged: Option<Instant>,
+    unlogged: u64,
+}
+
+impl Strangers {
+    /// Counts refused tokens in `refused`.
+    pub(crate) fn new(refused: Counter) -> Self {
+        Self { state: Mutex::default(), refused }
+    }
+
+    /// Admits a token to be looked up.
+    ///
+    /// # Errors
+    /// Too many of its address were refused lately, and this one was not valid lately (429).
+    pub(crate) fn admit(&self, peer: Option<Peer>, secret: Option<&TokenSecret>) -> Result<()> {
+        let state = self.state();
+        if secret.is_some_and(|secret| state.known.contains(&secret.id())) {
+            return Ok(());
+        }
+        match state.addresses.get(&address(peer)) {
+            Some(stranger) if stranger.level(Instant::now()) > BURST - 1.0 => Err(too_many()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Remembers a valid token.
+    pub(crate) fn know(&self, secret: &TokenSecret) {
+        let mut state = self.state();
+        if !state.known.insert(secret.id()) {
+            return;
+        }
+        state.in_order.push_back(secret.id());
+        if state.in_order.len() > MOST_KNOWN
+            && let Some(oldest) = state.in_order.pop_front()
+        {
+            state.known.remove(&oldest);
+        }
+    }
+
+    /// Counts a token that is not valid.
+    pub(crate) fn refuse(&self, peer: Option<Peer>, secret: Option<&TokenSecret>) {
+        self.refused.inc();
+        let now = Instant::now();
+        let mut state = self.state();
+        if let Some(secret) = secret {
+            state.known.remove(&secret.id());
+        }
+        state.make_room();
+        let address = address(peer);
+        let stranger = state.addresses.entry(address).or_insert(Stranger {
+            level: 0.0,
+            at: now,
+            logged: None,
+            unlogged: 0,
+        });
+        stranger.level = stranger.level(now) + 1.0;
+        stranger.at = now;
+        stranger.unlogged += 1;
+        if stranger.logged.is_none_or(|logged| now - logged >= BETWEEN_LINES) {
+            tracing::warn!(
+                %address,
+                token.id = secret.map(TokenSecret::id),
+                number = stranger.unlogged,
+                "a token is unknown, expired or revoked"
+            );
+            stranger.logged = Some(now);
+            stranger.unlogged = 0;
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    /// Forgets half of the addresses, those longest silent, when there are too many.
+    fn make_room(&mut self) {
+        if self.addresses.len() < MOST_ADDRESSES {
+            return;
+        }
+        let mut times: Vec<Instant> = self.addresses.values().map(|stranger| stranger.at).collect();
+        let middle = times.len() / 2;
+        let (_, median, _) = times.select_nth_unstable(middle);
+        let median = *median;
+        self.addresses.retain(|_, stranger| stranger.at > median);
+    }
+}
+
+impl Stranger {
+    fn level(&self, now: Instant) -> f64 {
+        (self.level - PER_SECOND * (now - self.at).as_secs_f64()).max(0.0)
+    }
+}
+
+fn too_many() -> Error {
+    let detail = "too many tokens from this address were unknown, expired or revoked";
+    Error::too_many(ProblemKind::TooManyRequests, detail, Duration::from_secs_f64(1.0 / PER_SECOND))
+}
+
+/// The network that a request comes from; without a connection, as in tests, the unspecified address.
+fn address(peer: Option<Peer>) -> IpAddr {
+    peer.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Peer(address)| network(address.ip()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn peer(address: [u8; 4]) -> Option<Peer> {
+        Some(Peer((address, 4_000).into()))
+    }
+
+    fn secret(digit: usize) -> TokenSecret {
+        TokenSecret::parse(&format!("{digit:0>40}")).expect("it is long enough")
+    }
+
+    #[test]
+    fn an_address_is_refused_after_a_burst_but_for_tokens_that_were_valid() {
+        let strangers = Strangers::default();
+        let (here, there) = (peer([192, 0, 2, 1]), peer([192, 0, 2, 2]));
+        strangers.know(&secret(1));
+        let mut admitted = 0;
+        for guess in 100..1_100 {
+            if strangers.admit(here, Some(&secret(guess))).is_ok() {
+                admitted += 1;
+                strangers.refuse(here, Some(&secret(guess)));
+            }
+        }
+        // The test may take some seconds, each of which forgives half of one.
+        assert!((20..60).contains(&admitted), "{admitted}");
+        assert_eq!(strangers.refused.get(), admitted);
+        assert!(strangers.admit(here, Some(&secret(1))).is_ok());
+        assert!(strangers.admit(there, Some(&secret(2))).is_ok());
+        // Once revoked it is one of many.
+        strangers.refuse(here, Some(&secret(1)));
+        let problem = strangers.admit(here, Some(&secret(1))).err().expect("refused").into_problem();
+        assert_eq!(problem.status, 429);
+    }
+
+    #[test]
+    fn memory_does_not_grow_with_addresses_and_tokens() {
+        let strangers = Strangers::default();
+        for number in 0..3 * MOST_ADDRESSES {
+            let [_, a, b, c] = (number as u32).to_be_bytes();
+            strangers.refuse(peer([10, a, b, c]), None);
+        }
+        (0..2 * MOST_KNOWN).for_each(|number| strangers.know(&secret(number)));
+        let state = strangers.state();
+        assert!(state.addresses.len() <= MOST_ADDRESSES);
+        assert_eq!((state.known.len(), state.in_order.len()), (MOST_KNOWN, MOST_KNOWN));
+    }
+}

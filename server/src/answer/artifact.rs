@@ -99,10 +99,20 @@ pub(crate) struct NodeSpectrum {
     pub(crate) spectrum: FullSpectrum,
 }
 
+/// Samples of a window of the history.
+pub(crate) struct Samples {
+    /// Their rows.
+    pub(crate) rows: Range<usize>,
+    /// End of the history \[s\], if the requested window ends later.
+    pub(crate) cut_at: Option<f64>,
+}
+
 /// The lateral motion of one recorded node.
 pub(crate) struct NodeMotion {
     pub(crate) node: u32,
     pub(crate) measured_depth: f64,
+    /// End of the history \[s\], if the requested window ends later.
+    pub(crate) cut_at: Option<f64>,
     time: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
@@ -251,31 +261,37 @@ impl Recording {
     }
 
     /// The samples of a half-open window \[from, to) \[s\] of the history; an absent end is open. A window that begins before what is kept,
-    /// or ends there, is refused.
+    /// or lies outside of it, is refused.
     pub(crate) fn samples(
         &self,
         history: &StoredTable<StoredFile>,
         from: Option<f64>,
         to: Option<f64>,
-    ) -> Result<Range<usize>> {
+    ) -> Result<Samples> {
         if from.is_none() && to.is_none() {
-            return Ok(0..history.rows());
+            return Ok(Samples { rows: 0..history.rows(), cut_at: None });
         }
         let mut times = self.read(history, &[TIME.name], 0..history.rows())?;
         let times = take(&mut times, TIME.name)?;
-        if let [first, .., last] = times[..] {
-            // Starts are rounded as people write them, to a millisecond at most.
-            const ROUNDED: f64 = 1e-3;
-            let before =
-                [from.filter(|from| *from < first - ROUNDED), to.filter(|to| first > 0.0 && *to <= first)];
-            for (name, end) in ["from", "to"].into_iter().zip(before) {
-                if let Some(end) = end {
-                    let valid = format!("the history begins at {first} s and ends at {last} s");
-                    return Err(Error::parameter(name, Some(&end.to_string()), valid));
-                }
+        let rows = window::samples(&times, from, to);
+        let [first, .., last] = times[..] else { return Ok(Samples { rows, cut_at: None }) };
+        // Ends are rounded as people write them, to a millisecond at most.
+        const ROUNDED: f64 = 1e-3;
+        let outside =
+            [from.filter(|from| *from < first - ROUNDED || *from > last), to.filter(|to| *to <= first)];
+        for (name, end) in ["from", "to"].into_iter().zip(outside) {
+            if let Some(end) = end {
+                let valid = format!("the history begins at {first} s and ends at {last} s");
+                return Err(Error::parameter(name, Some(&end.to_string()), valid));
             }
         }
-        Ok(window::samples(&times, from, to))
+        let interval = (last - first) / (times.len() - 1) as f64;
+        if rows.is_empty() {
+            let valid = format!("the window has no sample of the history; they are {interval} s apart");
+            return Err(Error::parameter("to", to.map(|to| to.to_string()).as_deref(), valid));
+        }
+        let cut_at = to.filter(|to| *to > last + interval + ROUNDED).map(|_| last);
+        Ok(Samples { rows, cut_at })
     }
 
     /// The lateral motion of one node in such a window.
@@ -283,11 +299,12 @@ impl Recording {
         let history = self.history.open()?;
         let Recorded { node, measured_depth, .. } = choice.among(&self.nodes(history.layout())?)?;
         let (u, v) = (U.at_node(node as usize), V.at_node(node as usize));
-        let samples = self.samples(&history, from, to)?;
-        let mut table = self.read(&history, &[TIME.name, &u, &v], samples)?;
+        let Samples { rows, cut_at } = self.samples(&history, from, to)?;
+        let mut table = self.read(&history, &[TIME.name, &u, &v], rows)?;
         Ok(NodeMotion {
             node,
             measured_depth,
+            cut_at,
             time: take(&mut table, TIME.name)?,
             u: take(&mut table, &u)?,
             v: take(&mut table, &v)?,
@@ -397,8 +414,24 @@ impl NodeMotion {
         Motion { time: &self.time, u: &self.u, v: &self.v }
     }
 
-    /// A view of this motion with the node that it is of.
+    /// A view of this motion with its node, and the end of the history if the window is cut there.
     pub(crate) fn label(&self, table: Table) -> Table {
-        of_node(table, self.node, self.measured_depth)
+        mark_cut(of_node(table, self.node, self.measured_depth), self.cut_at)
+    }
+}
+
+/// A view with the end of the history \[s\] at which its window is cut.
+pub(crate) fn mark_cut(table: Table, cut_at: Option<f64>) -> Table {
+    match cut_at {
+        Some(end) => table.attribute("window_cut_at", end),
+        None => table,
+    }
+}
+
+/// The title of a picture, with the end of the history \[s\] at which its window is cut.
+pub(crate) fn title_of_cut(title: &str, cut_at: Option<f64>) -> String {
+    match cut_at {
+        Some(end) => format!("{title}; to the end of the history at {end} s"),
+        None => title.to_owned(),
     }
 }

@@ -14,7 +14,7 @@ use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
-use crate::answer::artifact::{self, Recording, SpectrumSource};
+use crate::answer::artifact::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat, Tag};
@@ -266,7 +266,7 @@ pub(crate) struct HistoryQuery {
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
-    /// End of the window \[s\], not included.
+    /// End of the window \[s\], not included. A window that ends after the history is cut there (attribute `window_cut_at`).
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
     /// At most so many rows; which of them stay, `decimation` says. Absent means all.
@@ -367,12 +367,12 @@ pub(crate) async fn history(
                 None => history.layout().clone(),
                 Some(choice) => recording.layout_of(choice, history.layout().clone())?,
             };
-            let samples = recording.samples(&history, query.from, query.to)?;
+            let Samples { rows: samples, cut_at } = recording.samples(&history, query.from, query.to)?;
             let most = query.max_points.map(|points| points as usize);
             let extremes =
                 most.filter(|most| query.decimation == Decimation::Minmax && *most < samples.len());
             let stride = if extremes.is_some() { 1 } else { history::stride(samples.len(), most) };
-            let layout = layout.attribute("samples", samples.len());
+            let layout = mark_cut(layout.attribute("samples", samples.len()), cut_at);
             if !format.is_picture() {
                 let layout = format::select(layout, query.fields.as_deref())?;
                 let part = history.cut(layout, samples, stride)?;
@@ -401,6 +401,7 @@ pub(crate) async fn history(
                 true => bit(&recording, snapshots.as_ref(), [query.from, query.to], most)?,
                 false => None,
             };
+            let title = title_of_cut(&title, cut_at);
             let draw =
                 |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
             Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
@@ -485,7 +486,7 @@ pub(crate) struct OrbitQuery {
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
-    /// End of the window \[s\], not included.
+    /// End of the window \[s\], not included. A window that ends after the history is cut there (attribute `window_cut_at`).
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
     /// At most so many points, 4 or more; those with the extremes of u and v in each part of the window stay.
@@ -544,6 +545,7 @@ pub(crate) async fn orbit(
             let table = motion.label(orbit::orbit(&motion.columns(), None, None, max_points));
             let hole = recording.hole_at(motion.node)?;
             let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
+            let title = title_of_cut(&title, motion.cut_at);
             drop(motion);
             let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
             Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
@@ -569,7 +571,7 @@ pub(crate) struct SpectrumQuery {
     /// Start of the window \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
-    /// End of the window \[s\], not included.
+    /// End of the window \[s\], not included. A window that ends after the history is cut there (attribute `window_cut_at`).
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
     /// Weighting of the samples in the window.
@@ -646,19 +648,20 @@ pub(crate) async fn spectrum(
     place
         .answer(move || {
             let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
-            let (node, table) = match source {
+            let (node, table, cut_at) = match source {
                 SpectrumSource::Recording(recording) => {
                     let motion = recording.motion_of(choice, from, to)?;
                     let table = spectrum::spectrum(&motion.columns(), window, range_hz, peaks)?;
-                    (motion.node, motion.label(table))
+                    (motion.node, motion.label(table), motion.cut_at)
                 }
                 SpectrumSource::Kept(kept) => {
                     let kept = kept.spectrum_of(choice, from, to, window)?;
-                    (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)))
+                    (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)), None)
                 }
             };
             let table = spectrum::mark_resolved(table, resolved_hz);
             let file_name = file_name(&id, n, &format!("spectrum-{node}"));
+            let title = title_of_cut(&title, cut_at);
             let draw = |table: &Table| chart::spectrum(table, &title);
             Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
         })

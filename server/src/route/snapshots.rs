@@ -101,6 +101,15 @@ pub(crate) async fn show(
             let table = snapshots.stored().open()?;
             let times = snapshots.times(&table)?;
             let frames = times.window(query.from, query.to);
+            if frames.is_empty() && times.count > 0 {
+                let (name, end) = match query.to.filter(|to| *to <= times.first) {
+                    Some(to) => ("to", Some(to)),
+                    None => ("from", query.from),
+                };
+                let got = end.map(|end| end.to_string());
+                let valid = format!("the snapshots begin at {} s and end at {} s", times.first, times.last);
+                return Err(Error::parameter(name, got.as_deref(), valid));
+            }
             let stride = history::stride(frames.len(), query.max_frames.map(|frames| frames as usize));
             let layout = table.layout().clone();
             let layout = layout

@@ -8,7 +8,7 @@ use drillsweep_api::view::statistics::StatisticsTable;
 use drillsweep_table::quantity::tables::STATISTICS;
 use serde::Deserialize;
 
-use crate::answer::artifact::Recording;
+use crate::answer::artifact::{Recording, mark_cut};
 use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{Answer, Format, TableFormat, Tag};
@@ -89,12 +89,15 @@ pub(crate) async fn show(
                 }
             };
             let mut table = StatisticsTable::default();
+            let mut cut_at = None;
             for choice in choices {
                 let motion = recording.motion_of(choice, query.from, query.to)?;
+                cut_at = motion.cut_at;
                 table.push(motion.node, motion.measured_depth, &motion.columns())?;
             }
             let file_name = file_name(&id, n, STATISTICS.name);
-            Answer::of_table(table.finish(), query.fields.as_deref(), format, &file_name, Some(tag))
+            let table = mark_cut(table.finish(), cut_at);
+            Answer::of_table(table, query.fields.as_deref(), format, &file_name, Some(tag))
         })
         .await
 }

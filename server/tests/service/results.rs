@@ -381,6 +381,35 @@ async fn statistics_of_a_window_are_those_of_a_known_orbit() {
 }
 
 #[tokio::test]
+async fn windows_outside_of_the_history_are_refused_and_those_that_stick_out_are_cut() {
+    let (bench, path) = finished().await;
+    // The history has 10,000 samples from 0 s, 1 ms apart.
+    for view in ["orbit", "spectrum", "spectrogram", "statistics", "history"] {
+        let view = format!("{path}/points/1/{view}?node=49");
+        for (window, parameter) in
+            [("from=20&to=30", "from"), ("from=10", "from"), ("from=-3&to=2", "from"), ("to=0", "to")]
+        {
+            let problem = bench.get(&format!("{view}&{window}")).await.problem(400, "invalid-parameter");
+            let error = &problem["errors"][0];
+            assert_eq!(error["parameter"], parameter, "{view} {window}: {problem}");
+            let detail = error["detail"].as_str().unwrap();
+            assert!(detail.contains("begins at 0 s and ends at 9.999 s"), "{view} {window}: {detail}");
+        }
+        let between = bench.get(&format!("{view}&from=3.0001&to=3.0002")).await;
+        between.problem(400, "invalid-parameter");
+        let cut = bench.get(&format!("{view}&from=2&to=30")).await.json();
+        assert_eq!(cut["attributes"]["window_cut_at"], 9.999, "{view}");
+        let whole = bench.get(&format!("{view}&from=2&to=10")).await.json();
+        assert_eq!(whole["attributes"].get("window_cut_at"), None, "{view}");
+        assert_eq!(whole["columns"], cut["columns"], "{view}");
+    }
+    for view in ["orbit", "spectrum", "history"] {
+        let picture = bench.get(&format!("{path}/points/1/{view}?node=49&from=2&to=30&format=svg")).await;
+        assert!(picture.text().contains("to the end of the history at 9.999 s"), "{view}");
+    }
+}
+
+#[tokio::test]
 async fn the_columns_of_a_table_are_listed_without_their_values() {
     let (bench, path) = finished().await;
     let table = bench.get(&format!("{path}/table")).await.json();

@@ -109,7 +109,7 @@ export function bodyLines(path, body) {
   const text = JSON.stringify(body);
   return {
     // What a refusal says of the body is written out, too.
-    curl: `curl -s ${curlToken()}${location.origin}${path} -H 'Content-Type: application/json' -d ${shell(text)}`,
+    curl: `curl -sS --fail-with-body ${curlToken()}${location.origin}${path} -H 'Content-Type: application/json' -d ${shell(text)}`,
     matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90${matlabToken()});\nsweep = webwrite("${location.origin}${path}", '${text.replaceAll("'", "''")}', json);`,
   };
 }

@@ -12,6 +12,7 @@ mod remote;
 #[allow(dead_code, reason = "of the store's tests")]
 mod servers;
 mod tls;
+mod up;
 mod upgrade;
 
 use std::io::{BufRead, BufReader};

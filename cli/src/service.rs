@@ -21,6 +21,7 @@ use tokio::net::TcpListener;
 use tokio::process::{Child, Command};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
+use tokio::task::JoinSet;
 
 use crate::data::DataArguments;
 use crate::gc::RetentionArguments;
@@ -143,26 +144,47 @@ impl ScratchArguments {
     }
 }
 
-/// Server and workers on one machine.
+/// Server and workers on one machine: the workers start once the server listens, and all end as soon as either part does.
 pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
     bound_memory();
+    lease(arguments.lease_seconds)?;
     let workers = match arguments.workers {
         Some(number) => number,
         None => std::thread::available_parallelism()?.get(),
     };
-    runtime()?.block_on(async {
+    run_service(async {
         let stop = stop_on_signal()?;
-        let served = serve_until(&arguments.data, &arguments.listen, stop.clone());
-        let kept = keep_workers(arguments, workers, stop);
-        let (served, kept) = tokio::join!(served, kept);
+        let Some(service) = Service::open(&arguments.data, &arguments.listen, &stop).await? else {
+            return Ok(());
+        };
+        arguments.scratch.directory(&arguments.data)?;
+        let serving = stopping_others(service.run(stop.subscribe()), &stop);
+        let keeping = stopping_others(keep_workers(arguments, workers, &stop), &stop);
+        let (served, kept) = tokio::join!(serving, keeping);
+        if let (Err(_), Err(error)) = (&served, &kept) {
+            tracing::error!("{error:#}");
+        }
         served.and(kept)
     })
+}
+
+/// Asks the other parts to end once this one has.
+async fn stopping_others<T>(part: impl Future<Output = T>, stop: &watch::Sender<bool>) -> T {
+    let ended = part.await;
+    stop.send_replace(true);
+    ended
 }
 
 /// The server alone.
 pub(crate) fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     bound_memory();
-    runtime()?.block_on(async { serve_until(&arguments.data, &arguments.listen, stop_on_signal()?).await })
+    run_service(async {
+        let stop = stop_on_signal()?;
+        match Service::open(&arguments.data, &arguments.listen, &stop).await? {
+            Some(service) => service.run(stop.subscribe()).await,
+            None => Ok(()),
+        }
+    })
 }
 
 /// A worker.
@@ -184,7 +206,7 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         ..WorkerConfig::new(arguments.data.store(Role::Worker)?)
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?).await?) })
+    runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?.subscribe()).await?) })
 }
 
 /// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
@@ -228,68 +250,93 @@ fn parse_interval(text: &str) -> anyhow::Result<Duration> {
     if text == "0" { Ok(Duration::ZERO) } else { parse_span(text) }
 }
 
-fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
-    Ok(tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?)
+/// Runs a service to its end.
+fn run_service(service: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
+    runtime.block_on(service)
 }
 
-/// Turns true on SIGTERM or Ctrl-C.
-fn stop_on_signal() -> anyhow::Result<watch::Receiver<bool>> {
-    let (sender, receiver) = watch::channel(false);
+/// A channel that turns true on SIGTERM or Ctrl-C.
+fn stop_on_signal() -> anyhow::Result<watch::Sender<bool>> {
+    let stop = watch::Sender::new(false);
     let mut terminate = signal(SignalKind::terminate())?;
     let mut interrupt = signal(SignalKind::interrupt())?;
+    let stopping = stop.clone();
     tokio::spawn(async move {
         tokio::select! {
             _ = terminate.recv() => {}
             _ = interrupt.recv() => {}
         }
-        sender.send_replace(true);
-        // Keeps the channel open until the process ends.
-        sender.closed().await;
+        stopping.send_replace(true);
     });
-    Ok(receiver)
+    Ok(stop)
 }
 
 async fn stopped(mut stop: watch::Receiver<bool>) {
-    // The sender lives as long as the runtime.
+    // The sender lives until it has sent true.
     let _ = stop.wait_for(|stop| *stop).await;
 }
 
-async fn serve_until(
-    data: &DataArguments,
-    arguments: &ListenArguments,
-    stop: watch::Receiver<bool>,
-) -> anyhow::Result<()> {
-    let config = data.store(Role::Server)?;
-    let store = patiently(|| Store::open(&config)).await?;
-    store.check_certificate().await?;
-    if let Some(path) = &arguments.admin_token_file {
-        token::register(&store, path).await?;
+/// A server that listens, with the store that it serves.
+struct Service {
+    store: Store,
+    listeners: Listeners,
+    config: Config,
+}
+
+impl Service {
+    /// Opens a service; `None` if it is stopped before that.
+    async fn open(
+        data: &DataArguments,
+        arguments: &ListenArguments,
+        stop: &watch::Sender<bool>,
+    ) -> anyhow::Result<Option<Self>> {
+        tokio::select! {
+            service = Self::listening(data, arguments) => Ok(Some(service?)),
+            () = stopped(stop.subscribe()) => Ok(None),
+        }
     }
-    let metrics = match arguments.metrics_listen {
-        Some(address) => Some(bind(address).await?),
-        None => None,
-    };
-    let listeners = Listeners { api: bind(arguments.listen).await?, metrics };
-    let config = Config {
-        owner_limits: OwnerLimits {
-            requests_per_second: arguments.requests_per_second,
-            request_burst: arguments.request_burst,
-            open_points: arguments.open_points,
-        },
-        connections: ConnectionLimits {
-            total: arguments.connections.min(room_for_connections()),
-            per_address: arguments.connections_per_address,
-            ..ConnectionLimits::default()
-        },
-        retention: Retaining {
-            policy: arguments.retention.policy(),
-            interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
-        },
-        ..Config::default()
-    };
-    drillsweep_server::serve(listeners, store.clone(), config, stopped(stop)).await?;
-    store.close().await;
-    Ok(())
+
+    /// Opens the store and takes the addresses, if the server may listen on them.
+    async fn listening(data: &DataArguments, arguments: &ListenArguments) -> anyhow::Result<Self> {
+        let config = data.store(Role::Server)?;
+        let store = patiently(|| Store::open(&config)).await?;
+        store.check_certificate().await?;
+        if let Some(path) = &arguments.admin_token_file {
+            token::register(&store, path).await?;
+        }
+        let metrics = match arguments.metrics_listen {
+            Some(address) => Some(bind(address).await?),
+            None => None,
+        };
+        let listeners = Listeners { api: bind(arguments.listen).await?, metrics };
+        listeners.check(&store).await?;
+        let config = Config {
+            owner_limits: OwnerLimits {
+                requests_per_second: arguments.requests_per_second,
+                request_burst: arguments.request_burst,
+                open_points: arguments.open_points,
+            },
+            connections: ConnectionLimits {
+                total: arguments.connections.min(room_for_connections()),
+                per_address: arguments.connections_per_address,
+                ..ConnectionLimits::default()
+            },
+            retention: Retaining {
+                policy: arguments.retention.policy(),
+                interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
+            },
+            ..Config::default()
+        };
+        Ok(Self { store, listeners, config })
+    }
+
+    /// Serves until `stop` turns true.
+    async fn run(self, stop: watch::Receiver<bool>) -> anyhow::Result<()> {
+        drillsweep_server::serve(self.listeners, self.store.clone(), self.config, stopped(stop)).await?;
+        self.store.close().await;
+        Ok(())
+    }
 }
 
 /// How many connections the system's limit of open files leaves room for. The limit is raised as far as this process may.
@@ -310,22 +357,27 @@ async fn bind(address: SocketAddr) -> anyhow::Result<TcpListener> {
     TcpListener::bind(address).await.with_context(|| format!("cannot listen on {address}"))
 }
 
-/// Keeps a number of worker processes alive until asked to stop.
+/// Keeps a number of worker processes alive until asked to stop. If one cannot be kept, all are stopped.
 async fn keep_workers(
     arguments: &UpArguments,
     number: usize,
-    stop: watch::Receiver<bool>,
+    stop: &watch::Sender<bool>,
 ) -> anyhow::Result<()> {
-    lease(arguments.lease_seconds)?;
-    let keepers = (0..number).map(|_| {
-        let command = worker_command(arguments);
-        let (stop, store) = (stop.clone(), arguments.data.store(Role::Server));
-        tokio::spawn(async move { keep_worker(command?, &store?, stop).await })
-    });
-    for keeper in keepers.collect::<Vec<_>>() {
-        keeper.await??;
+    let mut keepers = JoinSet::new();
+    for _ in 0..number {
+        let (command, store) = (worker_command(arguments)?, arguments.data.store(Role::Server)?);
+        let stop = stop.subscribe();
+        keepers.spawn(async move { keep_worker(command, &store, stop).await });
     }
-    Ok(())
+    let mut kept = Ok(());
+    while let Some(ended) = keepers.join_next().await {
+        let ended = ended.map_err(anyhow::Error::from).flatten();
+        if ended.is_err() {
+            stop.send_replace(true);
+        }
+        kept = kept.and(ended);
+    }
+    kept
 }
 
 fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {

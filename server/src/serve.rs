@@ -29,6 +29,20 @@ pub struct Listeners {
     pub metrics: Option<TcpListener>,
 }
 
+impl Listeners {
+    /// Checks that the API is not open to other machines without authentication.
+    ///
+    /// # Errors
+    /// [`ServeError::OpenToOthers`] if it is; otherwise when the listener or the store fails.
+    pub async fn check(&self, store: &Store) -> Result<(), ServeError> {
+        let address = self.api.local_addr().map_err(ServeError::Listener)?;
+        if !address.ip().is_loopback() && store.tokens_present().await? != TokensPresent::Valid {
+            return Err(ServeError::OpenToOthers(address));
+        }
+        Ok(())
+    }
+}
+
 /// Why the service ended early, or did not begin.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -80,10 +94,8 @@ async fn serve_until_drained(
     config: Config,
     shutdown: BoxFuture<'static, ()>,
 ) -> Result<(), ServeError> {
+    listeners.check(&store).await?;
     let address = listeners.api.local_addr().map_err(ServeError::Listener)?;
-    if !address.ip().is_loopback() && store.tokens_present().await? != TokensPresent::Valid {
-        return Err(ServeError::OpenToOthers(address));
-    }
     if let Some(listener) = &listeners.metrics {
         let address = listener.local_addr().map_err(ServeError::Listener)?;
         tracing::info!("metrics at http://{address}/metrics");

@@ -1,0 +1,100 @@
+//! The life of `drillsweep up`: a start that fails, a part that fails, the end.
+
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Command, ExitStatus};
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::faults::{Logged, command};
+use crate::{BINARY, PATIENCE, get};
+
+impl Logged {
+    /// Waits until the process ends by itself.
+    fn ended(&mut self) -> ExitStatus {
+        self.ended_within(PATIENCE)
+    }
+
+    fn ended_within(&mut self, limit: Duration) -> ExitStatus {
+        let deadline = Instant::now() + limit;
+        loop {
+            if let Some(status) = self.process.0.try_wait().unwrap() {
+                return status;
+            }
+            assert!(Instant::now() < deadline, "still running after {limit:?}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+/// Processes whose command line names a directory.
+fn processes_on(directory: &Path) -> Vec<String> {
+    let name = directory.to_str().unwrap();
+    let command_line = |process: std::io::Result<std::fs::DirEntry>| {
+        // A process may end meanwhile.
+        let line = std::fs::read(process.ok()?.path().join("cmdline")).ok()?;
+        Some(String::from_utf8_lossy(&line).replace('\0', " "))
+    };
+    let lines = std::fs::read_dir("/proc").unwrap().filter_map(command_line);
+    lines.filter(|line| line.contains(name)).collect()
+}
+
+#[test]
+fn up_that_cannot_start_ends_with_the_reason_and_leaves_no_worker() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let [data, newer, below_file] = ["data", "newer", "file/data"].map(|name| place.path().join(name));
+    let created = command(&newer, &["token", "create", "--owner", "anne"]).output().unwrap();
+    assert!(created.status.success());
+    let migration = "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)
+        VALUES (9999, 'of a later version', TRUE, X'00', 0)";
+    let changed = Command::new("sqlite3").arg(newer.join("drillsweep.sqlite")).arg(migration).status();
+    assert!(changed.unwrap().success());
+
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = taken.local_addr().unwrap().to_string();
+    let missing = file.to_str().unwrap().to_owned() + "/token";
+    let cannot_listen = format!("cannot listen on {address}");
+    for (data, options, reason) in [
+        (&data, ["--listen", &address], cannot_listen.as_str()),
+        (&data, ["--metrics-listen", &address], &cannot_listen),
+        (&data, ["--listen", "0.0.0.0:0"], "will not listen on 0.0.0.0"),
+        (&data, ["--admin-token-file", &missing], "Not a directory"),
+        (&data, ["--scratch", &missing], "Not a directory"),
+        (&data, ["--lease-seconds", "0.5"], "--lease-seconds must be from 1 to 3600, got 0.5"),
+        (&below_file, ["--workers", "2"], "Not a directory"),
+        (&newer, ["--workers", "2"], "database schema"),
+    ] {
+        let mut up = command(data, &["up"]);
+        if options[0] != "--listen" {
+            up.args(["--listen", "127.0.0.1:0"]);
+        }
+        let mut up = Logged::start(up.args(options));
+        assert_eq!(up.ended().code(), Some(1), "{options:?}");
+        up.wait_for(|log| log.contains(reason).then_some(()));
+        assert!(!up.log().contains("worker ready"), "{options:?}");
+        assert_eq!(processes_on(place.path()), Vec::<String>::new(), "{options:?}");
+    }
+}
+
+#[test]
+fn up_that_loses_a_worker_for_good_ends_with_the_reason_and_leaves_no_other() {
+    let data = tempfile::tempdir().unwrap();
+    // A program that is taken away while it runs.
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("drillsweep-{}", std::process::id()));
+    std::fs::hard_link(BINARY, &program).unwrap();
+    let mut up = Command::new(&program);
+    up.args(["up", "--workers", "2", "--listen", "127.0.0.1:0", "--data"]).arg(data.path());
+    let mut up = Logged::start(&mut up);
+    let server = up.address();
+    let workers = || get(&format!("{server}/v1/workers"))["workers"].as_array().unwrap().clone();
+    up.wait_for(|_| (workers().len() == 2).then_some(()));
+    let process = workers()[0]["process"].as_i64().unwrap() as i32;
+    std::fs::remove_file(&program).unwrap();
+    kill_process(Pid::from_raw(process).unwrap(), Signal::KILL).unwrap();
+    assert_eq!(up.ended().code(), Some(1));
+    up.wait_for(|log| log.contains("Error: a worker cannot be started").then_some(()));
+    assert_eq!(processes_on(data.path()), Vec::<String>::new());
+}

@@ -30,8 +30,11 @@ use crate::token;
 /// Added to the niceness of a worker: the server answers while all cores simulate.
 const WORKER_NICENESS: i32 = 10;
 
-/// How long children may take to give their points back.
-const CHILD_GRACE: Duration = Duration::from_secs(15);
+/// How long children may take to give their points back: as long as open requests may take to end.
+const CHILD_GRACE: Duration = Duration::from_secs(10);
+
+/// How long the database may take to close, and then blocking threads to return, before the process ends without them.
+const LAST_GRACE: Duration = Duration::from_secs(1);
 
 /// Where the server listens, and what it allows.
 #[derive(Args, Clone)]
@@ -253,7 +256,10 @@ fn parse_interval(text: &str) -> anyhow::Result<Duration> {
 /// Runs a service to its end.
 fn run_service(service: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
-    runtime.block_on(service)
+    let ended = runtime.block_on(service);
+    // Dropping the runtime would wait for computations of requests that have been cut off; a blocking thread cannot be interrupted.
+    runtime.shutdown_timeout(LAST_GRACE);
+    ended
 }
 
 /// A channel that turns true on SIGTERM or Ctrl-C.
@@ -333,9 +339,13 @@ impl Service {
 
     /// Serves until `stop` turns true.
     async fn run(self, stop: watch::Receiver<bool>) -> anyhow::Result<()> {
-        drillsweep_server::serve(self.listeners, self.store.clone(), self.config, stopped(stop)).await?;
-        self.store.close().await;
-        Ok(())
+        let served =
+            drillsweep_server::serve(self.listeners, self.store.clone(), self.config, stopped(stop)).await;
+        // A request that was cut off may hold a connection; the next start folds the write-ahead log in.
+        if tokio::time::timeout(LAST_GRACE, self.store.close()).await.is_err() {
+            tracing::warn!("the database is left without closing it");
+        }
+        Ok(served?)
     }
 }
 

@@ -315,6 +315,8 @@ fn a_dry_run_is_a_table_and_a_submission_says_how_to_go_on() {
     for hint in ["drillsweep watch", "drillsweep fetch", "profile?format=svg"] {
         assert!(hints.lines().any(|line| line.contains(hint) && line.contains(id.trim())), "{hints}");
     }
+    let page = format!("page:  {server}/#/sweeps/{}", id.trim());
+    assert!(hints.lines().any(|line| line.ends_with(&page)), "{hints}");
 }
 
 #[test]

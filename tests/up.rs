@@ -1,14 +1,15 @@
 //! The life of `drillsweep up`: a start that fails, a part that fails, the end.
 
+use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, ExitStatus};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::faults::{Logged, command};
-use crate::{BINARY, PATIENCE, get};
+use crate::{BINARY, PATIENCE, Process, get};
 
 impl Logged {
     /// Waits until the process ends by itself.
@@ -97,4 +98,28 @@ fn up_that_loses_a_worker_for_good_ends_with_the_reason_and_leaves_no_other() {
     assert_eq!(up.ended().code(), Some(1));
     up.wait_for(|log| log.contains("Error: a worker cannot be started").then_some(()));
     assert_eq!(processes_on(data.path()), Vec::<String>::new());
+}
+
+#[test]
+fn up_prints_where_its_page_and_its_data_are_once_it_listens() {
+    let place = tempfile::tempdir().unwrap();
+    let mut up = Command::new(BINARY);
+    up.args(["up", "--workers", "1", "--listen", "0.0.0.0:0", "--data", "here"]).current_dir(place.path());
+    let create = ["token", "create", "--owner", "anne", "--data", "here"];
+    let created = Command::new(BINARY).args(create).current_dir(place.path()).output().unwrap();
+    assert!(created.status.success());
+    let mut up = Process(up.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap());
+    let lines = BufReader::new(up.0.stdout.take().unwrap()).lines();
+    let lines: Vec<String> = lines.map(Result::unwrap).take_while(|line| !line.contains("Ctrl-C")).collect();
+    let directory = place.path().canonicalize().unwrap().join("here").display().to_string();
+    let shown = |name: &str| {
+        let line = lines.iter().find_map(|line| line.trim_start().strip_prefix(name)).unwrap();
+        line.trim().to_owned()
+    };
+    assert!(lines[0].contains(env!("CARGO_PKG_VERSION")) && lines[0].contains("physics version"), "{lines:?}");
+    assert_eq!((shown("data"), shown("workers")), (directory, "1".to_owned()));
+    let page = ureq::get(shown("page")).call().unwrap().body_mut().read_to_string().unwrap();
+    assert!(page.contains("<html") && page.contains("drillsweep"), "{page}");
+    up.signal(Signal::TERM);
+    assert!(up.0.wait().unwrap().success());
 }

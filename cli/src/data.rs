@@ -65,6 +65,15 @@ impl DataArguments {
         self.data.join("scratch")
     }
 
+    /// Locations, each with its name, without secrets: the data directory as an absolute path, and what is elsewhere.
+    pub(crate) fn places(&self) -> Vec<(&'static str, String)> {
+        let directory = std::path::absolute(&self.data).unwrap_or_else(|_| self.data.clone());
+        let mut places = vec![("data", directory.display().to_string())];
+        places.extend(self.database.iter().map(|database| ("database", database.to_string())));
+        places.extend(self.objects.iter().map(|objects| ("objects", objects.to_string())));
+        places
+    }
+
     /// Hands it on to a process of this program. What is secret goes by its environment, which only this user can look at; arguments
     /// everybody can.
     pub(crate) fn hand_on(&self, command: &mut Command) {

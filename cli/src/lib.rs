@@ -2,6 +2,7 @@
 //!
 //! A library, so that cargo compiles it while it still generates the code of the crates below; the binary only links.
 
+mod banner;
 mod check;
 mod client;
 mod cost;

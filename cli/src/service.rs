@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs::DirBuilder;
+use std::io::Write as _;
 use std::net::SocketAddr;
 use std::num::NonZeroU32;
 use std::os::unix::fs::DirBuilderExt as _;
@@ -23,6 +24,7 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
 use tokio::task::JoinSet;
 
+use crate::banner::Banner;
 use crate::data::DataArguments;
 use crate::gc::RetentionArguments;
 use crate::token;
@@ -161,6 +163,13 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
             return Ok(());
         };
         arguments.scratch.directory(&arguments.data)?;
+        let banner = Banner {
+            address: service.listeners.api.local_addr()?,
+            data: arguments.data.places(),
+            workers,
+        };
+        // A closed standard output is no reason to end.
+        let _ = writeln!(std::io::stdout().lock(), "{banner}");
         let serving = stopping_others(service.run(stop.subscribe()), &stop);
         let keeping = stopping_others(keep_workers(arguments, workers, &stop), &stop);
         let (served, kept) = tokio::join!(serving, keeping);

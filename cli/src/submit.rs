@@ -213,7 +213,8 @@ fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
     let at = if server == DEFAULT_SERVER { String::new() } else { format!(" --server {server}") };
     writeln!(
         std::io::stderr().lock(),
-        "{}; watch:  drillsweep watch {id}{at}\n\
+        "{}; page:  {server}/#/sweeps/{id}\n\
+         watch:  drillsweep watch {id}{at}\n\
          when complete:  drillsweep fetch {id}{at} --output results\n\
          table of points:  {server}/v1/sweeps/{id}/table?format=csv\n\
          C_f along the string:  {server}/v1/sweeps/{id}/points/1/profile?format=svg",

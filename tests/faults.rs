@@ -1,6 +1,7 @@
 //! Faults that a service meets in years of work, made to happen: kills, sleep, full disks, points that kill whoever
 //! simulates them, starved processors, clocks that are set.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -184,8 +185,8 @@ impl Clock {
         (server, address)
     }
 
-    fn worker(&self, data: &Path) -> Logged {
-        let worker = ["worker", "--lease-seconds", "3", "--pace", "10"];
+    fn worker(&self, data: &Path, lease_seconds: &str) -> Logged {
+        let worker = ["worker", "--lease-seconds", lease_seconds, "--pace", "10"];
         Logged::start(&mut self.rules(command(data, &worker)))
     }
 }
@@ -378,7 +379,7 @@ fn clock_that_jumps_to_and_fro_while_a_sweep_runs_loses_nothing() {
     assert!((Duration::from_secs(2)..Duration::from_secs(30)).contains(&time), "{time:?}");
 
     clock.set(0);
-    let workers = [clock.worker(data.path()), clock.worker(data.path())];
+    let workers = [clock.worker(data.path(), "9"), clock.worker(data.path(), "9")];
     let claims = || {
         let claims = |worker: &Logged| worker.log.lock().unwrap().matches("point claimed").count();
         workers.iter().map(claims).sum::<usize>()
@@ -420,13 +421,13 @@ fn point_of_a_dead_worker_does_not_wait_for_the_hour_by_which_the_clock_was_set_
     let (data, clock) = (tempfile::tempdir().unwrap(), Clock::new());
     let (_server, address) = clock.serve(data.path());
     let sweep = submit(&address, &request(6.0, 1, 1));
-    let mut doomed = clock.worker(data.path());
+    let mut doomed = clock.worker(data.path(), "3");
     doomed.wait_for(last_claim);
     // Stopped, it cannot renew its lease by the new time.
     doomed.process.signal(Signal::STOP);
     clock.set(-HOUR);
     doomed.kill();
-    let _heir = clock.worker(data.path());
+    let _heir = clock.worker(data.path(), "600");
     let ended = wait(&address, &sweep, completed);
     assert_eq!(ended["counts"]["succeeded"], 1, "{ended}");
     assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}/points/1"))["attempts"], 2);
@@ -462,7 +463,7 @@ fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     // A worker may have 1.5 GB; a study keeps its runs in memory, and two million samples of ten nodes need 1.3 GB at once in
     // each of two: the allocation aborts.
     let limited = r#"ulimit -v 1500000; exec "$0" "$@""#;
-    let up = ["up", "--workers", "2", "--lease-seconds", "2", "--listen", "127.0.0.1:0"];
+    let up = ["up", "--workers", "2", "--listen", "127.0.0.1:0"];
     let mut command = Command::new("sh");
     command.args(["-c", limited, BINARY]).args(up).arg("--data").arg(data.path());
     let up = Logged::start(&mut command);
@@ -492,24 +493,37 @@ fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
     assert_eq!(wait(&address, &after, completed)["counts"]["succeeded"], 3);
 }
 
+/// The niceness of a process' threads, by their names.
+fn niceness_of_threads(process: u32) -> BTreeMap<String, i32> {
+    let thread = |entry: std::io::Result<std::fs::DirEntry>| {
+        let stat = std::fs::read_to_string(entry.unwrap().path().join("stat")).ok()?;
+        // The name is in parentheses; the niceness is the nineteenth field.
+        let (name, fields) = stat.split_once('(')?.1.rsplit_once(") ")?;
+        Some((name.to_owned(), fields.split(' ').nth(16)?.parse().unwrap()))
+    };
+    std::fs::read_dir(format!("/proc/{process}/task")).unwrap().filter_map(thread).collect()
+}
+
 #[test]
-fn heartbeat_comes_within_five_seconds_while_all_cores_are_busy() {
+fn leases_of_five_seconds_last_while_other_programs_take_all_cores() {
     /// A process that takes all the time it gets.
     fn burn() -> Process {
         Process(Command::new("sh").args(["-c", "while :; do :; done"]).spawn().unwrap())
     }
     let data = tempfile::tempdir().unwrap();
     let (_server, address) = serve(data.path(), None);
-    let sweep = submit(&address, &request(600.0, 2, 1));
-    // Renewed every 2.5 s: a lease of 7.5 s runs out when a heartbeat is late by 5 s. The third worker finds nothing
-    // to do and takes over whatever runs out.
-    let arguments = ["worker", "--lease-seconds", "7.5", "--pace", "1"];
+    // The third worker finds nothing to do and takes over whatever runs out.
+    let arguments = ["worker", "--lease-seconds", "5", "--pace", "5"];
     let workers: Vec<_> = (0..3).map(|_| Logged::start(&mut command(data.path(), &arguments))).collect();
+    for worker in &workers {
+        worker.wait_for(|log| log.contains("worker ready").then_some(()));
+    }
     let cores = std::thread::available_parallelism().unwrap().get();
     let _burners: Vec<_> = (0..2 * cores).map(|_| burn()).collect();
+    let sweep = submit(&address, &request(600.0, 2, 1));
     let mut seen = [Vec::new(), Vec::new()];
     let deadline = Instant::now() + PATIENCE;
-    while seen.iter().any(|progress| progress.len() < 6) {
+    while seen.iter().any(|progress| progress.len() < 5) {
         for (point, seen) in points(&address, &sweep).iter().zip(&mut seen) {
             let progress = point["progress"].as_f64().unwrap();
             if seen.last() != Some(&progress) {
@@ -520,9 +534,19 @@ fn heartbeat_comes_within_five_seconds_while_all_cores_are_busy() {
         assert!(Instant::now() < deadline, "no heartbeats: {seen:?}");
         std::thread::sleep(Duration::from_millis(100));
     }
+    let usual = rustix::process::getpriority_process(None).unwrap();
+    let mut computing = 0;
     for worker in &workers {
         assert!(!worker.log.lock().unwrap().contains("lease ran out"));
+        let mut threads = niceness_of_threads(worker.process.0.id());
+        if let Some(niceness) = threads.remove("compute") {
+            assert_eq!(niceness, (usual + 10).min(19));
+            computing += 1;
+        }
+        assert!(threads.contains_key("heartbeat"), "{threads:?}");
+        assert!(threads.values().all(|niceness| *niceness == usual), "computing alone gives way: {threads:?}");
     }
+    assert_eq!(computing, 2);
 }
 
 #[test]

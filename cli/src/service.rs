@@ -29,9 +29,6 @@ use crate::data::DataArguments;
 use crate::gc::RetentionArguments;
 use crate::token;
 
-/// Added to the niceness of a worker: the server answers while all cores simulate.
-const WORKER_NICENESS: i32 = 10;
-
 /// How long children may take to give their points back: as long as open requests may take to end.
 const CHILD_GRACE: Duration = Duration::from_secs(10);
 
@@ -205,7 +202,6 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         set_parent_process_death_signal(Some(Signal::TERM))
             .context("the worker cannot follow the process that started it")?;
     }
-    rustix::process::nice(WORKER_NICENESS).context("the worker cannot lower its priority")?;
     let config = WorkerConfig {
         lease: lease(arguments.lease_seconds)?,
         drain: arguments.drain,

@@ -1,5 +1,6 @@
 //! The worker's loop: claim, simulate, store, again.
 
+use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -24,6 +25,7 @@ use crate::calibration::calibrate;
 use crate::compute::{Computation, ComputeError, compute_from, simulated_time_total};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 use crate::memory::Memory;
+use crate::priority::{NotComputed, compute_at_low_priority, parallel_threads};
 use crate::provenance::WorkerProvenance;
 use crate::spool::{Suspended, SuspendedError};
 
@@ -86,7 +88,7 @@ async fn keep_speed(store: &Store, host: &str) {
         if store.machine_speed(i64::from(PHYSICS_VERSION)).await?.is_some() {
             return Ok(());
         }
-        let speed = tokio::task::spawn_blocking(calibrate).await;
+        let speed = compute_at_low_priority(calibrate).await;
         match speed {
             Ok(Ok(speed)) => {
                 store.keep_machine_speed(host, i64::from(PHYSICS_VERSION), &json!(speed).to_string()).await
@@ -268,9 +270,9 @@ impl Worker<'_> {
         let scratch = config.scratch.clone();
         let suspended = read_suspended(store, claim.checkpoint, &scratch).await;
         let span = tracing::info_span!("compute");
-        let mut computing = tokio::task::spawn_blocking(move || {
+        let mut computing = std::pin::pin!(compute_at_low_priority(move || {
             span.in_scope(|| compute_from(&scenario, &watched, suspended, &scratch))
-        });
+        }));
         let timeout = config.point_timeout.map(|time| (time, tokio::time::Instant::now() + time));
         let overdue = async {
             match timeout {
@@ -308,7 +310,8 @@ impl Worker<'_> {
                 Ended::Computed(Ok(Computation::Finished(computed)))
             }
             Ok(result) => Ended::Computed(result),
-            Err(error) => Ended::Panicked(panic_text(error)),
+            Err(NotComputed::NotStarted(error)) => Ended::Computed(Err(ComputeError::Thread(error))),
+            Err(NotComputed::Panicked(panic)) => Ended::Panicked(panic_text(&*panic)),
         };
         let next =
             self.end(&lease, ended, verdict.get(), halt, stop).instrument(tracing::info_span!("store")).await;
@@ -454,7 +457,7 @@ fn paced(pace: f64) -> Control {
 
 /// Refuses a point that takes more memory than this worker may have; another may have more.
 fn too_large(scenario: &Scenario) -> Option<ComputeError> {
-    let runs_at_once = if scenario.cost_study.is_some() { rayon::current_num_threads() } else { 1 };
+    let runs_at_once = if scenario.cost_study.is_some() { parallel_threads() } else { 1 };
     let needed = Footprint::of(scenario).ok()?.memory_bytes * runs_at_once as u64;
     let memory = Memory::now()?;
     (needed > memory.limit.saturating_sub(memory.resident))
@@ -536,15 +539,9 @@ enum KeepError {
     Store(#[from] StoreError),
 }
 
-fn panic_text(error: tokio::task::JoinError) -> String {
-    match error.try_into_panic() {
-        Ok(panic) => panic
-            .downcast_ref::<&str>()
-            .map(|text| (*text).to_owned())
-            .or_else(|| panic.downcast_ref::<String>().cloned())
-            .unwrap_or_else(|| "without a message".to_owned()),
-        Err(error) => error.to_string(),
-    }
+fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".to_owned())
 }
 
 fn hex(key: &[u8; 32]) -> String {

@@ -115,6 +115,9 @@ pub enum ComputeError {
         /// What the worker may have \[bytes\].
         limit: u64,
     },
+    /// Its thread cannot be started.
+    #[error("its thread cannot be started: {0}")]
+    Thread(#[source] std::io::Error),
     /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -139,6 +142,7 @@ impl ComputeError {
             ComputeError::Invalid(_)
                 | ComputeError::Artifact(_)
                 | ComputeError::TooLarge { .. }
+                | ComputeError::Thread(_)
                 | ComputeError::Transient(TransientError::Histories(_))
         )
     }

@@ -1,5 +1,5 @@
-//! The heartbeat: renews the lease of the running point, from an OS thread with its own connection, so that no
-//! amount of computing can starve it.
+//! The heartbeat: renews the lease of the running point, from an OS thread with its own connection and of normal priority, whereas
+//! computing threads have a low one.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};

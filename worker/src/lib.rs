@@ -2,8 +2,8 @@
 //! own, and stores what comes out.
 //!
 //! One process simulates one point at a time, sequentially: the numbers do not depend on how many run. The async
-//! runtime does input and output only; [`compute`] is plain code on a thread that may be cancelled through the
-//! simulation's own control handle.
+//! runtime does input and output only; [`compute`] is plain code on a thread of low priority that may be cancelled
+//! through the simulation's own control handle.
 
 mod artifact;
 mod calibration;
@@ -12,6 +12,7 @@ mod compute;
 mod cost;
 mod lease;
 mod memory;
+mod priority;
 mod provenance;
 mod spool;
 mod tables;

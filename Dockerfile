@@ -7,7 +7,7 @@ RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,targe
     cargo build --locked --release -p drillsweep && cp target/release/drillsweep /usr/local/bin/
 
 FROM debian:bookworm-slim
-RUN useradd --system --uid 10001 --no-create-home drillsweep && install --directory --owner=drillsweep /data
+RUN useradd --system --uid 10001 --no-create-home drillsweep && install --directory --mode=700 --owner=drillsweep /data
 COPY --from=build /usr/local/bin/drillsweep /usr/local/bin/drillsweep
 # Whom an object store's certificate may be from.
 COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt

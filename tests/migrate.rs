@@ -1,7 +1,8 @@
 //! A store that moves between a machine's own disk and servers, and one that comes back from a backup: by the commands that people type.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -249,11 +250,45 @@ fn run_recipe(recipe: &str, directory: &Path, environment: &Command) {
             .chain([crate::servers::postgres::programs()]),
     );
     let mut shell = Command::new("sh");
-    shell.args(["-euxc", recipe]).current_dir(directory).env("PATH", path.unwrap());
+    // As most shells start.
+    shell.args(["-euxc", &format!("umask 022\n{recipe}")]).current_dir(directory).env("PATH", path.unwrap());
     shell.envs(environment.get_envs().filter_map(|(name, value)| Some((name, value?))));
     let output = shell.output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{}{said}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// Files and directories below a directory to which group or others have access.
+fn public(directory: &Path) -> Vec<PathBuf> {
+    let paths = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+    let found = paths.flat_map(|path| {
+        let file = path.symlink_metadata().unwrap();
+        let mut found = if file.is_dir() { public(&path) } else { Vec::new() };
+        if file.permissions().mode() & 0o077 != 0 {
+            found.push(path);
+        }
+        found
+    });
+    found.collect()
+}
+
+#[test]
+fn store_that_others_may_read_is_reported() {
+    let data = tempfile::tempdir().unwrap();
+    let (mut server, _) = serve(data.path(), None);
+    assert!(!server.log().contains("other users have access"));
+    server.kill();
+    let database = data.path().join("drillsweep.sqlite");
+    for (path, mode) in [(&database, 0o644), (&data.path().to_owned(), 0o750)] {
+        std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).unwrap();
+        let warning = format!("other users have access to {} (mode {mode:04o})", path.display());
+        let (mut server, _) = serve(data.path(), None);
+        server.wait_for(|log| log.lines().any(|line| line.contains("WARN") && line.contains(&warning)).then_some(()));
+        server.kill();
+        let warnings = report(&mut command(data.path(), &["check", "--json"]))["warnings"].clone();
+        let is_there = |text: &Value| text.as_str().unwrap().starts_with(&warning);
+        assert!(warnings.as_array().unwrap().iter().any(is_there), "{warnings}");
+    }
 }
 
 #[test]
@@ -262,6 +297,7 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
         recipes().try_into().expect("a backup and a restore of either engine");
     let (laptop, site, work) = (Laptop::new(), Site::new(), tempfile::tempdir().unwrap());
     report(&mut to_site(&site, laptop.path(), &site.postgres.url(), None));
+    let nothing_is_public = || assert_eq!(public(work.path()), Vec::<PathBuf>::new());
 
     // The service runs while its backup is made.
     std::os::unix::fs::symlink(laptop.path(), work.path().join("data")).unwrap();
@@ -271,9 +307,13 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     run_recipe(&local_backup, work.path(), &nothing);
     server.kill();
     std::fs::remove_file(work.path().join("data")).unwrap();
+    nothing_is_public();
     run_recipe(&local_restore, work.path(), &nothing);
     let (mut server, address) = serve(&work.path().join("data"), None);
     assert!(told(&address, &laptop.finished) == before, "of the directory");
+    // With the write-ahead log of a server that runs.
+    nothing_is_public();
+    assert!(!server.log().contains("other users have access"));
     server.kill();
 
     let (mut server, address) = site.serve();
@@ -290,6 +330,7 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     for _ in 0..2 {
         run_recipe(&objects_backup, work.path(), &environment);
     }
+    nothing_is_public();
     server.kill();
     site.objects.files("team").iter().for_each(|file| site.objects.delete(&file.name));
     site.postgres.query("CREATE DATABASE restored");

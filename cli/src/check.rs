@@ -22,9 +22,11 @@ pub(crate) struct CheckArguments {
     json: bool,
 }
 
-/// Reads the database and every blob, and fails if something is wrong with them; also where that is being repaired.
+/// Reads the database and every blob, and fails if something is wrong with them; also where that is being repaired. Access of other
+/// users to them is a warning.
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
     let config = arguments.data.existing_store(Role::Worker)?;
+    let warnings: Vec<String> = arguments.data.exposed(&config).iter().map(ToString::to_string).collect();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let (report, repair) = runtime.block_on(async {
         let store = match arguments.repair {
@@ -45,6 +47,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
             "blobs": report.blobs,
             "bytes": report.bytes,
             "problems": report.problems,
+            "warnings": warnings,
             "repair": repair.map(|repair| json!({
                 "queued": repair.queued,
                 "under_way": repair.under_way,
@@ -55,6 +58,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
         print(&format!("{} results, {} blobs of {} bytes", report.results, report.blobs, report.bytes));
         for problem in &report.problems {
             print(&format!("  {problem}"));
+        }
+        for warning in &warnings {
+            print(&format!("warning: {warning}"));
         }
         if let Some(RepairReport { queued, under_way, other_numbers }) = repair {
             print(&format!("{queued} results are computed again, {under_way} were on their way already"));

@@ -9,6 +9,8 @@ use drillsweep_store::{DatabaseLocation, ObjectsLocation, Role, StoreConfig};
 use rustix::fs::Mode;
 use tokio::process::Command;
 
+use crate::exposure::{Exposed, database_files, exposed};
+
 /// Where the data lies.
 #[derive(Args, Clone)]
 pub(crate) struct DataArguments {
@@ -72,6 +74,21 @@ impl DataArguments {
         places.extend(self.database.iter().map(|database| ("database", database.to_string())));
         places.extend(self.objects.iter().map(|objects| ("objects", objects.to_string())));
         places
+    }
+
+    /// Directories and files of the store to which other users of this machine have access.
+    pub(crate) fn exposed(&self, store: &StoreConfig) -> Vec<Exposed> {
+        let mut paths = Vec::new();
+        if self.database.is_none() || self.objects.is_none() {
+            paths.push(self.data.clone());
+        }
+        if let DatabaseLocation::Sqlite(path) = &store.database {
+            paths.extend(database_files(path));
+        }
+        if let ObjectsLocation::Directory(path) = &store.objects {
+            paths.push(path.clone());
+        }
+        exposed(paths)
     }
 
     /// Hands it on to a process of this program. What is secret goes by its environment, which only this user can look at; arguments

@@ -313,6 +313,9 @@ impl Service {
         let config = data.store(Role::Server)?;
         let store = patiently(|| Store::open(&config)).await?;
         store.check_certificate().await?;
+        for exposed in data.exposed(&config) {
+            tracing::warn!("{exposed}");
+        }
         if let Some(path) = &arguments.admin_token_file {
             token::register(&store, path).await?;
         }

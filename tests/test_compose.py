@@ -117,6 +117,8 @@ def test_services_are_fenced_in(profile: str, composed: Compose, secrets: Path) 
             assert seconds(service["stop_grace_period"]) >= 30.0
         if service["image"].startswith("drillsweep:"):
             own += service.get("deploy", {}).get("replicas", 1)
+            assert int(service["mem_limit"]) > 0
+            assert int(service["pids_limit"]) > 0
             assert service["healthcheck"]["test"][:2] == ["CMD", "drillsweep"]
     assert own == {"team": 4, "single": 3}[profile]
     published = [port for service in configuration["services"].values() for port in service.get("ports", [])]

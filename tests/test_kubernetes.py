@@ -20,6 +20,9 @@ VERSION = "1.31"
 DRAIN_SECONDS = 10
 """What the server gives open requests to end."""
 
+DATABASE_SECONDS = 60
+"""How long a server that starts waits for its database."""
+
 UPLOAD_SECONDS = 60
 """How long a worker tries to store what it has."""
 
@@ -109,6 +112,28 @@ def test_pods_are_closed_and_secrets_are_elsewhere() -> None:
 def test_what_ends_has_the_time_that_it_needs() -> None:
     assert pods()["server"]["terminationGracePeriodSeconds"] > DRAIN_SECONDS
     assert pods()["worker"]["terminationGracePeriodSeconds"] > UPLOAD_SECONDS
+
+
+def test_servers_are_spread_over_nodes_and_have_time_to_start() -> None:
+    server = pods()["server"]
+    (spread,) = server["topologySpreadConstraints"]
+    labels = one("Deployment", "server")["spec"]["template"]["metadata"]["labels"]
+    assert spread["topologyKey"] == "kubernetes.io/hostname"
+    assert spread["labelSelector"]["matchLabels"] == labels
+    (container,) = server["containers"]
+    probe = container["startupProbe"]
+    assert probe["httpGet"] == container["livenessProbe"]["httpGet"]
+    assert probe["periodSeconds"] * probe["failureThreshold"] > DATABASE_SECONDS
+
+
+def test_metrics_are_reached_by_labelled_pods_alone() -> None:
+    rules = one("NetworkPolicy", "server")["spec"]["ingress"]
+    ports = {port["name"] for port in pods()["server"]["containers"][0]["ports"]}
+    assert {port["port"] for rule in rules for port in rule["ports"]} == ports
+    for rule in rules:
+        if "metrics" in {port["port"] for port in rule["ports"]}:
+            (source,) = rule["from"]
+            assert all(source[kind]["matchLabels"] for kind in ("namespaceSelector", "podSelector"))
 
 
 def test_workers_follow_the_queue() -> None:

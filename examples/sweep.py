@@ -5,8 +5,11 @@ import matplotlib.pyplot as plt
 from drillsweep import Client, Range, plot
 
 client = Client()  # DRILLSWEEP_SERVER, DRILLSWEEP_TOKEN; port 7340 of this machine unless set
-axes = {"flow_rate": [0.01, 0.04, 0.06], "mud_density": Range(1200, 2100, 4)}
-sweep = client.submit("paper-200m-damped", axes=axes, name="flow rate against density")
+sweep = client.submit(
+    "paper-200m-damped",
+    axes={"flow_rate": [0.01, 0.04, 0.06], "mud_density": Range(1200, 2100, 4)},
+    name="flow rate against density",
+)
 sweep.wait()
 for point in sweep.failures():
     print(point, point.error)

@@ -20,7 +20,7 @@ from typing import Any
 import httpx
 import pytest
 
-from drillsweep import Client, DrillsweepError
+from drillsweep import Axis, Client, DrillsweepError
 from service import REPOSITORY, SHORT, Service, binary
 
 PORT = 7340
@@ -247,7 +247,7 @@ def test_services_of_one_person_run_a_sweep_and_survive_a_killed_worker(single: 
     token = (secrets / "admin-token").read_text()
     with Client(single.address("single-server"), token=token) as client:
         until(lambda: all(map(single.is_healthy, single.services)) and len(client.workers()) == 2)
-        axes = {"flow_rate": [0.01, 0.04, 0.06], "mud_density": [1200, 1800]}
+        axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04, 0.06], "mud_density": [1200, 1800]}
         sweep = client.submit("paper-200m", set={**SHORT, "duration": 3}, axes=axes)
         until(lambda: sweep.refresh().counts.running == 2)
         single.processes["single-worker"][0].kill()
@@ -380,7 +380,7 @@ def test_services_of_a_team_survive_the_loss_of_a_worker_and_a_server(
     team: Fleet, calm: str, secrets: Path, tmp_path: Path
 ) -> None:
     changes = {**SHORT, "duration": 3}
-    axes = {"flow_rate": [0.011, 0.043, 0.057], "mud_density": [1210, 1790]}
+    axes: dict[str, Axis] = {"flow_rate": [0.011, 0.043, 0.057], "mud_density": [1210, 1790]}
     token = (secrets / "admin-token").read_text()
     with Client(team.address("server-1"), token=token) as first:
         until(lambda: all(map(team.is_healthy, team.services)) and len(first.workers()) == 2)

@@ -24,7 +24,7 @@ SHORT = (
     '"recording.orbit_window": {"from": 0.1, "to": 0.5}'
 )
 SHORTER = {
-    'client.submit("paper-200m-damped", axes': f'client.submit("paper-200m-damped", set={{{SHORT}}}, axes',
+    '    "paper-200m-damped",\n': f'    "paper-200m-damped",\n    set={{{SHORT}}},\n',
     '"preset": "paper-200m-damped",': f'"preset": "paper-200m-damped", "set": {{{SHORT}}},',
     "(15.0, 25.0), (14.5, 26.0), (50.0, 60.0)": "(0.1, 1.1), (0.1, 1.2), (0.2, 1.2)",
 }

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from drillsweep import Client
+from drillsweep import Axis, Client
 from service import REPOSITORY, SHORT, Service, binary
 
 SCRIPT = REPOSITORY / "deploy" / "slurm" / "workers.sbatch"
@@ -86,7 +86,7 @@ def test_points_outlast_the_time_of_a_job_and_end_with_the_same_numbers(
 ) -> None:
     client, slurm = site
     changes = {**SHORT, "duration": 6}
-    axes = {"flow_rate": [0.013, 0.047], "mud_density": [1230]}
+    axes: dict[str, Axis] = {"flow_rate": [0.013, 0.047], "mud_density": [1230]}
     sweep = client.submit("paper-200m", set=changes, axes=axes)
     # A simulated second takes one at least: no point comes to its end before its job does.
     slurm.submit(2, DRILLSWEEP_PACE="1")

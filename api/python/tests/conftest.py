@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import matplotlib
 import pytest
 
-from drillsweep import Client, Sweep
+from drillsweep import Axis, Client, Sweep
 from service import SHORT, Service
 
 matplotlib.use("Agg")
@@ -32,5 +32,5 @@ def client(server: str) -> Iterator[Client]:
 @pytest.fixture(scope="session")
 def sweep(client: Client) -> Sweep:
     """Four points, complete."""
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
     return client.submit("paper-200m", set=SHORT, axes=axes, name="short").wait(timeout=120.0)

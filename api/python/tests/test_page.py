@@ -15,7 +15,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Locator, Page, Request, Route, expect, sync_playwright
 
-from drillsweep import Client, Sweep
+from drillsweep import Axis, Client, Outputs, Sweep
 from service import SHORT, Service
 from test_tokens import make_token, revoke_token, tokens_of
 
@@ -84,7 +84,11 @@ def opened(browser: Browser, server: str, troubles: list[str]) -> Iterator[Opens
 @pytest.fixture(scope="module")
 def named(client: Client) -> Sweep:
     """Six points of three parameters, complete, with a name and a tag of markup."""
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800], "operation.rotation_speed_rpm": [90, 120]}
+    axes: dict[str, Axis] = {
+        "flow_rate": [0.01, 0.04],
+        "mud_density": [1200, 1800],
+        "operation.rotation_speed_rpm": [90, 120],
+    }
     return client.submit("paper-200m", set=SHORT, axes=axes, name=NASTY, tags=["<b>bold</b>"]).wait(timeout=120.0)
 
 
@@ -165,7 +169,7 @@ def test_what_is_typed_stays_when_colours_and_units_are_switched(opened: Opens) 
 def test_a_sweep_like_another_one_is_its_request(opened: Opens, client: Client) -> None:
     # Part of it has no field in the form.
     points = [{"flow_rate": 0.021}, {"flow_rate": 0.022}]
-    outputs = {"orbits": {"nodes": [{"node": 49}]}}
+    outputs: Outputs = {"orbits": {"nodes": [{"node": 49}]}}
     first = client.submit("paper-200m", set=SHORT, design="list", points=points, priority=4, outputs=outputs)
     page = opened(f"#/new?from={first.id}")
     page.get_by_role("button", name="Submit 2 points").click()
@@ -466,7 +470,7 @@ def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep
 
 
 def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: Client) -> None:
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1300, 1700]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1300, 1700]}
     verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=2).wait(timeout=180.0)
     table = verified.verification()
     name = "orbit_radius_rms_49"
@@ -486,7 +490,7 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
 
 
 def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:
-    axes = {"flow_rate": [0.04, 0.02], "mud_density": [1200, 1800]}
+    axes: dict[str, Axis] = {"flow_rate": [0.04, 0.02], "mud_density": [1200, 1800]}
     changes = {**SHORT, "operation.rotation_speed_rpm": 90}
     other = client.submit("paper-200m", set=changes, axes=axes, name="slower").wait(timeout=120.0)
     page = opened(f"#/sweeps/{sweep.id}?view=difference&colour=orbit_radius_rms_49")
@@ -514,7 +518,7 @@ def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: C
 
 
 def test_a_finer_grid_is_dragged_over_a_region(opened: Opens, client: Client) -> None:
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1250, 1750]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1250, 1750]}
     coarse = client.submit("paper-200m", set=SHORT, axes=axes, name="coarse").wait(timeout=120.0)
     page = opened(f"#/sweeps/{coarse.id}?view=map&colour=state")
     picture = drawn(page, "over flow rate")

@@ -16,7 +16,7 @@ from urllib.parse import parse_qs
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from drillsweep import Client, Sweep
+from drillsweep import Client, DrillsweepWarning, Sweep
 from service import SHORT, Service
 from test_page import MINUS, Opens, browser, drawn, opened, taken, troubles, until
 from test_page_motion import clock, pixels, recorded, scene, trace
@@ -35,7 +35,9 @@ def untwisted(client: Client) -> Sweep:
 def ends(client: Client) -> Sweep:
     """A point whose recorded nodes are those at the top and at the bit."""
     changes = SHORT | {"recording.nodes": [{"node": 1}, {"node": 297}]}
-    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="ends").wait(timeout=120.0)
+    with pytest.warns(DrillsweepWarning, match="the top node is held"):
+        sweep = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="ends")
+    return sweep.wait(timeout=120.0)
 
 
 def focused(page: Page) -> str:

@@ -21,7 +21,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from drillsweep import Client, Range, Sweep
+from drillsweep import Axis, Client, Outputs, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
 from test_page import GONE, Opens, browser, drag, drawn, named, opened, requested, taken, troubles, until
 
@@ -233,7 +233,7 @@ def test_a_survey_is_summed_up_in_the_units_shown(opened: Opens) -> None:
 
 
 def test_histories_in_part_can_be_dropped_from_a_sweep_like_another(opened: Opens, client: Client) -> None:
-    outputs = {"orbits": {"nodes": [{"node": 49}]}}
+    outputs: Outputs = {"orbits": {"nodes": [{"node": 49}]}}
     first = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.02]}, outputs=outputs)
     page = opened(f"#/new?from={first.id}")
     until(page, lambda: requested(page).get("outputs", {}).get("orbits", {}).get("nodes") == [{"node": 49}])
@@ -357,7 +357,7 @@ def test_the_time_left_is_unknown_while_a_sweep_waits(idle: str, opened: Opens) 
 @pytest.fixture
 def other(client: Client) -> Sweep:
     """Two of the points of `named`, at another friction."""
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200]}
     changes = {**SHORT, "operation.rotation_speed_rpm": 90}
     return client.submit("paper-200m", set=changes, axes=axes, name="it's the other").wait(timeout=120.0)
 
@@ -495,7 +495,7 @@ def asked_for(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_the_lines_of_a_finer_grid_add_it(idle: str, opened: Opens) -> None:
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
     with Client(idle) as client:
         for language in ("curl", "Python"):
             coarse = client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary")
@@ -719,7 +719,7 @@ def test_a_sweep_whose_tables_have_expired_shows_what_is_left(
 ) -> None:
     service = Service("up", "--workers", "1", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
     try:
-        axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+        axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
         with Client(service.server) as client:
             sweep = client.submit("paper-200m", set=SHORT, axes=axes).wait(timeout=120.0)
         collected = run(
@@ -772,7 +772,7 @@ def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> 
 
 
 def test_biases_stand_in_every_picture_of_a_sweep(opened: Opens, client: Client, other: Sweep) -> None:
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1700]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1700]}
     verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=4).wait(timeout=180.0)
     colour = "orbit_radius_rms_49"
     for view in ("map", "parallel", "scatter", "difference"):
@@ -938,13 +938,13 @@ def test_a_sweep_that_passes_the_filters_no_more_leaves_the_list(idle: str, open
 @pytest.fixture(scope="module")
 def failing(client: Client) -> Sweep:
     """Two points that fail: without its wall the string is buckled by the weight on bit."""
-    axes = {"flow_rate": [0.013, 0.014], "mud_density": [1200]}
+    axes: dict[str, Axis] = {"flow_rate": [0.013, 0.014], "mud_density": [1200]}
     changes = {**SHORT, "effects.contact": "off"}
     return client.submit("paper-200m", set=changes, axes=axes, name="all of it fails").wait(timeout=120.0)
 
 
 def test_a_sweep_in_which_points_failed_is_marked_so(opened: Opens, failing: Sweep, client: Client) -> None:
-    axes = {"flow_rate": [0.013, 0.015], "operation.rotation_speed_rpm": [90]}
+    axes: dict[str, Axis] = {"flow_rate": [0.013, 0.015], "operation.rotation_speed_rpm": [90]}
     mark = "element => [getComputedStyle(element).color, getComputedStyle(element, '::before').content]"
     page = opened(f"#/sweeps/{failing.id}")
     state = page.locator(".state").filter(has_text="completed, 2 failed")
@@ -1195,7 +1195,7 @@ def test_a_finer_grid_is_planned_where_all_points_failed(opened: Opens, failing:
 def test_a_difference_to_a_sweep_that_comes_late_is_not_shown(
     opened: Opens, named: Sweep, other: Sweep, client: Client
 ) -> None:
-    axes = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
+    axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1200, 1800]}
     third = client.submit("paper-200m", set=SHORT, axes=axes, name="the third").wait(timeout=120.0)
     page = opened("#/nowhere")
     held: list[Route] = []

@@ -16,6 +16,7 @@ import polars
 import pytest
 
 from drillsweep import (
+    Axis,
     ChangedMeanwhile,
     Client,
     Conflict,
@@ -241,7 +242,7 @@ def test_designs_make_the_points_that_they_should(client: Client) -> None:
 
 
 def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> None:
-    axes = {"flow_rate": [0.015, 0.025], "mud_density": [1250, 1350]}
+    axes: dict[str, Axis] = {"flow_rate": [0.015, 0.025], "mud_density": [1250, 1350]}
     succeeded: list[int] = []
     last: dict[str, Any] = {}
     for name, data in client.submit("paper-200m", set=SHORT, axes=axes).events():
@@ -254,7 +255,7 @@ def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> N
 
 
 def test_all_sweeps_are_watched_by_one_stream(client: Client) -> None:
-    axes = {"flow_rate": [0.015 + 0.001 * step for step in range(8)], "mud_density": [1450]}
+    axes: dict[str, Axis] = {"flow_rate": [0.015 + 0.001 * step for step in range(8)], "mud_density": [1450]}
     watched = client.submit("paper-200m", set=SHORT, axes=axes, owner="watched")
     watched.pause()
     states: list[str] = []

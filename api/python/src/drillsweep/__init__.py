@@ -9,15 +9,20 @@
 
 All quantities are in SI units; `Table.units` says which, and `quantity` what a column is, and in which units it is
 shown and read in the oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
+
+The logger `drillsweep` has submissions, waits and retries, at the level INFO.
 """
 
+from importlib.metadata import version
+
 from drillsweep.client import Client
-from drillsweep.design import Axis, Range
+from drillsweep.design import Axis, Design, Range
 from drillsweep.point import Point, PointError
 from drillsweep.problem import (
     ChangedMeanwhile,
     Conflict,
     DrillsweepError,
+    DrillsweepWarning,
     FieldProblem,
     Forbidden,
     IdempotencyKeyReused,
@@ -29,18 +34,26 @@ from drillsweep.problem import (
     RateLimited,
     Unauthorized,
     Unavailable,
+    UnsupportedServer,
 )
 from drillsweep.quantity import Quantity, Unit, quantity
+from drillsweep.request import Accuracy, Cache, Outputs
 from drillsweep.sweep import Counts, Plan, PlannedPoint, Sweep
 from drillsweep.table import Table
 
+__version__ = version("drillsweep")
+
 __all__ = [
+    "Accuracy",
     "Axis",
+    "Cache",
     "ChangedMeanwhile",
     "Client",
     "Conflict",
     "Counts",
+    "Design",
     "DrillsweepError",
+    "DrillsweepWarning",
     "FieldProblem",
     "Forbidden",
     "IdempotencyKeyReused",
@@ -48,6 +61,7 @@ __all__ = [
     "NoAnswer",
     "NoResult",
     "NotFound",
+    "Outputs",
     "Plan",
     "PlannedPoint",
     "Point",
@@ -61,5 +75,7 @@ __all__ = [
     "Unauthorized",
     "Unavailable",
     "Unit",
+    "UnsupportedServer",
+    "__version__",
     "quantity",
 ]

@@ -1,26 +1,32 @@
-"""Talking to a server."""
+"""The connection to a server."""
 
 from __future__ import annotations
 
+import logging
 import os
 import time
 import uuid
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Literal, SupportsFloat
+from typing import Any, SupportsFloat
 from urllib.parse import quote
 
 import httpx
 from httpx_sse import EventSource
 
-from drillsweep.design import axes_to_json, design_to_json
-from drillsweep.point import Point
-from drillsweep.problem import NoAnswer, problem
+from drillsweep.design import Axis, Design, design_to_json
+from drillsweep.point import FailureClass, Point
+from drillsweep.problem import PROBLEM_PREFIX, NoAnswer, Problem, UnsupportedServer, problem, warn
 from drillsweep.quantity import Quantity, read_quantities
+from drillsweep.request import Accuracy, Cache, Outputs, request_to_json
 from drillsweep.sweep import Plan, Sweep
 
 DEFAULT_SERVER = "http://127.0.0.1:7340"
+API_VERSION = "1"
+"""The version of the API that this client speaks, the `info.version` of the OpenAPI document."""
+
+_LOG = logging.getLogger("drillsweep")
 
 _PAGE = 500
 _FIRST_PAUSE = 0.2
@@ -42,19 +48,24 @@ class Client:
         """Connects to nothing yet; the first request does.
 
         Args:
-            server: Address; `DRILLSWEEP_SERVER`, or else port 7340 of this machine.
+            server: Address, such as `https://drillsweep.example` or `HOST:PORT` for `http://HOST:PORT`;
+                `DRILLSWEEP_SERVER` unless given, or else port 7340 of this machine.
             token: Token to show to the server; `DRILLSWEEP_TOKEN` unless given.
             timeout: Seconds that one answer may take.
             patience: Seconds for which requests are sent again to a server that has answered before but does not now
                 (being started anew, rate limit). Every request that this client sends can safely be sent again.
+
+        Raises:
+            ValueError: The address is none of HTTP.
         """
-        self.server = (server or os.environ.get("DRILLSWEEP_SERVER") or DEFAULT_SERVER).rstrip("/")
+        self.server = _base_url(server or os.environ.get("DRILLSWEEP_SERVER") or DEFAULT_SERVER)
         self.patience = patience
         token = token or os.environ.get("DRILLSWEEP_TOKEN")
         headers = {"authorization": f"Bearer {token}"} if token else {}
         self._timeout = timeout
         self._http = httpx.Client(base_url=self.server, headers=headers, timeout=timeout)
         self._has_answered = False
+        self._is_supported = False
 
     def submit(
         self,
@@ -62,33 +73,39 @@ class Client:
         *,
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
-        axes: Mapping[str, Any] | None = None,
-        design: str | None = None,
+        accuracy: Accuracy | None = None,
+        axes: Mapping[str, Axis] | None = None,
+        design: Design | None = None,
         samples: int | None = None,
         seed: int | None = None,
+        skip: int | None = None,
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
-        outputs: str | Mapping[str, Any] | None = None,
+        outputs: Outputs | None = None,
         verify: float | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
         tags: Iterable[str] | None = None,
-        cache: Literal["reuse", "refresh", "only"] | None = None,
+        cache: Cache | None = None,
         idempotency_key: str | None = None,
-        **fields: Any,
     ) -> Sweep:
         """Submits a sweep: the scenario at the points that the axes make.
+
+        Each warning of the service is issued as a `DrillsweepWarning`, too.
 
         Args:
             preset: Name of a preset scenario; either this or `scenario`.
             scenario: A scenario in full.
             set: Changes to the scenario by path, such as `{"duration": 60, "operation.rotation_speed_rpm": 120}`.
+            accuracy: The scenario's accuracy: `draft`, `standard`, `reference`, a bound on the error such as
+                `{"statistics": 0.01}`, or `{"integrator": "rk4", "step": 2e-5}`.
             axes: The swept parameters, each an `Axis`: a list or an array of values, or a `Range`. Names are
                 `flow_rate`, `mud_density`, or the path of any numeric field of the scenario.
             design: How points are made from the axes: `grid` (the default), `zip`, `latin_hypercube` or `sobol`; or
                 `list`, with `points`.
             samples: Number of points of a design that draws.
             seed: What such a design is drawn from; the same seed draws the same points, always.
+            skip: Points at the start of the Sobol sequence to skip, to continue another sweep of the same seed.
             points: The points of the design `list`, each with a value for every parameter; rows of a data frame do
                 (`frame.to_dict("records")`).
             outputs: What is kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
@@ -103,15 +120,20 @@ class Client:
                 `refresh` computes them anew, `only` takes them and computes nothing.
             idempotency_key: The same request under the same key is one sweep, however often and from wherever it is
                 sent; absent means a new sweep each call.
-            fields: Any other field of the service's request.
 
         Raises:
+            ValueError: A number is NaN or infinite; nothing has been sent.
+            TypeError: An axis is no list of numbers, or another value cannot be that of its field; nothing has been
+                sent.
             InvalidRequest: With everything that is wrong with it, by field.
             NoResult: Under `cache="only"`, where points have not been computed; the text names them.
         """
-        fields |= design_to_json(design, samples, seed, points) | {"outputs": outputs, "verify": verify}
-        body = _request(preset, scenario, set, axes, name, owner, priority, tags, fields)
-        return Sweep(self, self._submit("/v1/sweeps", body, idempotency_key, cache))
+        fields = design_to_json(design, samples, seed, skip, points)
+        fields |= {"outputs": outputs, "verify": verify, "name": name, "owner": owner, "priority": priority}
+        body = request_to_json(preset, scenario, set, accuracy, axes, tags, **fields)
+        sweep = self._submit("/v1/sweeps", body, idempotency_key, cache)
+        warn(sweep.warnings, stacklevel=2)
+        return sweep
 
     def run(
         self,
@@ -119,18 +141,21 @@ class Client:
         *,
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
-        outputs: str | Mapping[str, Any] | None = None,
+        accuracy: Accuracy | None = None,
+        outputs: Outputs | None = None,
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
         tags: Iterable[str] | None = None,
-        cache: Literal["reuse", "refresh", "only"] | None = None,
+        cache: Cache | None = None,
         idempotency_key: str | None = None,
-        **fields: Any,
     ) -> Sweep:
         """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
-        body = _request(preset, scenario, set, None, name, owner, priority, tags, fields | {"outputs": outputs})
-        return Sweep(self, self._submit("/v1/runs", body, idempotency_key, cache))
+        fields = {"outputs": outputs, "name": name, "owner": owner, "priority": priority}
+        body = request_to_json(preset, scenario, set, accuracy, None, tags, **fields)
+        sweep = self._submit("/v1/runs", body, idempotency_key, cache)
+        warn(sweep.warnings, stacklevel=2)
+        return sweep
 
     def plan(
         self,
@@ -138,17 +163,22 @@ class Client:
         *,
         scenario: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
-        axes: Mapping[str, Any] | None = None,
-        design: str | None = None,
+        accuracy: Accuracy | None = None,
+        axes: Mapping[str, Axis] | None = None,
+        design: Design | None = None,
         samples: int | None = None,
         seed: int | None = None,
+        skip: int | None = None,
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
-        **fields: Any,
+        outputs: Outputs | None = None,
+        verify: float | None = None,
     ) -> Plan:
-        """What a sweep would become, without storing anything. Arguments are those of `submit`."""
-        fields |= design_to_json(design, samples, seed, points)
-        body = _request(preset, scenario, set, axes, None, None, None, None, fields)
-        return Plan.from_json(self.post_json("/v1/sweeps", body, {"dry_run": "true"}))
+        """Plans a sweep without storing anything. Arguments and warnings are those of `submit`."""
+        fields = design_to_json(design, samples, seed, skip, points) | {"outputs": outputs, "verify": verify}
+        body = request_to_json(preset, scenario, set, accuracy, axes, None, **fields)
+        plan = Plan.from_json(self.post_json("/v1/sweeps", body, {"dry_run": "true"}))
+        warn(plan.warnings, stacklevel=2)
+        return plan
 
     def sweep(self, id: str) -> Sweep:
         """A sweep that is there."""
@@ -159,7 +189,7 @@ class Client:
         for data in self.pages("/v1/sweeps", "sweeps", {"owner": owner, "tag": tag, **filters}):
             yield Sweep(self, data)
 
-    def failures(self, *, owner: str | None = None, kind: str | None = None) -> Iterator[Point]:
+    def failures(self, *, owner: str | None = None, kind: FailureClass | None = None) -> Iterator[Point]:
         """Failed points of all sweeps, the latest first; of one owner, or of one `PointError.kind`."""
         for data in self.pages("/v1/failures", "failures", {"owner": owner, "class": kind}):
             yield Point(self, data)
@@ -242,6 +272,7 @@ class Client:
 
     def download(self, path: str, file: str | Path, query: Mapping[str, Any]) -> Path:
         """Writes what the service sends to a file, piece by piece; a transfer that breaks off leaves no file."""
+        self._handshake()
         file = Path(file)
         part = file.with_name(file.name + ".part")
         parameters = {name: value for name, value in query.items() if value is not None}
@@ -254,7 +285,7 @@ class Client:
             ):
                 if not response.is_success:
                     response.read()
-                    raise problem(response.status_code, _problem_document(response))
+                    raise _problem(response)
                 for piece in response.iter_bytes():
                     sink.write(piece)
             part.replace(file)
@@ -269,6 +300,7 @@ class Client:
 
         A stream that breaks off, as when the server is started anew, is taken up after the last event that came.
         """
+        self._handshake()
         last: str | None = None
         parameters = {name: value for name, value in (query or {}).items() if value is not None}
         deadline = time.monotonic() + self.patience
@@ -280,7 +312,7 @@ class Client:
                         return
                     if not response.is_success:
                         response.read()
-                        raise problem(response.status_code, _problem_document(response))
+                        raise _problem(response)
                     for event in EventSource(response).iter_sse():
                         last = event.id or last
                         deadline = time.monotonic() + self.patience
@@ -290,6 +322,7 @@ class Client:
             except httpx.TransportError as error:
                 if time.monotonic() > deadline:
                     raise NoAnswer(f"the events of {self.server} were interrupted: {error}") from error
+                _LOG.info("the events of %s were interrupted, and are resumed: %s", path, error)
             time.sleep(_FIRST_PAUSE)
 
     def close(self) -> None:
@@ -306,9 +339,12 @@ class Client:
         """Closes the connections."""
         self.close()
 
-    def _submit(self, path: str, body: Mapping[str, Any], key: str | None, cache: str | None) -> dict[str, Any]:
-        # With a key of its own every submission can be sent again when the answer got lost.
-        return self.post_json(path, body, {"cache": cache}, {"idempotency-key": key or str(uuid.uuid4())})
+    def _submit(self, path: str, body: Mapping[str, Any], key: str | None, cache: Cache | None) -> Sweep:
+        # With a key every submission can be sent again when the answer got lost.
+        headers = {"idempotency-key": key or str(uuid.uuid4())}
+        sweep = Sweep(self, self.post_json(path, body, {"cache": cache}, headers))
+        _LOG.info("submitted sweep %s of %d points to %s", sweep.id, sweep.counts.total, self.server)
+        return sweep
 
     def _send(
         self,
@@ -320,68 +356,90 @@ class Client:
         headers: Mapping[str, str] | None = None,
         read_timeout: float | None = None,
     ) -> httpx.Response:
+        self._handshake()
         parameters = {name: value for name, value in (query or {}).items() if value is not None}
         timeout = httpx.Timeout(self._timeout, read=max(read_timeout or 0.0, self._timeout))
+        response = self._answer(method, path, params=parameters, json=body, headers=headers, timeout=timeout)
+        if not response.is_success:
+            raise _problem(response)
+        return response
+
+    def _handshake(self) -> None:
+        """Checks, until it has succeeded once, that a drillsweep server of this version of the API answers.
+
+        Raises:
+            UnsupportedServer: Another server does.
+        """
+        if self._is_supported:
+            return
+        response = self._answer("GET", "/v1/limits")
+        document = _json_object(response)
+        if response.is_success:
+            self._is_supported = "points_per_sweep" in document
+        elif response.status_code in _TRY_AGAIN:
+            raise _problem(response)
+        else:
+            # A server that wants a token answers by a problem, which the request itself will meet again.
+            kind = str(document.get("type", ""))
+            self._is_supported = kind.startswith(PROBLEM_PREFIX) and response.status_code != 404
+        if not self._is_supported:
+            raise UnsupportedServer(self._other_server(response))
+        _LOG.debug("%s serves version %s of the API", self.server, API_VERSION)
+
+    def _other_server(self, response: httpx.Response) -> str:
+        info = _json_object(self._answer("GET", "/openapi.json")).get("info")
+        if isinstance(info, dict) and info.get("title") == "drillsweep":
+            version = info.get("version")
+            return f"{self.server} serves version {version} of the API; this client needs version {API_VERSION}"
+        location = response.headers.get("location")
+        found = f"a redirection to {location}" if location else response.headers.get("content-type", "no content type")
+        return (
+            f"{self.server} is not a drillsweep server: GET {response.request.url.path} was answered by "
+            f"{response.status_code} with {found}"
+        )
+
+    def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
+        """The answer to a request, which is sent again while the server is away."""
         deadline = time.monotonic() + self.patience
         pause = _FIRST_PAUSE
         while True:
             wait = pause
             try:
-                response = self._http.request(
-                    method, path, params=parameters, json=body, headers=headers, timeout=timeout
-                )
+                response = self._http.request(method, path, **request)
             except httpx.TransportError as error:
                 if not self._has_answered or time.monotonic() + wait > deadline:
                     raise NoAnswer(f"no answer from {self.server}: {error}; is the server up?") from error
+                reason = f"no answer: {error}"
             else:
                 self._has_answered = True
-                if response.is_success:
-                    return response
                 retry_after = _seconds(response.headers.get("retry-after"))
                 wait = wait if retry_after is None else retry_after
                 if response.status_code not in _TRY_AGAIN or time.monotonic() + wait > deadline:
-                    raise problem(response.status_code, _problem_document(response), retry_after)
+                    return response
+                reason = f"answered {response.status_code}"
+            _LOG.info("%s %s of %s: %s; sent again in %.1f s", method, path, self.server, reason, wait)
             time.sleep(wait)
             pause = min(2.0 * pause, _LONGEST_PAUSE)
 
 
-def _request(
-    preset: str | None,
-    scenario: Mapping[str, Any] | None,
-    changes: Mapping[str, Any] | None,
-    axes: Mapping[str, Any] | None,
-    name: str | None,
-    owner: str | None,
-    priority: int | None,
-    tags: Iterable[str] | None,
-    fields: Mapping[str, Any],
-) -> dict[str, Any]:
-    body: dict[str, Any] = {
-        "preset": preset,
-        "scenario": scenario,
-        "set": None if changes is None else {path: _plain(value) for path, value in changes.items()},
-        "axes": axes_to_json(axes),
-        "name": name,
-        "owner": owner,
-        "priority": priority,
-        "tags": None if tags is None else list(tags),
-        **fields,
-    }
-    return {field: value for field, value in body.items() if value is not None}
+def _base_url(server: str) -> str:
+    """The address of a server with its scheme, HTTP unless given."""
+    address = (server if "://" in server else f"http://{server}").rstrip("/")
+    try:
+        url = httpx.URL(address)
+    except httpx.InvalidURL as error:
+        raise ValueError(f"server: {error} (got {server!r})") from error
+    if url.scheme not in ("http", "https") or not url.host:
+        raise ValueError(f"server: must be an address such as http://127.0.0.1:7340 (got {server!r})")
+    return address
 
 
-def _plain(value: Any) -> Any:
-    """A value of numpy's as Python's own, which JSON knows."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, Mapping):
-        return {name: _plain(inner) for name, inner in value.items()}
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(inner) for inner in value]
-    return value
+def _problem(response: httpx.Response) -> Problem:
+    return problem(response.status_code, _json_object(response), _seconds(response.headers.get("retry-after")))
 
 
-def _problem_document(response: httpx.Response) -> dict[str, Any]:
+def _json_object(response: httpx.Response) -> dict[str, Any]:
+    """The object that an answer holds; empty if it holds anything else."""
     try:
         data = response.json()
     except ValueError:

@@ -1,10 +1,18 @@
-"""What a sweep asks for: its points, made from the values of its axes."""
+"""The design of a sweep: its points, made from the values of its axes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, SupportsFloat
+from typing import Any, Literal, SupportsFloat, TypedDict
+
+from drillsweep.values import inside, number, to_json
+
+Design = Literal["grid", "zip", "list", "latin_hypercube", "sobol"]
+"""Ways of making points from axes."""
+
+Scale = Literal["linear", "log"]
+"""Spacing of the values of a range."""
 
 
 @dataclass(frozen=True)
@@ -17,7 +25,7 @@ class Range:
     start: float
     stop: float
     count: int | None = None
-    scale: Literal["linear", "log"] = "linear"
+    scale: Scale = "linear"
 
     def to_json(self) -> dict[str, Any]:
         """The range as the service takes it."""
@@ -25,32 +33,67 @@ class Range:
         return {name: value for name, value in axis.items() if value is not None}
 
 
-Axis = Range | Mapping[str, Any] | Iterable[SupportsFloat]
+class AxisValues(TypedDict):
+    """Listed values, as the service takes them."""
+
+    values: Sequence[float]
+
+
+_Ends = TypedDict("_Ends", {"from": float, "to": float})
+
+
+class AxisRange(_Ends, total=False):
+    """A range, as the service takes it."""
+
+    count: int
+    scale: Scale
+
+
+Axis = Range | AxisValues | AxisRange | Iterable[SupportsFloat]
 """The values of one parameter: a range, any list or array of numbers, or the service's own JSON."""
 
 
-def axis_to_json(axis: Axis) -> dict[str, Any]:
-    """An axis as the service takes it."""
-    if isinstance(axis, Range):
-        return axis.to_json()
-    if isinstance(axis, Mapping):
-        return dict(axis)
-    return {"values": [float(value) for value in axis]}
-
-
 def axes_to_json(axes: Mapping[str, Axis] | None) -> dict[str, Any] | None:
-    """Axes by name as the service takes them."""
-    return None if axes is None else {name: axis_to_json(axis) for name, axis in axes.items()}
+    """Axes by name as the service takes them.
+
+    Raises:
+        ValueError: A value is NaN or infinite.
+        TypeError: An axis is no range and no list of numbers.
+    """
+    return None if axes is None else {name: _axis_to_json(axis, inside("/axes", name)) for name, axis in axes.items()}
 
 
 def design_to_json(
-    design: str | None,
+    design: Design | None,
     samples: int | None,
     seed: int | None,
+    skip: int | None,
     points: Iterable[Mapping[str, SupportsFloat]] | None,
 ) -> dict[str, Any]:
-    """How points are made, as the service takes it; what is None says nothing."""
-    listed = None if points is None else [{name: float(value) for name, value in point.items()} for point in points]
+    """A design as the service takes it; None stands for the service's default.
+
+    Raises:
+        ValueError: A value of a point is NaN or infinite.
+        TypeError: A value of a point is no number.
+    """
+    listed = None if points is None else [_point_to_json(point, index) for index, point in enumerate(points)]
     if listed is not None and design is None:
         design = "list"
-    return {"design": design, "samples": samples, "seed": seed, "points": listed}
+    return {"design": design, "samples": samples, "seed": seed, "skip": skip, "points": listed}
+
+
+def _axis_to_json(axis: Axis, pointer: str) -> dict[str, Any]:
+    if isinstance(axis, Range):
+        ends = {"from": number(axis.start, inside(pointer, "from")), "to": number(axis.stop, inside(pointer, "to"))}
+        return axis.to_json() | ends
+    if isinstance(axis, Mapping):
+        return dict(to_json(axis, pointer))
+    if isinstance(axis, str | bytes) or not isinstance(axis, Iterable):
+        raise TypeError(f"{pointer}: must be a Range, or a list or an array of numbers (got {axis!r})")
+    listed = inside(pointer, "values")
+    return {"values": [number(value, inside(listed, index)) for index, value in enumerate(axis)]}
+
+
+def _point_to_json(point: Mapping[str, SupportsFloat], index: int) -> dict[str, float]:
+    pointer = inside("/points", index)
+    return {name: number(value, inside(pointer, name)) for name, value in point.items()}

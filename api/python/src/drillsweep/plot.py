@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from drillsweep.optional import require
-from drillsweep.point import Point, TimeWindow
+from drillsweep.point import Point, SpectrumWindow, TimeWindow
 from drillsweep.quantity import Unit, quantity
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def spectrum(
     depth: float | None = None,
     nearest: bool = False,
     time: TimeWindow = (None, None),
-    window: str | None = None,
+    window: SpectrumWindow | None = None,
     range_hz: float | None = None,
     peaks: int = 5,
     axes: Axes | None = None,

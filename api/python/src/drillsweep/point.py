@@ -5,12 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from drillsweep.table import Table
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
+
+PointState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+"""States of a point."""
+
+FailureClass = Literal["physical", "infrastructure", "crash", "timeout", "cancelled", "outdated"]
+"""Kinds of failure that end a point."""
+
+Decimation = Literal["stride", "minmax"]
+"""Choices of the rows that stay of a longer history."""
+
+SpectrumWindow = Literal["rectangular", "hann"]
+"""Weights of the samples before a Fourier transform."""
 
 TimeWindow = tuple[float | None, float | None]
 """Start (included) and end (not included) of a window [s]; None is open."""
@@ -21,7 +33,7 @@ class PointError:
     """Why a point has no result."""
 
     kind: str
-    """The class of failure: physical, infrastructure, crash, timeout or cancelled."""
+    """The class of failure: physical, infrastructure, crash, timeout, cancelled or outdated."""
     reason: str
     """What happened, in words."""
     time: float | None = None
@@ -129,7 +141,7 @@ class Point:
         nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
-        decimation: str | None = None,
+        decimation: Decimation | None = None,
     ) -> Table:
         """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `torque_N` for node N.
 
@@ -187,7 +199,7 @@ class Point:
         depth: float | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
-        window: str | None = None,
+        window: SpectrumWindow | None = None,
         range_hz: float | None = None,
         peaks: int | None = None,
     ) -> Table:
@@ -201,7 +213,7 @@ class Point:
             depth: Measured depth [m] of a recorded node, to within half an element.
             nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
-            window: Weighting of the samples, such as `hann`.
+            window: Weighting of the samples, `hann` or `rectangular`.
             range_hz: Frequencies from minus to plus this [Hz].
             peaks: At most so many of the highest peaks are listed.
         """
@@ -217,7 +229,7 @@ class Point:
         time: TimeWindow = (None, None),
         window_s: float | None = None,
         step_s: float | None = None,
-        window: str | None = None,
+        window: SpectrumWindow | None = None,
         range_hz: float | None = None,
     ) -> Table:
         """The full spectrum of a node's orbit over time: `time`, `frequency` (positive is forward whirl), `amplitude`.

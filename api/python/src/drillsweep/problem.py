@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,14 @@ class DrillsweepError(Exception):
 
 class NoAnswer(DrillsweepError):
     """The server cannot be reached."""
+
+
+class UnsupportedServer(DrillsweepError):
+    """The server is no drillsweep server, or serves a version of the API that this client does not know."""
+
+
+class DrillsweepWarning(UserWarning):
+    """A request that can be simulated but is probably not meant, or an archive that is not complete."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +53,12 @@ class FieldProblem:
         """The place and what is wrong there."""
         place = self.pointer or self.parameter
         return f"{place}: {self.detail}" if place else self.detail
+
+
+def warn(found: Iterable[FieldProblem], stacklevel: int) -> None:
+    """Issues a Python warning for each warning of an answer; `stacklevel` is counted from the caller."""
+    for warning in found:
+        warnings.warn(str(warning), DrillsweepWarning, stacklevel=stacklevel + 1)
 
 
 class Problem(DrillsweepError):

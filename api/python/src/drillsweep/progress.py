@@ -55,6 +55,7 @@ class ProgressBar:
         if self._width:
             self._stream.write("\n")
             self._stream.flush()
+            self._width = 0
 
 
 def _clock(seconds: float) -> str:

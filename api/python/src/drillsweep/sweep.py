@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 import time
 import warnings
@@ -14,14 +15,17 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
-from drillsweep.design import Axis, axes_to_json, design_to_json
-from drillsweep.point import Point
-from drillsweep.problem import FieldProblem
+from drillsweep.design import Axis, Design, axes_to_json, design_to_json
+from drillsweep.point import Point, PointState
+from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
 from drillsweep.progress import ProgressBar, is_watched
 from drillsweep.table import Table
+from drillsweep.values import texts, to_json
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
+
+_LOG = logging.getLogger("drillsweep")
 
 _LONG_POLL = 30.0
 """Seconds for which the service holds an answer back until something changes."""
@@ -198,7 +202,8 @@ class Sweep:
         """Waits until every point is final, and every reference run that verifies one, and returns the sweep.
 
         A server that is away for a while, as when it is started anew, is waited for (`Client.patience`). Failed points
-        do not raise: `counts.failed` and `failures` tell.
+        do not raise: `counts.failed` and `failures` tell. An interrupt (Ctrl-C) ends the wait alone: the sweep goes on
+        at the server, and a warning in the log `drillsweep` says how to return to it.
 
         Args:
             timeout: Longest wait [s]; None is without end.
@@ -212,6 +217,7 @@ class Sweep:
         bar = ProgressBar() if progress is True or (progress is None and is_watched(sys.stderr)) else None
         show = bar.show if bar else progress if callable(progress) else _nothing
         try:
+            _LOG.info("waiting for sweep %s", self.id)
             self.refresh()
             show(self)
             while not self.is_finished:
@@ -220,7 +226,15 @@ class Sweep:
                     reason = f": {self.waiting_for}" if self.waiting_for else ""
                     raise TimeoutError(f"sweep {self.id} is not complete after {timeout:g} s{reason}")
                 self._data = self._client.get_json(self.path, {"wait": f"{wait:.3f}s"}, read_timeout=wait + 30.0)
+                _LOG.debug("%r", self)
                 show(self)
+        except KeyboardInterrupt:
+            if bar:
+                bar.close()
+            if not self.is_finished:
+                text = "sweep %s goes on at %s: client.sweep(%r) returns to it, its cancel() ends it"
+                _LOG.warning(text, self.id, self._client.server, self.id)
+            raise
         finally:
             if bar:
                 bar.close()
@@ -238,7 +252,7 @@ class Sweep:
         """One point, in full; the first is 1."""
         return Point(self._client, self._client.get_json(f"{self.path}/points/{ordinal}"))
 
-    def points(self, state: str | None = None) -> Iterator[Point]:
+    def points(self, state: PointState | None = None) -> Iterator[Point]:
         """Its points in order, those in one state or all."""
         for data in self._client.pages(f"{self.path}/points", "points", {"state": state}):
             yield Point(self._client, data)
@@ -283,7 +297,7 @@ class Sweep:
             first = missing[0]
             place = f"{first['table']} of point {first['point']}"
             text = f"{len(missing)} tables are not in {archive}; the first is {place}: {first['reason']}"
-            warnings.warn(text, stacklevel=2)
+            warnings.warn(text, DrillsweepWarning, stacklevel=2)
         return archive
 
     def cancel(self) -> Sweep:
@@ -332,7 +346,7 @@ class Sweep:
             moment = expires
         changes = {
             "name": name,
-            "tags": tags if isinstance(tags, Unchanged) else list(tags),
+            "tags": tags if isinstance(tags, Unchanged) else texts(tags, "/tags"),
             "priority": priority,
             "pinned": is_pinned,
             "expires": moment,
@@ -354,19 +368,20 @@ class Sweep:
         self,
         axes: Mapping[str, Axis] | None = None,
         *,
-        design: str | None = None,
+        design: Design | None = None,
         samples: int | None = None,
         seed: int | None = None,
+        skip: int | None = None,
         points: Iterable[Mapping[str, SupportsFloat]] | None = None,
-        **fields: Any,
     ) -> Sweep:
         """Adds points over its own parameters, by any design; those that it has already are skipped.
 
-        Arguments are those of `Client.submit`. Numbers of points go on from the last.
+        Arguments and warnings are those of `Client.submit`. Numbers of points go on from the last.
         """
-        body = {"axes": axes_to_json(axes), **design_to_json(design, samples, seed, points), **fields}
-        body = {field: value for field, value in body.items() if value is not None}
+        fields = {"axes": axes_to_json(axes), **design_to_json(design, samples, seed, skip, points)}
+        body = to_json({field: value for field, value in fields.items() if value is not None})
         self._data = self._client.post_json(f"{self.path}/points", body)
+        warn(self.warnings, stacklevel=2)
         return self
 
     def _ask(self, verb: str) -> Sweep:

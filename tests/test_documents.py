@@ -4,14 +4,19 @@ A transcript is a block of the language `console`: lines that begin with `$ ` ar
 output. One that has the comment `<!-- checked -->` on the line before it is run and compared exactly, all commands in
 one shell; after `<!-- checked with a service -->` there is a server with workers at `DRILLSWEEP_SERVER`. Examples leave
 out by themselves what is not the same every time, such as times.
+
+Blocks of `sh` and `python` are run as well, those of one document in order, in one shell and one directory, with a
+service. One that cannot be has a comment on the line before it, `<!-- not run: REASON -->`, and must parse.
 """
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import runpy
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -122,8 +127,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 def test_transcripts_are_checked_with_and_without_a_service() -> None:
     assert {transcript.needs_service for transcript in TRANSCRIPTS} == {False, True}
-    marks = sum(document.read_text().count("<!-- checked") for document in DOCUMENTS)
-    assert marks == len(TRANSCRIPTS), "a mark is misspelt"
+    for what in ("<!-- checked", "```console"):
+        found = sum(document.read_text().count(what) for document in DOCUMENTS)
+        assert found == len(TRANSCRIPTS), "a mark is misspelt or missing"
 
 
 @pytest.mark.parametrize("transcript", TRANSCRIPTS, ids=lambda transcript: transcript.place)
@@ -146,3 +152,121 @@ def test_commands_print_what_is_shown(transcript: Transcript, request: pytest.Fi
     *printed, rest = done.stdout.split("\0")
     assert rest == "", done.stderr
     assert [*zip([command for command, _ in steps], printed, strict=True)] == steps, done.stderr
+
+
+class Block(NamedTuple):
+    """A block of code of a document."""
+
+    document: Path
+    line: int
+    language: str
+    reason: str | None
+    """Why it is not run."""
+    text: str
+
+    @property
+    def place(self) -> str:
+        return f"{self.document.relative_to(REPOSITORY)}:{self.line}"
+
+
+def blocks() -> Iterator[Block]:
+    fence = re.compile(r"^(?:<!-- not run: ([^\n]+) -->\n)?```(sh|python)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+    for document in DOCUMENTS:
+        text = document.read_text()
+        for found in fence.finditer(text):
+            line = text.count("\n", 0, found.start(2)) + 1
+            yield Block(document, line, found[2], found[1], found[3])
+
+
+BLOCKS = list(blocks())
+RUN = sorted({block.document for block in BLOCKS if block.reason is None})
+
+SHORTER = {
+    "paper-200m-damped --flow-rate 0.01,0.04,0.06 --mud-density 1200:2100:4": (
+        "paper-200m-damped --flow-rate 0.01,0.04 --mud-density 1200 --accuracy draft"
+    ),
+    '"paper-200m-damped", axes={"flow_rate": [0.01, 0.04, 0.06], "mud_density": Range(1200, 2100, 4)}': (
+        '"paper-200m-damped", accuracy="draft", axes={"flow_rate": [0.01, 0.04], "mud_density": [1200]}'
+    ),
+    '"paper-200m-damped",\n    axes={"flow_rate": [0.01, 0.04, 0.06], "mud_density": Range(1200, 2100, 4)}': (
+        '"paper-200m-damped",\n    accuracy="draft",\n    axes={"flow_rate": [0.01, 0.04], "mud_density": [1200]}'
+    ),
+    "paper-200m-damped --flow-rate 0.01,0.04 --set recording.snapshots=": (
+        "paper-200m-damped --flow-rate 0.01 --accuracy draft --set recording.snapshots="
+    ),
+    '"paper-200m-damped", set=recorded, axes={"flow_rate": [0.01, 0.04]}': (
+        '"paper-200m-damped", accuracy="draft", set=recorded, axes={"flow_rate": [0.01]}'
+    ),
+    '    set={"duration": 60},\n    axes={"flow_rate": [0.01, 0.04, 0.06], "mud_density": Range(1200, 2100, 4)}': (
+        '    set={"duration": 60},\n    accuracy="draft",\n    axes={"flow_rate": [0.01], "mud_density": [1200]}'
+    ),
+    "--flow-rate 0.01,0.06 --mud-density 1200:2100:4 --detach": (
+        "--flow-rate 0.01,0.06 --mud-density 1200 --accuracy draft --detach"
+    ),
+    "append $finer --flow-rate 0.01:0.06:11 --mud-density 1200:2100:4": (
+        "append $finer --flow-rate 0.01:0.06:2 --mud-density 1200:2100:2"
+    ),
+    "--samples 256": "--samples 2 --accuracy draft --set duration=1 --set recording.spectrum_windows=[] "
+    "--set recording.orbit_window=null",
+    "--flow-rate 0.01:0.06:20 --mud-density 1200:2100:20 --accuracy draft": (
+        "--flow-rate 0.01,0.06 --mud-density 1200 --accuracy draft --set duration=1 "
+        "--set recording.spectrum_windows=[] --set recording.orbit_window=null"
+    ),
+    '"members": 5, "presets": ["standard"]': '"duration": 0.1, "presets": ["draft"]',
+}
+"""Fewer and shorter runs of the same kind."""
+
+
+def test_blocks_are_run_or_say_why_not() -> None:
+    marks = sum(document.read_text().count("<!-- not run") for document in DOCUMENTS)
+    assert marks == sum(block.reason is not None for block in BLOCKS), "a mark is misspelt"
+    for document in DOCUMENTS:
+        languages = set(re.findall(r"^ *```(\S+)$", document.read_text(), re.MULTILINE))
+        assert languages <= {"sh", "python", "console", "text", "mermaid"}, f"{document.name}: a block that is not run"
+    for block in BLOCKS:
+        for named in re.findall(r"tests/\w+\.\w+", block.reason or ""):
+            assert (REPOSITORY / named).exists(), f"{block.place} names {named}"
+    text = "".join(block.text for block in BLOCKS if block.reason is None)
+    assert [long for long in SHORTER if long not in text] == []
+
+
+@pytest.mark.parametrize("block", [block for block in BLOCKS if block.reason], ids=lambda block: block.place)
+def test_blocks_that_are_not_run_parse(block: Block) -> None:
+    if block.language == "python":
+        ast.parse(block.text)
+    else:
+        subprocess.run(["bash", "-n", "-c", block.text], check=True)
+
+
+@pytest.mark.parametrize("document", RUN, ids=lambda path: str(path.relative_to(REPOSITORY)))
+def test_blocks_run(document: Path, server: str, tmp_path: Path) -> None:
+    script = "set -euo pipefail\n"
+    for number, block in enumerate(block for block in BLOCKS if block.document == document and block.reason is None):
+        text = block.text
+        for long, short in SHORTER.items():
+            text = text.replace(long, short)
+        for address in ("http://127.0.0.1:7340", "localhost:7340"):
+            text = text.replace(address, server)
+        if block.language == "python":
+            (tmp_path / f"{number}.py").write_text(text)
+            text = f"python ../{number}.py\n"
+        script += f"echo {block.place} >&2\n{text}"
+    directory = tmp_path / "work"
+    directory.mkdir()
+    environment = {
+        **os.environ,
+        "DRILLSWEEP_SERVER": server,
+        "MPLBACKEND": "Agg",
+        "NO_COLOR": "1",
+        "PATH": f"{Path(binary()).parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
+    }
+    done = subprocess.run(
+        ["bash", "-c", script],
+        cwd=directory,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        timeout=1800,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr.decode() + done.stdout.decode(errors="replace")[-2000:]

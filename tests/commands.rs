@@ -1,12 +1,12 @@
 //! The commands of the binary, run as people and scripts run them.
 
-use std::io::Write;
+use std::io::{BufRead as _, BufReader, Write};
 use std::process::{Command, Output, Stdio};
 
 use rustix::process::Signal;
 use serde_json::{Value, json};
 
-use crate::{BINARY, listen};
+use crate::{BINARY, Process, listen};
 
 fn run(server: &str, arguments: &[&str]) -> Output {
     Command::new(BINARY)
@@ -38,6 +38,31 @@ const SHORT: [&str; 8] = [
     "--set",
     "recording.orbit_window=null",
 ];
+
+#[test]
+fn log_has_lines_of_json_on_request_and_settings_that_mean_nothing_are_refused() {
+    let data = tempfile::tempdir().unwrap();
+    let mut server = Command::new(BINARY);
+    server.args(["serve", "--listen", "127.0.0.1:0", "--data"]).arg(data.path());
+    server.env("DRILLSWEEP_LOG_FORMAT", "json").stderr(Stdio::piped());
+    let mut child = server.spawn().unwrap();
+    let log = BufReader::new(child.stderr.take().unwrap());
+    let _server = Process(child);
+    let objects = log.lines().map(|line| serde_json::from_str::<Value>(&line.unwrap()).unwrap());
+    let listening =
+        objects.into_iter().find(|line| line["message"].as_str().unwrap().starts_with("listening"));
+    let listening = listening.expect("it listens");
+    assert_eq!(
+        (&listening["level"], &listening["target"]),
+        (&json!("INFO"), &json!("drillsweep_server::serve"))
+    );
+
+    for (name, value) in [("DRILLSWEEP_LOG", "bogus=["), ("DRILLSWEEP_LOG_FORMAT", "xml")] {
+        let refused = Command::new(BINARY).arg("scenario").env(name, value).output().unwrap();
+        let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!refused.status.success() && text.contains(name) && text.contains(value), "{text}");
+    }
+}
 
 #[test]
 fn sweep_is_submitted_watched_listed_shown_and_fetched() {

@@ -31,6 +31,7 @@ mod watch;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use text::{chain, visible};
@@ -146,13 +147,32 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// What `DRILLSWEEP_LOG` lets through: levels, of all targets or by target (`warn,drillsweep_server=debug`); `info` where it says
-/// nothing that can be read.
-fn log_filter() -> Targets {
+/// The filter of the log, by `DRILLSWEEP_LOG`: levels, of all targets or by target; `info` by default.
+///
+/// # Errors
+/// The variable holds something else.
+fn log_filter() -> anyhow::Result<Targets> {
     let text = std::env::var("DRILLSWEEP_LOG").unwrap_or_default();
     let directives: Vec<&str> = text.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
-    let parsed = if directives.is_empty() { None } else { directives.join(",").parse().ok() };
-    parsed.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
+    if directives.is_empty() {
+        return Ok(Targets::new().with_default(LevelFilter::INFO));
+    }
+    let parsed = directives.join(",").parse();
+    parsed.with_context(|| {
+        format!("DRILLSWEEP_LOG takes levels, such as warn or info,drillsweep_server=debug, got {text:?}")
+    })
+}
+
+/// True if the log is to have a JSON object a line, by `DRILLSWEEP_LOG_FORMAT`: `text` (default) or `json`.
+///
+/// # Errors
+/// The variable holds something else.
+fn logs_json() -> anyhow::Result<bool> {
+    match std::env::var("DRILLSWEEP_LOG_FORMAT").as_deref() {
+        Err(_) | Ok("" | "text") => Ok(false),
+        Ok("json") => Ok(true),
+        Ok(other) => anyhow::bail!("DRILLSWEEP_LOG_FORMAT is text or json, got {other:?}"),
+    }
 }
 
 fn run() -> anyhow::Result<()> {
@@ -161,10 +181,12 @@ fn run() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let has_colours =
         std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-    let log = tracing_subscriber::fmt::layer()
-        .with_writer(std::io::stderr)
-        .with_ansi(has_colours)
-        .with_filter(log_filter());
+    let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
+    let log = match logs_json()? {
+        true => log.json().flatten_event(true).boxed(),
+        false => log.with_ansi(has_colours).boxed(),
+    };
+    let log = log.with_filter(log_filter()?);
     let registry = tracing_subscriber::registry().with(log);
     #[cfg(feature = "opentelemetry")]
     let telemetry = telemetry::Telemetry::new(arguments.command.service())?;

@@ -160,11 +160,8 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
             return Ok(());
         };
         arguments.scratch.directory(&arguments.data)?;
-        let banner = Banner {
-            address: service.listeners.api.local_addr()?,
-            data: arguments.data.places(),
-            workers,
-        };
+        let banner =
+            Banner { address: service.listeners.api.local_addr()?, data: arguments.data.places(), workers };
         // A closed standard output is no reason to end.
         let _ = writeln!(std::io::stdout().lock(), "{banner}");
         let serving = stopping_others(service.run(stop.subscribe()), &stop);

@@ -544,7 +544,10 @@ fn leases_of_five_seconds_last_while_other_programs_take_all_cores() {
             computing += 1;
         }
         assert!(threads.contains_key("heartbeat"), "{threads:?}");
-        assert!(threads.values().all(|niceness| *niceness == usual), "computing alone gives way: {threads:?}");
+        assert!(
+            threads.values().all(|niceness| *niceness == usual),
+            "computing alone gives way: {threads:?}"
+        );
     }
     assert_eq!(computing, 2);
 }

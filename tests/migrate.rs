@@ -283,7 +283,9 @@ fn store_that_others_may_read_is_reported() {
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).unwrap();
         let warning = format!("other users have access to {} (mode {mode:04o})", path.display());
         let (mut server, _) = serve(data.path(), None);
-        server.wait_for(|log| log.lines().any(|line| line.contains("WARN") && line.contains(&warning)).then_some(()));
+        server.wait_for(|log| {
+            log.lines().any(|line| line.contains("WARN") && line.contains(&warning)).then_some(())
+        });
         server.kill();
         let warnings = report(&mut command(data.path(), &["check", "--json"]))["warnings"].clone();
         let is_there = |text: &Value| text.as_str().unwrap().starts_with(&warning);

@@ -331,7 +331,8 @@ fn killed_workers_points_are_taken_over_when_their_leases_end() {
     wait(&server, &id, |sweep| sweep["counts"]["running"] == 1 && sweep["progress"].as_f64().unwrap() > 0.0);
     doomed.kill();
     let attempts = || {
-        let attempts_of = |n| get(&format!("{server}/v1/sweeps/{id}/points/{n}"))["attempts"].as_u64().unwrap();
+        let attempts_of =
+            |n| get(&format!("{server}/v1/sweeps/{id}/points/{n}"))["attempts"].as_u64().unwrap();
         attempts_of(1) + attempts_of(2)
     };
     let of_doomed = attempts();

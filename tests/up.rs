@@ -116,7 +116,10 @@ fn up_prints_where_its_page_and_its_data_are_once_it_listens() {
         let line = lines.iter().find_map(|line| line.trim_start().strip_prefix(name)).unwrap();
         line.trim().to_owned()
     };
-    assert!(lines[0].contains(env!("CARGO_PKG_VERSION")) && lines[0].contains("physics version"), "{lines:?}");
+    assert!(
+        lines[0].contains(env!("CARGO_PKG_VERSION")) && lines[0].contains("physics version"),
+        "{lines:?}"
+    );
     assert_eq!((shown("data"), shown("workers")), (directory, "1".to_owned()));
     let page = ureq::get(shown("page")).call().unwrap().body_mut().read_to_string().unwrap();
     assert!(page.contains("<html") && page.contains("drillsweep"), "{page}");

@@ -76,9 +76,7 @@ mod tests {
     fn panic_of_a_computation_is_returned() {
         let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
         let panicking = compute_at_low_priority(|| assert!(std::hint::black_box(false), "as it must"));
-        let Err(NotComputed::Panicked(panic)) = runtime.block_on(panicking) else {
-            panic!("it returned")
-        };
+        let Err(NotComputed::Panicked(panic)) = runtime.block_on(panicking) else { panic!("it returned") };
         assert_eq!(panic.downcast_ref::<&str>(), Some(&"as it must"));
     }
 }

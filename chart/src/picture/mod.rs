@@ -17,6 +17,7 @@ mod marker;
 mod orbit;
 mod plot_area;
 mod png;
+mod simplify;
 mod svg;
 mod sweep_map;
 mod text;

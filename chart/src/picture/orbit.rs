@@ -8,6 +8,7 @@ use super::{
     heading,
     marker::{Marker, series_style},
     plot_area,
+    simplify::simplified,
     text::{Anchor, Text},
 };
 
@@ -16,8 +17,6 @@ const PLOT_SIDE: f64 = 540.0;
 const LEFT_MARGIN: f64 = 88.0;
 /// Straight lines that make up the circle of the wall.
 const CIRCLE_SIDES: usize = 180;
-/// Points nearer than this to the one before, in page units, do not show.
-const NEAR: f64 = 0.3;
 /// How much wider than what it shows the view is.
 const MARGIN: f64 = 1.08;
 /// Side of the inset that shows the whole hole beside a view of the motion alone.
@@ -185,7 +184,7 @@ impl OrbitPlot {
         }
         let (colour, _) = series_style(0);
         let (end_colour, end_marker) = series_style(1);
-        let places = without_near(path.iter().map(|place| position(*place)));
+        let places = simplified(path.iter().map(|place| position(*place)));
         let end = position(path[path.len() - 1]);
         let line = Shape::Polyline(places, Stroke::solid(colour, 1.0));
         shapes.push(Shape::Group("series", vec![line, Shape::Marker(end, end_marker, end_colour)]));
@@ -230,7 +229,7 @@ fn inset(area: &Rectangle, whole: View, view: View, wall: Option<f64>, path: &[P
     }
     let (colour, _) = series_style(0);
     shapes.push(Shape::Polyline(
-        without_near(path.iter().map(|place| position(*place))),
+        simplified(path.iter().map(|place| position(*place))),
         Stroke::solid(colour, 1.0),
     ));
     // A view too small to see is marked all the same.
@@ -242,17 +241,6 @@ fn inset(area: &Rectangle, whole: View, view: View, wall: Option<f64>, path: &[P
         Text::new("whole hole", [frame.left, frame.bottom + 13.0], Anchor::Start, 10.5, Colour::QUIET_TEXT);
     shapes.push(Shape::Text(text));
     Shape::Group("inset", shapes)
-}
-
-/// The positions that are distinguishable from the one before.
-fn without_near(places: impl Iterator<Item = Position>) -> Vec<Position> {
-    let mut kept: Vec<Position> = Vec::new();
-    for [x, y] in places {
-        if kept.last().is_none_or(|last| (x - last[0]).hypot(y - last[1]) >= NEAR) {
-            kept.push([x, y]);
-        }
-    }
-    kept
 }
 
 #[cfg(test)]

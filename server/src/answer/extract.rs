@@ -152,7 +152,10 @@ impl Count<'_> {
     fn take<E: DeserializeError>(self) -> Result<(), E> {
         let Some(left) = self.left else { return Ok(()) };
         match left.get().checked_sub(1) {
-            Some(rest) => Ok(left.set(rest)),
+            Some(rest) => {
+                left.set(rest);
+                Ok(())
+            }
             None => {
                 let most = LIMITS.values_per_request;
                 Err(E::custom(format_args!(

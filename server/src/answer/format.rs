@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io;
 use std::sync::LazyLock;
 
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
@@ -252,6 +252,24 @@ impl Answer {
         Self { head: Head::new(format, name, tag), content: Content::Part(Box::new((stored, part))) }
     }
 
+    /// Head and body of a picture.
+    ///
+    /// # Errors
+    /// The answer is a table.
+    pub(crate) fn into_picture(self) -> Result<(Head, Bytes)> {
+        match self.content {
+            Content::Picture(bytes) => Ok((self.head, bytes.into())),
+            Content::Table(_) | Content::Part(_) => Err(Error::internal("a table was drawn as no picture")),
+        }
+    }
+
+    /// A picture of these bytes, for tests of what keeps pictures.
+    #[cfg(test)]
+    pub(crate) fn of_bytes(bytes: &str) -> Self {
+        let head = Head::new(Format::Svg, "test", Tag::of(Format::Svg, &bytes));
+        Self { head, content: Content::Picture(bytes.as_bytes().to_vec()) }
+    }
+
     /// What goes before the body.
     pub(crate) fn head(&self) -> Head {
         self.head.clone()
@@ -326,6 +344,11 @@ impl Tag {
 
     fn of_hash(hash: &blake3::Hash) -> Self {
         Self(format!("W/\"{}\"", hash.to_hex()))
+    }
+
+    /// Its text.
+    pub(crate) fn as_str(&self) -> &str {
+        &self.0
     }
 
     /// The answer to a client that says that it has a copy with this tag; none to one that does not. Who has any copy at all (`*`) does

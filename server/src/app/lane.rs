@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use axum::response::Response;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
 use tokio::time::timeout;
 
-use crate::answer::blocking::blocking;
+use crate::answer::blocking::{beside, blocking};
 use crate::answer::body;
 use crate::answer::error::{Error, Result};
 use crate::answer::eviction::{Eviction, Queue};
@@ -147,6 +147,22 @@ impl Place {
             work()
         })
         .await
+    }
+
+    /// Makes an answer on a thread of its own when it is its turn, and gives the place back.
+    pub(crate) async fn make(
+        self,
+        prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
+    ) -> Result<Answer> {
+        // The semaphore is never closed.
+        let turn = self.turns.clone().acquire_owned().await.map_err(|error| Error::internal(&error))?;
+        let (sender, receiver) = oneshot::channel();
+        beside(move || {
+            let _held = (self, turn);
+            // A client that has left needs no answer.
+            let _ = sender.send(prepare());
+        })?;
+        receiver.await.map_err(|_| Error::internal("the thread that makes an answer has ended"))?
     }
 
     /// Writes an answer on a thread of its own while it is sent, and gives the place back at its end.

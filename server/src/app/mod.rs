@@ -7,6 +7,7 @@ pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
+pub(crate) mod pictures;
 pub(crate) mod readiness;
 pub(crate) mod retain;
 pub(crate) mod shares;
@@ -14,6 +15,7 @@ pub(crate) mod shares;
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::response::Response;
 use drillsweep_api::LIMITS;
 use drillsweep_store::Store;
 use tokio::sync::watch;
@@ -21,6 +23,7 @@ use tokio::sync::watch;
 use crate::answer::body::MEMORY_OF_BODY;
 use crate::answer::error::Result;
 use crate::answer::eviction::Eviction;
+use crate::answer::format::{Answer, Format};
 use crate::answer::stored::MEMORY_OF_FILE;
 use crate::app::bodies::Bodies;
 use crate::app::columns::KnownColumns;
@@ -29,6 +32,7 @@ use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::{Metrics, Occupancy};
+use crate::app::pictures::Pictures;
 use crate::app::readiness::Readiness;
 use crate::app::retain::Retaining;
 use crate::app::shares::Shares;
@@ -112,6 +116,7 @@ pub(crate) struct App {
     /// What has changed among all sweeps, for those event streams that tell of all.
     pub(crate) feed: Arc<Feed>,
     pub(crate) columns: Arc<KnownColumns>,
+    pictures: Arc<Pictures>,
     /// Memory for views of results, which read and write out tables \[KiB\].
     views: Arc<Lane>,
     /// The same for views that take little: they do not wait for those that take much.
@@ -142,6 +147,7 @@ impl App {
             strangers: Arc::new(strangers),
             feed: Arc::default(),
             columns: Arc::default(),
+            pictures: Arc::new(Pictures::new()),
             views: lane(config.large_answer_bytes / KIB),
             small_views: lane(config.large_answer_bytes / 2 / KIB),
             files: lane(config.large_answer_bytes / 2 / KIB),
@@ -174,6 +180,21 @@ impl App {
             ("expansions", self.expansions.measure()),
             ("bodies", self.bodies.measure()),
         ]
+    }
+
+    /// Answers with what `prepare` makes in a place of so much memory \[bytes\]; a picture is kept under `key`, by which it is the same.
+    pub(crate) async fn answer(
+        &self,
+        format: Format,
+        key: &str,
+        bytes: u64,
+        prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
+    ) -> Result<Response> {
+        if !format.is_picture() {
+            return self.view(bytes).await?.answer(prepare).await;
+        }
+        let draw = async { self.view(bytes).await?.make(prepare).await };
+        self.pictures.get_or_draw(key, draw).await
     }
 
     /// Takes the memory for a file that is sent as it is stored, with when it is evicted.

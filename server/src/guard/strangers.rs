@@ -181,7 +181,7 @@ mod tests {
         assert!(strangers.admit(there, Some(&secret(2))).is_ok());
         // Once revoked it is one of many.
         strangers.refuse(here, Some(&secret(1)));
-        let problem = strangers.admit(here, Some(&secret(1))).err().expect("refused").into_problem();
+        let problem = strangers.admit(here, Some(&secret(1))).expect_err("refused").into_problem();
         assert_eq!(problem.status, 429);
     }
 

@@ -65,7 +65,7 @@ pub(crate) async fn export(
 ) -> Result<Response> {
     let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
     // Before there is an answer, which could only break off where there is no memory for the table.
-    let memory = memory_of_points(&app, &id, sweep.counts.total).await?;
+    let memory = app.view(memory_of_points(&app, &id, sweep.counts.total).await?).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let (held, eviction) = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);

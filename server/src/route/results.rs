@@ -96,14 +96,14 @@ pub(crate) async fn profile(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(profile.memory().await?)).await?;
-    place
-        .answer(move || {
-            let table = profile.read(None)?;
-            let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
-        })
-        .await
+    let memory = format.memory(profile.memory().await?);
+    let key = format!("{} {id}/{n}", tag.as_str());
+    app.answer(format, &key, memory, move || {
+        let table = profile.read(None)?;
+        let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title);
+        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+    })
+    .await
 }
 
 /// The static equilibrium, node by node
@@ -359,54 +359,53 @@ pub(crate) async fn history(
         Decimation::Minmax => memory_of_rows(&recording.history, query.max_points),
     };
     let reading = recording.history.memory().await? + reading_snapshots;
-    let place = app.view(format.memory(reading + drawing + kept)).await?;
-    place
-        .answer(move || {
-            let history = recording.history.open()?;
-            let layout = match choice {
-                None => history.layout().clone(),
-                Some(choice) => recording.layout_of(choice, history.layout().clone())?,
-            };
-            let Samples { rows: samples, cut_at } = recording.samples(&history, query.from, query.to)?;
-            let most = query.max_points.map(|points| points as usize);
-            let extremes =
-                most.filter(|most| query.decimation == Decimation::Minmax && *most < samples.len());
-            let stride = if extremes.is_some() { 1 } else { history::stride(samples.len(), most) };
-            let layout = mark_cut(layout.attribute("samples", samples.len()), cut_at);
-            if !format.is_picture() {
-                let layout = format::select(layout, query.fields.as_deref())?;
-                let part = history.cut(layout, samples, stride)?;
-                if let Some(most) = extremes {
-                    let table = rows_of_extremes(&recording.history, &part, most)?;
-                    return Answer::of_table(table, None, format, &file_name, Some(tag));
-                }
-                return Ok(Answer::of_part(recording.history, part, format, &file_name, tag));
-            }
-            let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
-            let columns = layout.columns.len();
+    let memory = format.memory(reading + drawing + kept);
+    let key = format!("{} {id}/{n}", tag.as_str());
+    app.answer(format, &key, memory, move || {
+        let history = recording.history.open()?;
+        let layout = match choice {
+            None => history.layout().clone(),
+            Some(choice) => recording.layout_of(choice, history.layout().clone())?,
+        };
+        let Samples { rows: samples, cut_at } = recording.samples(&history, query.from, query.to)?;
+        let most = query.max_points.map(|points| points as usize);
+        let extremes = most.filter(|most| query.decimation == Decimation::Minmax && *most < samples.len());
+        let stride = if extremes.is_some() { 1 } else { history::stride(samples.len(), most) };
+        let layout = mark_cut(layout.attribute("samples", samples.len()), cut_at);
+        if !format.is_picture() {
+            let layout = format::select(layout, query.fields.as_deref())?;
             let part = history.cut(layout, samples, stride)?;
-            let table = match extremes {
-                Some(most) => {
-                    check_shown(most, columns)?;
-                    rows_of_extremes(&recording.history, &part, most)?
-                }
-                None => {
-                    check_shown(part.rows(), columns)?;
-                    part.read().map_err(|error| recording.history.problem(error))?
-                }
-            };
-            let table = table.widened();
-            let places = recording.places(&table)?;
-            let bit = match shows_bit {
-                true => bit(&recording, snapshots.as_ref(), [query.from, query.to], most)?,
-                false => None,
-            };
-            let title = title_of_cut(&title, cut_at);
-            let draw =
-                |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
-        })
-        .await
+            if let Some(most) = extremes {
+                let table = rows_of_extremes(&recording.history, &part, most)?;
+                return Answer::of_table(table, None, format, &file_name, Some(tag));
+            }
+            return Ok(Answer::of_part(recording.history, part, format, &file_name, tag));
+        }
+        let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
+        let columns = layout.columns.len();
+        let part = history.cut(layout, samples, stride)?;
+        let table = match extremes {
+            Some(most) => {
+                check_shown(most, columns)?;
+                rows_of_extremes(&recording.history, &part, most)?
+            }
+            None => {
+                check_shown(part.rows(), columns)?;
+                part.read().map_err(|error| recording.history.problem(error))?
+            }
+        };
+        let table = table.widened();
+        let places = recording.places(&table)?;
+        let bit = match shows_bit {
+            true => bit(&recording, snapshots.as_ref(), [query.from, query.to], most)?,
+            false => None,
+        };
+        let title = title_of_cut(&title, cut_at);
+        let draw =
+            |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
+        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+    })
+    .await
 }
 
 /// The lowest node of a recorded string, with what `snapshots` tell of its rotation in a window, of at most so many of them.
@@ -538,19 +537,19 @@ pub(crate) async fn orbit(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
-    place
-        .answer(move || {
-            let motion = recording.motion_of(choice, query.from, query.to)?;
-            let table = motion.label(orbit::orbit(&motion.columns(), None, None, max_points));
-            let hole = recording.hole_at(motion.node)?;
-            let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
-            let title = title_of_cut(&title, motion.cut_at);
-            drop(motion);
-            let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
-            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
-        })
-        .await
+    let memory = format.memory(recording.memory_of_orbit().await?);
+    let key = format!("{} {id}/{n}", tag.as_str());
+    app.answer(format, &key, memory, move || {
+        let motion = recording.motion_of(choice, query.from, query.to)?;
+        let table = motion.label(orbit::orbit(&motion.columns(), None, None, max_points));
+        let hole = recording.hole_at(motion.node)?;
+        let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
+        let title = title_of_cut(&title, motion.cut_at);
+        drop(motion);
+        let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
+        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+    })
+    .await
 }
 
 /// Which full spectrum is wanted.
@@ -644,28 +643,28 @@ pub(crate) async fn spectrum(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(source.memory().await?)).await?;
-    place
-        .answer(move || {
-            let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
-            let (node, table, cut_at) = match source {
-                SpectrumSource::Recording(recording) => {
-                    let motion = recording.motion_of(choice, from, to)?;
-                    let table = spectrum::spectrum(&motion.columns(), window, range_hz, peaks)?;
-                    (motion.node, motion.label(table), motion.cut_at)
-                }
-                SpectrumSource::Kept(kept) => {
-                    let kept = kept.spectrum_of(choice, from, to, window)?;
-                    (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)), None)
-                }
-            };
-            let table = spectrum::mark_resolved(table, resolved_hz);
-            let file_name = file_name(&id, n, &format!("spectrum-{node}"));
-            let title = title_of_cut(&title, cut_at);
-            let draw = |table: &Table| chart::spectrum(table, &title);
-            Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
-        })
-        .await
+    let memory = format.memory(source.memory().await?);
+    let key = format!("{} {id}/{n}", tag.as_str());
+    app.answer(format, &key, memory, move || {
+        let SpectrumQuery { from, to, window, range_hz, peaks, .. } = query;
+        let (node, table, cut_at) = match source {
+            SpectrumSource::Recording(recording) => {
+                let motion = recording.motion_of(choice, from, to)?;
+                let table = spectrum::spectrum(&motion.columns(), window, range_hz, peaks)?;
+                (motion.node, motion.label(table), motion.cut_at)
+            }
+            SpectrumSource::Kept(kept) => {
+                let kept = kept.spectrum_of(choice, from, to, window)?;
+                (kept.node, kept.label(spectrum::part(&kept.spectrum, range_hz, peaks)), None)
+            }
+        };
+        let table = spectrum::mark_resolved(table, resolved_hz);
+        let file_name = file_name(&id, n, &format!("spectrum-{node}"));
+        let title = title_of_cut(&title, cut_at);
+        let draw = |table: &Table| chart::spectrum(table, &title);
+        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+    })
+    .await
 }
 
 pub(crate) fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {

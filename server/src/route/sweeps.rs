@@ -29,7 +29,7 @@ use crate::answer::artifact;
 use crate::answer::blocking::to_the_end;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path, Query, value};
-use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::format::{Answer, Format, PictureFormat, Tag};
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::answer::stored::Stored;
@@ -858,10 +858,13 @@ pub(crate) async fn table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let spacing = spacing.unwrap_or_default().into();
-    let mut view = chart::SweepView { spacing, slice: slice.unwrap_or_default(), ..Default::default() };
+    let spacing = spacing.unwrap_or_default();
+    let slice = slice.unwrap_or_default();
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
-    let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    // The version is raised with every change of a point, and of a run that verifies one.
+    let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, spacing, &slice));
+    let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
+    let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let nodes = match format.is_picture() {
         true => nodes_of(fields.as_deref().unwrap_or_default()),
@@ -871,35 +874,32 @@ pub(crate) async fn table(
         true => None,
         false => statics_of_first(&app, &id).await?,
     };
-    let runtime = Handle::current();
-    place
-        .answer(move || {
-            // A picture shows more than the columns that are asked for.
-            let table = match &fields {
-                Some(fields) if !format.is_picture() => {
-                    PointsTable::keeping(fields.iter().map(String::as_str))
-                }
-                _ => PointsTable::default(),
-            };
-            let points = verified.points(table, &app.store, &id, &runtime)?;
-            let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
-            if let Some(statics) = statics
-                && !parameters.iter().any(|name| moves_nodes(name))
-            {
-                // A picture without depths is better than none.
-                view.places = artifact::depths(&statics, &nodes).unwrap_or_default();
-            }
-            let mut table = points.finish();
-            let findings = &verified.findings;
-            if !findings.warnings.is_empty() {
-                table = table.attribute("warnings", findings.warnings.clone());
-            }
-            let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-            Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), None, |table| {
-                chart::sweep(table, &parameters, fields, findings, title, &view)
-            })
+    let (runtime, store) = (Handle::current(), app.store.clone());
+    app.answer(format, key.as_str(), memory, move || {
+        // A picture shows more than the columns that are asked for.
+        let table = match &fields {
+            Some(fields) if !format.is_picture() => PointsTable::keeping(fields.iter().map(String::as_str)),
+            _ => PointsTable::default(),
+        };
+        let points = verified.points(table, &store, &id, &runtime)?;
+        let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
+        if let Some(statics) = statics
+            && !parameters.iter().any(|name| moves_nodes(name))
+        {
+            // A picture without depths is better than none.
+            view.places = artifact::depths(&statics, &nodes).unwrap_or_default();
+        }
+        let mut table = points.finish();
+        let findings = &verified.findings;
+        if !findings.warnings.is_empty() {
+            table = table.attribute("warnings", findings.warnings.clone());
+        }
+        let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
+        Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), None, |table| {
+            chart::sweep(table, &parameters, fields, findings, title, &view)
         })
-        .await
+    })
+    .await
 }
 
 /// The nodes that columns are of by number.
@@ -943,7 +943,7 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     if let Some(columns) = app.columns.get(&id, sweep.version) {
         return Ok(Json(columns));
     }
-    let place = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let place = app.view(memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let runtime = Handle::current();
     place

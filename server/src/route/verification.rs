@@ -17,7 +17,6 @@ use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Format};
 use crate::answer::records;
 use crate::app::App;
-use crate::app::lane::Place;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::TableQuery;
@@ -25,12 +24,12 @@ use crate::route::results::TableQuery;
 /// Bytes of memory that a point takes in a table of its sweep, besides its summary.
 const MEMORY_OF_POINT: u64 = 256;
 
-/// Takes the memory for a table of a sweep of so many points. A summary's field takes eight bytes in a column, twice that while the column
+/// Memory for a table of a sweep of so many points \[bytes\]. A summary's field takes eight bytes in a column, twice that while the column
 /// grows, where its name and value take at least forty in the summary's JSON; one point stands for all.
-pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result<Place> {
+pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result<u64> {
     let one = app.store.points(id, &[WorkState::Done], 0, 1).await?;
     let summary = one.first().and_then(|point| point.summary_json.as_deref()).map_or(0, str::len) as u64;
-    app.view(points.saturating_mul(MEMORY_OF_POINT + summary * 2 / 5)).await
+    Ok(points.saturating_mul(MEMORY_OF_POINT + summary * 2 / 5))
 }
 
 /// Points of a sweep's table that are read at once.
@@ -130,7 +129,7 @@ pub(crate) async fn show(
         return Err(records::no_such_sweep(&id));
     }
     let verified = Verified::load(&app.store, &id).await?;
-    let place = memory_of_points(&app, &id, verified.points.len() as u64).await?;
+    let place = app.view(memory_of_points(&app, &id, verified.points.len() as u64).await?).await?;
     place
         .answer(move || {
             let name = format!("sweep-{id}-verification");

@@ -380,6 +380,23 @@ fn bytes_that_are_not_http_do_no_harm() {
         Ok(())
     });
     outcome.unwrap();
+    // RFC 9112 section 3.2.
+    for (target, hosts, status) in [
+        ("/livez", "Host: localhost\r\n", "200"),
+        ("http://localhost/livez", "Host: localhost\r\n", "200"),
+        ("/livez", "", "400"),
+        ("/livez", "Host: localhost\r\nHost: localhost\r\n", "400"),
+        ("http://evil.example/livez", "Host: localhost\r\n", "400"),
+    ] {
+        let request = format!("GET {target} HTTP/1.1\r\n{hosts}Connection: close\r\n\r\n");
+        let answer = raw(&server, request.as_bytes(), PATIENCE);
+        assert!(answer.starts_with(&format!("HTTP/1.1 {status}")), "{request}{answer}");
+    }
+    // Nothing of a body that is too large is asked for.
+    let request = "POST /v1/sweeps HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\
+                   Content-Length: 99999999999\r\nExpect: 100-continue\r\nConnection: close\r\n\r\n";
+    let answer = raw(&server, request.as_bytes(), PATIENCE);
+    assert!(answer.starts_with("HTTP/1.1 413"), "{answer}");
     assert_eq!(get(&format!("{server}/livez"))["status"], "ok");
 }
 

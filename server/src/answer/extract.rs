@@ -22,7 +22,7 @@ use tokio::time::timeout;
 use crate::answer::error::Error;
 use crate::app::App;
 use crate::app::bodies::BodyMemory;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 
 /// Bytes of a body that is read where the request is handled; larger ones are read in a place of their own.
 const SMALL_BODY: usize = 64 << 10;

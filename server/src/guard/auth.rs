@@ -15,12 +15,13 @@ use axum::response::{IntoResponse, Response};
 use drillsweep_api::ProblemKind;
 use drillsweep_store::{TokenRecord, TokenScope, TokenSecret, TokensPresent};
 use futures::StreamExt as _;
+use headers::{Cookie, HeaderMapExt as _};
 
 use crate::answer::error::{Error, Result};
 use crate::app::App;
 use crate::guard::audit;
+use crate::guard::caller::Caller;
 use crate::listen::Peer;
-use crate::route::session::session_cookie;
 
 /// What everybody may ask for: health checks have no tokens, document and vocabulary are what a client begins with, and the page what people do.
 const OPEN: [&str; 8] = [
@@ -35,56 +36,11 @@ const OPEN: [&str; 8] = [
     "/v1/session",
 ];
 
+/// Name of the cookie that holds a session.
+pub(crate) const COOKIE: &str = "drillsweep_session";
+
 /// How long a stream of events goes on after its token has ended, at most.
 const LOOK_AGAIN: Duration = Duration::from_secs(5);
-
-/// Who asks.
-#[derive(Debug, Clone)]
-pub(crate) enum Caller {
-    /// Somebody on this machine, while there are no tokens.
-    Local,
-    /// The bearer of a token.
-    Bearer(TokenRecord),
-}
-
-impl Caller {
-    /// In whose name a sweep is submitted: the token's owner, or for those who may choose, the one they name. None
-    /// means that the request does not say.
-    pub(crate) fn submits_as(&self, asked: Option<String>) -> Result<Option<String>> {
-        match (self, asked) {
-            (Caller::Local, asked) => Ok(asked),
-            (Caller::Bearer(token), None) => Ok(Some(token.owner.clone())),
-            (Caller::Bearer(token), Some(asked))
-                if token.scope == TokenScope::Admin || token.owner == asked =>
-            {
-                Ok(Some(asked))
-            }
-            (Caller::Bearer(token), Some(asked)) => {
-                let detail = format!(
-                    "owner: this token submits for {}, not for {asked}; leave the owner out, or use an admin token",
-                    token.owner
-                );
-                Err(Error::new(ProblemKind::Forbidden, detail))
-            }
-        }
-    }
-
-    /// The token that the request came with.
-    fn token(&self) -> Option<&TokenRecord> {
-        match self {
-            Caller::Local => None,
-            Caller::Bearer(token) => Some(token),
-        }
-    }
-
-    /// Whose budget of requests a request is taken from.
-    pub(crate) fn budget(&self) -> &str {
-        match self {
-            Caller::Local => "",
-            Caller::Bearer(token) => &token.owner,
-        }
-    }
-}
 
 /// Lets a request through if its caller may make it and has not made too many.
 pub(crate) async fn guard(
@@ -194,6 +150,11 @@ pub(crate) async fn valid_token(app: &App, peer: Option<Peer>, text: &str) -> Re
     }
     app.strangers.refuse(peer, secret.as_ref());
     Err(Error::unauthorized("the token is unknown, expired or revoked"))
+}
+
+/// The text of the session that a request came with, if it has one.
+pub(crate) fn session_cookie(headers: &HeaderMap) -> Option<TokenSecret> {
+    TokenSecret::parse(headers.typed_get::<Cookie>()?.get(COOKIE)?)
 }
 
 async fn note_use(app: &App, token: &TokenRecord) {

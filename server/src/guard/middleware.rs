@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::Request;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Response, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Response, StatusCode, Version, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemKind};
@@ -23,12 +23,12 @@ use tracing::Span;
 use crate::answer::error::Error;
 use crate::app::App;
 use crate::guard::{auth, measure};
-use crate::listen::InReserve;
+use crate::listen::{InReserve, Peer};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// Wraps the routes: request ids, spans, metrics, compression, types that are not guessed, copies that are still right, problem documents,
-/// encodings that nobody offers, overlong requests, panics, refusal of other sites' pages, tokens and rates; in this order from the outside.
+/// encodings that nobody offers, overlong requests, unclear hosts, panics, refusal of other sites' pages, tokens and rates; in this order from the outside.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let worthwhile =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
@@ -54,6 +54,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
             .layer(from_fn(write_problems))
             .layer(from_fn(agree_on_encoding))
             .layer(from_fn(refuse_long_requests))
+            .layer(from_fn(refuse_unclear_hosts))
             .layer(CatchPanicLayer::custom(answer_panic))
             .layer(CsrfLayer::new().with_rejection_response(refuse_other_sites))
             .layer(from_fn(keep_reserve))
@@ -172,6 +173,26 @@ async fn refuse_long_requests(request: Request, next: Next) -> Response<Body> {
         return next.run(request).await;
     };
     Error::new(kind, format!("{what} have more than {limit} bytes")).into_response()
+}
+
+/// Refuses requests of a connection whose host is missing, given twice, or another than that of the target (RFC 9112 section 3.2): it decides
+/// who is local.
+async fn refuse_unclear_hosts(request: Request, next: Next) -> Response<Body> {
+    let mut hosts = request.headers().get_all(header::HOST).iter();
+    let is_clear = match (hosts.next(), hosts.next()) {
+        (_, Some(_)) => false,
+        (None, None) => request.version() < Version::HTTP_11,
+        (Some(host), None) => {
+            let authority = request.uri().authority();
+            authority
+                .is_none_or(|authority| host.as_bytes().eq_ignore_ascii_case(authority.as_str().as_bytes()))
+        }
+    };
+    if is_clear || request.extensions().get::<Peer>().is_none() {
+        return next.run(request).await;
+    }
+    let detail = "must be given once, the same as in the target if that has a host";
+    Error::parameter("Host", None, detail).into_response()
 }
 
 /// What connections in the reserve may ask for: what tells how the service is, and costs little.

@@ -2,6 +2,7 @@
 
 pub(crate) mod audit;
 pub(crate) mod auth;
+pub(crate) mod caller;
 pub(crate) mod measure;
 pub(crate) mod middleware;
 pub(crate) mod quota;

@@ -19,7 +19,7 @@ use crate::answer::records;
 use crate::app::App;
 use crate::app::feed::{News, Told};
 use crate::app::shares::Share;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::events::{RETRY, last_seen};

@@ -19,7 +19,7 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::records;
 use crate::app::App;
 use crate::app::shares::Share;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load};

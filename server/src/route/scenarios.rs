@@ -11,7 +11,7 @@ use crate::answer::extract::{self, Path, read_json};
 use crate::answer::json::Json;
 use crate::app::App;
 use crate::app::expansions::Work;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 

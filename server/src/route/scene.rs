@@ -16,7 +16,7 @@ use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
 use crate::app::expansions::Work;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 use crate::route::results::PointPath;

@@ -5,20 +5,17 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::IntoResponse;
 use drillsweep_api::{Login, Session};
-use drillsweep_store::{SessionRecord, TokenSecret, TokensPresent};
-use headers::{Cookie, HeaderMapExt};
+use drillsweep_store::{SessionRecord, TokensPresent};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract;
 use crate::answer::json::Json;
 use crate::answer::records::timestamp;
 use crate::app::App;
-use crate::guard::auth::valid_token;
+use crate::guard::auth::{COOKIE, session_cookie, valid_token};
 use crate::listen::Peer;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
-
-const COOKIE: &str = "drillsweep_session";
 
 /// The budget that all logins are taken from; no owner has this name.
 const LOGINS: &str = "\0logins";
@@ -97,11 +94,6 @@ pub(crate) async fn close(State(app): State<App>, headers: HeaderMap) -> Result<
         app.store.close_session(&secret).await?;
     }
     Ok((StatusCode::NO_CONTENT, set_cookie(&headers, "", 0)))
-}
-
-/// The text of the session that a request came with.
-pub(crate) fn session_cookie(headers: &HeaderMap) -> Option<TokenSecret> {
-    TokenSecret::parse(headers.typed_get::<Cookie>()?.get(COOKIE)?)
 }
 
 /// Not for scripts, not for requests from pages of other sites, and where the browser came by https, for that alone.

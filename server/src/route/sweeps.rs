@@ -37,7 +37,7 @@ use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::app::expansions::{Memory, Work};
 use crate::guard::audit::Owner;
-use crate::guard::auth::Caller;
+use crate::guard::caller::Caller;
 use crate::guard::quota;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};

@@ -427,6 +427,42 @@ fn rotation_factor_becomes_exact_in_a_narrow_annulus() {
     assert!(errors[1] < 0.55 * errors[0] && errors[2] < 0.55 * errors[1], "{errors:?}");
 }
 
+/// Power law above 1: `tau_w = K (8 U / D (3 n + 1) / (4 n))^n` in a pipe and `K (12 U / D_h (2 n + 1) / (3 n))^n` in a slot (Metzner and
+/// Reed 1955; API RP 13D). Rotation raises the gradient of such a fluid; the factor, which stands for what it eases, stays 1.
+#[test]
+fn shear_thickening_fluid_obeys_the_power_law_and_is_not_eased_by_rotation() {
+    for flow_index in [1.2, 1.5, 2.0] {
+        let thickening = Mud { yield_stress: 0.0, consistency: 0.02, flow_index, ..LAMINAR };
+        let turning = Mud { rotation_factor: true, ..thickening };
+        for geometry in &SECTIONS {
+            let here = flow(&thickening, geometry, 0.5);
+            let wall_stress =
+                |nominal_rate: f64, factor: f64| 0.02 * (nominal_rate * factor).powf(flow_index);
+            let pipe = wall_stress(
+                8.0 * here.bore_speed / geometry.inner_diameter,
+                (3.0 * flow_index + 1.0) / (4.0 * flow_index),
+            );
+            assert!((here.bore_friction_gradient * geometry.inner_diameter / 4.0 / pipe - 1.0).abs() < 1e-12);
+            let gap = geometry.hole_diameter - geometry.outer_diameter;
+            let slot =
+                wall_stress(12.0 * here.annulus_speed / gap, (2.0 * flow_index + 1.0) / (3.0 * flow_index));
+            assert!((here.wall_shear_stress / slot - 1.0).abs() < 1e-12);
+            assert!((here.generalized_index - flow_index).abs() < 1e-12);
+            // The correlations end at the index of a Newtonian fluid.
+            let newtonian = flow(&Mud { flow_index: 1.0, ..thickening }, geometry, 0.5);
+            assert_eq!(here.laminar_limit, newtonian.laminar_limit);
+
+            let fluid = YieldPowerLaw { yield_stress: 0.0, consistency: 0.02, flow_index };
+            let [inner_radius, outer_radius] =
+                [geometry.outer_diameter, geometry.hole_diameter].map(|d| d / 2.0);
+            let annulus = Annulus { inner_radius, outer_radius, fluid };
+            let exact = annulus.helical_gradient(0.01, ROTATION) / annulus.axial_gradient(0.01);
+            assert!(exact > 1.01, "{exact}");
+            assert_eq!(flow(&turning, geometry, 0.5).friction_gradient, here.friction_gradient);
+        }
+    }
+}
+
 #[test]
 fn rotation_factor_acts_on_the_laminar_branch_alone() {
     for (flow_rate, acts) in [(0.005, true), (0.012, true), (0.06, false)] {

@@ -286,6 +286,61 @@ fn cantilever_conveying_fluid_flutters_at_the_published_speed() {
     assert!((TAU * mode.frequency_hz / unit / 13.715 - 1.0).abs() < 0.02, "{mode:?}");
 }
 
+/// The Coriolis terms of both flows on a wave along the string: `c = 2 rho Q - 2 chi rho A_o U_o`, the flow in the bore downwards, that in the
+/// annulus upwards. With kappa = D_o / D_ch both are `2 rho Q (1 - kappa^2 (1 + kappa^2) / (1 - kappa^2)^2)`: they cancel at
+/// kappa^2 = 1/3, below that the bore's prevails and speeds up waves that travel down.
+#[test]
+fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
+    let scene = |ratio: f64, coriolis: Switch| {
+        let mut scenario = preset("hard/vertical").expect("shipped preset");
+        let mut pipe = scenario.string.sections[0];
+        pipe.outer_diameter = ratio * scenario.well.hole_diameter;
+        (pipe.length, pipe.count, pipe.tool_joint) = (200.0, 1, None);
+        scenario.string.sections = vec![pipe];
+        scenario.string.gauges.clear();
+        scenario.string.unbalance.clear();
+        scenario.recording.nodes.clear();
+        scenario.effects.set(Effect::FluidCoriolis, coriolis);
+        let model = Model::new(&scenario).expect("valid");
+        let equilibrium = Equilibrium::find(&model).expect("rests");
+        (
+            scenario.mud.expect("wet"),
+            model.mesh.depths().to_vec(),
+            Pencil::about(&model, &equilibrium).damping,
+        )
+    };
+    // Eight waves within an envelope s that rests at the held ends: the integral of s^2 over the length L is 3/8 L.
+    let (length, waves) = (200.0_f64, 8.0);
+    let (slow, fast) = (PI / length, TAU * waves / length);
+    let field = |depths: &[f64], phase: f64| -> Vec<[f64; 6]> {
+        let at = |z: f64| {
+            let (sin, cos) = (slow * z).sin_cos();
+            let wave = fast * z + phase;
+            let slope = 2.0 * slow * sin * cos * wave.sin() + fast * sin * sin * wave.cos();
+            [sin * sin * wave.sin(), 0.0, 0.0, 0.0, slope, 0.0]
+        };
+        depths.iter().map(|&z| at(z)).collect()
+    };
+    for ratio in [0.52_f64, 3_f64.sqrt().recip(), 0.65] {
+        let (mud, depths, with) = scene(ratio, Switch::On);
+        let (_, _, without) = scene(ratio, Switch::Off);
+        // Velocity a sine and displacement a cosine: c times the velocity's derivative is in phase with the displacement.
+        let (displacement, velocity) = (field(&depths, PI / 2.0), field(&depths, 0.0));
+        let mut force = vec![[0.0; 6]; depths.len()];
+        with.multiply_add(&velocity, &mut force);
+        let mut other = vec![[0.0; 6]; depths.len()];
+        without.multiply_add(&velocity, &mut other);
+        let products = |force: &[[f64; 6]]| -> f64 {
+            force.as_flattened().iter().zip(displacement.as_flattened()).map(|(f, x)| f * x).sum()
+        };
+        let square = ratio * ratio;
+        let unit = 2.0 * mud.density * mud.flow_rate * fast * 3.0 / 16.0 * length;
+        let expected = 1.0 - square * (1.0 + square) / (1.0 - square).powi(2);
+        let found = (products(&force) - products(&other)) / unit;
+        assert!((found - expected).abs() < 5e-3, "{ratio}: {found} for {expected}");
+    }
+}
+
 #[test]
 fn without_falling_friction_torsion_does_not_grow() {
     // The slope of the friction curve is what feeds it: with mu_d = mu_s there is none.

@@ -681,6 +681,50 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
     }
 }
 
+/// Friction of a sweep before that is out of all proportion to the push turns such a node by less than a right angle: the wall still holds
+/// it, and the sweeps come to the same force as from any other start.
+#[test]
+fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
+    let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
+    let parameters = parameters(&law);
+    let node = ContactNode { clearance: 1e-7, ..NODE };
+    let (compliance, rate) = (2e-8, 4e3);
+    // The wall along u; without it the node would be at 5e-5 m, where friction of 2500 N would move it by its whole distance.
+    let motion = |[force_u, force_v]: [f64; 2]| LateralMotion {
+        u: 5e-5 + compliance * force_u,
+        v: compliance * force_v,
+        u_rate: rate * compliance * force_u,
+        v_rate: rate * compliance * force_v,
+        theta_z_rate: 0.0,
+    };
+    let swept = |friction: f64| {
+        let mut force = [-2000.0, 0.0];
+        let mut yielding = Yielding {
+            lateral: compliance,
+            surface: compliance,
+            speed: rate,
+            force,
+            normal: 2000.0,
+            friction,
+        };
+        [(); 10].map(|()| {
+            let contact = implicit_contact(&parameters, &node, &motion(force), 12.6, &yielding);
+            force = [contact.force_u, contact.force_v];
+            yielding = Yielding { force, normal: contact.normal, friction: contact.friction, ..yielding };
+            contact
+        })
+    };
+    let settled = swept(0.0)[9];
+    for friction in [2400.0, 2600.0, 1e4, 1e6] {
+        for friction in [friction, -friction] {
+            let sweeps = swept(friction);
+            assert!(sweeps.iter().all(|contact| contact.normal > 0.0), "{friction}: {sweeps:?}");
+            let off = (sweeps[9].force_u - settled.force_u).hypot(sweeps[9].force_v - settled.force_v);
+            assert!(off < 1e-2 * settled.normal, "{friction}: {:?} for {settled:?}", sweeps[9]);
+        }
+    }
+}
+
 /// A joint of 0.3 m in a hole that leaves it 27 mm.
 const SEGMENT: ContactSegment<f64> = ContactSegment {
     length: 0.3,

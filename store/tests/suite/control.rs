@@ -8,8 +8,8 @@ use drillsweep_store::{
 };
 
 use crate::bench::{
-    Engine, PHYSICS, addition, claim, claim_or_none, finish, json, key, point_record, scenario, states,
-    submit, sweep, sweep_record,
+    Engine, PHYSICS, addition, claim, claim_or_none, finish, json, key, point_record, result, scenario,
+    states, submit, sweep, sweep_record,
 };
 
 const LONG_AGO: Duration = Duration::from_secs(86_400);
@@ -263,6 +263,18 @@ pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
     assert_eq!(json(&provenance().await), json(&format!(r#"{{"worker":"fifth",{disagreement}}}"#)));
     assert_eq!(disagreements().await, 1, "results, not times");
     assert_eq!(point_record(&store, "s", 1).await.summary_json.as_deref(), Some(r#"{"radius":2}"#));
+}
+
+pub(crate) async fn a_table_that_a_refresh_lacks_is_told<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1])).await;
+    finish_with(&store, "first", "{}", b"orbit", true).await;
+    submit(&store, &refresh("without")).await;
+    let second = claim(&store, "second").await;
+    assert!(store.finish_done(&second.lease, &result("{}", &[])).await.unwrap());
+    let told = r#"{"version":"test","disagreement":{"differs":"history","earlier":{"worker":"first"}}}"#;
+    assert_eq!(json(&point_record(&store, "s", 1).await.provenance_json.unwrap()), json(told));
 }
 
 pub(crate) async fn a_refresh_of_what_was_measured_may_disagree<E: Engine>() {

@@ -179,6 +179,18 @@ pub(crate) async fn a_result_that_is_refused_brings_no_point<E: Engine>() {
     assert_eq!((finished.is_stored, finished.next.map(|next| next.lease.key)), (true, Some(key(2))));
 }
 
+/// A fleet that goes on from result to result never calls for a point alone: it looks for leases that ran out all the same.
+pub(crate) async fn a_result_brings_its_worker_what_a_silent_one_left<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    let silent = claim(&store, "silent").await;
+    let own = claim(&engine.after(LEASE_MS / 2).await, "w").await;
+    let later = engine.after(LEASE_MS + 1).await;
+    let next = finish_and_claim(&later, &own).await.next.expect("the silent worker's point is free");
+    assert_eq!((next.lease.key, next.lease.fencing_token), (silent.lease.key, 2));
+}
+
 pub(crate) async fn the_same_worker_cannot_write_under_its_earlier_claim<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;

@@ -229,5 +229,11 @@ mod tests {
         {
             assert!(!names_this_machine(host), "{host}");
         }
+        // Names that anybody can register, and only end or begin like this machine's.
+        for host in
+            ["evillocalhost", "evillocalhost:7340", "evil-localhost", "127.0.0.1.evil.com", "127.0.0.1evil"]
+        {
+            assert!(!names_this_machine(host), "{host}");
+        }
     }
 }

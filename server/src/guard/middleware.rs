@@ -257,3 +257,34 @@ fn refuse_other_sites(error: ProtectionError) -> Response<Body> {
     tracing::warn!(reason = ?error.kind(), "a page of another site sent a request");
     Error::new(ProblemKind::CrossSite, "the request comes from a page of another site").into_response()
 }
+
+#[cfg(test)]
+mod tests {
+    use axum::body::to_bytes;
+    use axum::http::Request;
+    use axum::routing::get;
+    use tower::ServiceExt as _;
+
+    use super::*;
+
+    /// RFC 9110 section 13.2.1: a precondition is ignored where the answer without it would not be a success; and sections 15.3.2 and
+    /// 15.3.7: a client with a copy has neither what was created nor a part of it.
+    #[tokio::test]
+    async fn only_an_answer_with_the_whole_content_is_told_to_be_unchanged() {
+        for status in [200, 201, 202, 206, 404, 409, 412, 500] {
+            let status = StatusCode::from_u16(status).unwrap();
+            let answer = move || async move { (status, [(header::ETAG, "\"copy\"")], "content") };
+            let routes = Router::new().route("/", get(answer)).layer(from_fn(tell_unchanged));
+            for known in ["\"copy\"", "*"] {
+                let request =
+                    Request::get("/").header(header::IF_NONE_MATCH, known).body(Body::empty()).unwrap();
+                let response = routes.clone().oneshot(request).await.unwrap();
+                let expected = if status == StatusCode::OK { StatusCode::NOT_MODIFIED } else { status };
+                assert_eq!(response.status(), expected);
+                assert_eq!(response.headers()[header::ETAG], "\"copy\"");
+                let body = to_bytes(response.into_body(), 100).await.unwrap();
+                assert_eq!(body.is_empty(), status == StatusCode::OK, "{status}");
+            }
+        }
+    }
+}

@@ -64,6 +64,26 @@ async fn a_file_is_served_whole_and_in_ranges() {
     bench.get(&format!("{path}/points/2/artifacts")).await.problem(409, "no-result");
 }
 
+/// RFC 9110 section 12.5.3: `identity;q=0` excludes answers without an encoding, and a part of a file has none.
+#[tokio::test]
+async fn who_refuses_unencoded_answers_gets_no_part_of_a_file() {
+    let (bench, path) = finished().await;
+    let link = format!("{path}/points/1/artifacts/history");
+    let encoded = ("accept-encoding", "gzip, identity;q=0");
+    let whole = with(&bench, &link, &[encoded]).await;
+    assert_eq!(
+        (whole.status, &whole.headers[header::CONTENT_ENCODING]),
+        (StatusCode::OK, &"gzip".parse().unwrap())
+    );
+    let part = with(&bench, &link, &[encoded, ("range", "bytes=0-3")]).await;
+    assert_eq!((part.status, &part.body), (StatusCode::OK, &whole.body));
+    assert_eq!(part.headers[header::CONTENT_ENCODING], "gzip");
+    assert!(!part.headers.contains_key(header::CONTENT_RANGE));
+    let either =
+        with(&bench, &link, &[("accept-encoding", "gzip, identity;q=0.1"), ("range", "bytes=0-3")]).await;
+    assert_eq!((either.status, either.body.len()), (StatusCode::PARTIAL_CONTENT, 4));
+}
+
 #[tokio::test]
 async fn who_has_a_file_does_not_get_it_again() {
     let (bench, path) = finished().await;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
-use drillsweep_scenario::{PRESETS, Scenario, ScenarioRequest};
+use drillsweep_scenario::{PRESETS, Scenario, ScenarioRequest, unknown_preset};
 use serde_json::{Value, json};
 
 /// One scenario with changes.
@@ -55,8 +55,8 @@ pub(crate) fn read(name: &str) -> anyhow::Result<ScenarioRequest> {
         Some("json") => ScenarioRequest::from_json(&text()?).with_context(|| name.to_owned()),
         _ if PRESETS.iter().any(|(preset, _)| *preset == name) => Ok(ScenarioRequest::preset(name)),
         _ => {
-            let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-            bail!("no scenario {name:?}: presets are {}, files end in .toml or .json", names.join(", "))
+            let problem = unknown_preset(name).message;
+            bail!("no scenario {name:?}: {problem}; files end in .toml or .json")
         }
     }
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::nearest::did_you_mean;
+
 /// One reason why a scenario cannot be read or simulated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, thiserror::Error)]
 pub struct Problem {
@@ -40,7 +42,9 @@ impl Problem {
             return Self::new(path, format!("\"{name}\""), format!("must be {}", listed(&choices, "or")));
         }
         if let Some((name, choices)) = unknown(message, "field") {
-            let message = format!("there is no field `{name}`; there are {}", listed(&choices, "and"));
+            let question = did_you_mean(name, choices.iter().copied());
+            let message =
+                format!("there is no field `{name}`; {question}there are {}", listed(&choices, "and"));
             return Self::new(path, "", message);
         }
         let of_one_field = |prefix: &str| message.strip_prefix(prefix)?.strip_suffix('`');
@@ -208,6 +212,10 @@ mod tests {
             (
                 "unknown field `x`, expected one of `a`, `b`, `c`",
                 "there is no field `x`; there are `a`, `b` and `c`",
+            ),
+            (
+                "unknown field `flow`, expected one of `density`, `flow_rate`",
+                "there is no field `flow`; did you mean flow_rate? there are `density` and `flow_rate`",
             ),
             ("unknown field `x`, there are no fields", "there is no field `x`; there are none"),
             ("missing field `well`", "the field `well` is missing"),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::format::{from_table, from_value, not_json, table};
-use crate::{PRESETS, Problem, Problems, Scenario, preset};
+use crate::{Problem, Problems, Scenario, preset, unknown_preset};
 
 /// Problems of one request that are looked for at most.
 pub const MOST_PROBLEMS: usize = 100;
@@ -134,11 +134,6 @@ impl ScenarioRequest {
 /// Whether a document with these keys is a request rather than a plain scenario.
 fn is_request(has: impl Fn(&str) -> bool) -> bool {
     ["preset", "scenario", "set"].into_iter().any(has)
-}
-
-fn unknown_preset(name: &str) -> Problem {
-    let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-    Problem::new("preset", name, format!("there is no such preset; there are {}", names.join(", ")))
 }
 
 #[cfg(test)]

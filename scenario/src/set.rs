@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::format::from_value;
+use crate::nearest::did_you_mean;
 use crate::{Problem, Scenario, TimeWindow};
 
 impl Scenario {
@@ -84,7 +85,7 @@ fn find<'a>(tree: &'a mut Value, steps: &[Step<'_>]) -> Result<&'a mut Value, Pr
         place = match (place, step) {
             (Value::Object(fields), Step::Field(field)) => {
                 if !fields.contains_key(field) {
-                    return Err(Problem::new(path, "", unknown_field(fields, &so_far)));
+                    return Err(Problem::new(path, "", unknown_field(field, fields, &so_far)));
                 }
                 &mut fields[field]
             }
@@ -125,10 +126,11 @@ fn push(path: &mut String, step: Step<'_>) {
     }
 }
 
-fn unknown_field(fields: &Map<String, Value>, place: &str) -> String {
+fn unknown_field(field: &str, fields: &Map<String, Value>, place: &str) -> String {
     let names: Vec<&str> = fields.keys().map(String::as_str).collect();
     let place = if place.is_empty() { "a scenario" } else { place };
-    format!("no such field; {place} has {}", names.join(", "))
+    let question = did_you_mean(field, names.iter().copied());
+    format!("no such field; {question}{place} has {}", names.join(", "))
 }
 
 /// Puts a value in its place. Objects are merged when the place has all the fields named; otherwise (another

@@ -1,6 +1,6 @@
 //! The scenario that the points of a request share.
 
-use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest};
+use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest, unknown_preset};
 use drillsweep_sim::admission::validate;
 use indexmap::IndexSet;
 
@@ -25,9 +25,7 @@ pub(super) fn resolve(
         (Some(_), Some(_)) => problems.push("", None, "`preset` and `scenario` exclude each other; give one"),
         (None, None) => problems.push("", None, "either `preset` or `scenario` must be given"),
         (Some(name), None) if !PRESETS.iter().any(|(preset, _)| preset == name) => {
-            let names: Vec<_> = PRESETS.iter().map(|(name, _)| *name).collect();
-            let detail = format!("there is no such preset; there are {}", names.join(", "));
-            problems.push("/preset", Some(name.as_str().into()), detail);
+            problems.push("/preset", Some(name.as_str().into()), unknown_preset(name).message);
         }
         _ => {
             let scenario = ScenarioRequest {
@@ -166,7 +164,7 @@ mod tests {
     fn axes_that_are_no_numeric_fields_are_refused_by_name() {
         let of = |name: &str| problems(json!({"preset": "paper-200m", "axes": {name: {"values": [1]}}}));
         for (name, detail) in [
-            ("mud.flowrate", "no such field; mud has"),
+            ("mud.flowrate", "no such field; did you mean flow_rate? mud has"),
             ("operation.top", "must be"),
             ("mud", "must be"),
             ("string.sections[99].length", "8 entries"),

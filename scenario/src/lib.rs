@@ -7,8 +7,8 @@ mod accuracy;
 mod effects;
 mod format;
 mod mesh;
-mod number;
 mod nearest;
+mod number;
 mod outputs;
 mod preset;
 mod problem;
@@ -92,8 +92,9 @@ pub struct Scenario {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Well {
-    /// Diameter of the hole, D_ch \[m\], larger than every outer diameter; usual 0.1 to 0.45. The smaller the annulus, the greater
-    /// the mud's added mass, friction and damping, which grow without bound as it closes.
+    /// Diameter of the hole, D_ch \[m\], larger than every outer diameter and at most 5; usual 0.1 to 0.45. Below 0.05 (slimmer than
+    /// mineral exploration) and above 1.2 (48 in, the largest hole openers) is warned of. The smaller the annulus, the greater the
+    /// mud's added mass, friction and damping, which grow without bound as it closes.
     pub hole_diameter: f64,
     /// Survey stations, 2 or more, from the top of the string at measured depth 0 to its end or beyond. The hole turns by less than
     /// 180 deg from one to the next; between them its curvature is constant, so that wide stations smooth doglegs out and noisy
@@ -152,10 +153,12 @@ impl DrillString {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Young's modulus E \[Pa\], above 0; usual 2.0e11 to 2.1e11 for steel, 7e10 for aluminium, 1.1e11 for titanium. Bending, axial
+    /// Young's modulus E \[Pa\], above 0 and at most 1.5e12; usual 2.0e11 to 2.1e11 for steel, 7e10 for aluminium, 1.1e11 for
+    /// titanium; below 1e10 and above 5e11 is warned of. Bending, axial
     /// and torsional stiffness are proportional to it, and so is the force with which a straight pipe presses on a curved hole.
     pub youngs_modulus: f64,
-    /// Density \[kg/m3\], above 0; usual 7700 to 7900 for steel, 2800 for aluminium, 4400 for titanium. It decides weight, and with
+    /// Density \[kg/m3\], above 0 and at most 23000; usual 7700 to 7900 for steel, 2800 for aluminium, 4400 for titanium; below
+    /// 1000 and above 20000 (tungsten has 19300) is warned of. It decides weight, and with
     /// it side forces and tension, and the inertia.
     pub density: f64,
     /// Poisson's ratio, 0 to 0.5; usual 0.27 to 0.33. It sets the shear modulus, E / (2 (1 + nu)), and so torsional stiffness: 0.3
@@ -176,8 +179,8 @@ pub struct Section {
     /// Length of one piece \[m\], above 0, tool joints included; usual 9 to 9.6 for a drillpipe or collar, 1 to 3 for a stabilizer,
     /// 0.2 to 0.5 for a bit.
     pub length: f64,
-    /// Outer diameter of the body \[m\], smaller than the hole; usual 0.089 to 0.168 for drillpipe, 0.12 to 0.24 for collars.
-    /// Bending and torsional stiffness grow with its fourth power; the nearer to the hole, the more added mass and the less room
+    /// Outer diameter of the body \[m\], smaller than the hole; usual 0.089 to 0.168 for drillpipe, 0.12 to 0.24 for collars;
+    /// below 0.02 and above 1.2 is warned of. Bending and torsional stiffness grow with its fourth power; the nearer to the hole, the more added mass and the less room
     /// for whirl.
     pub outer_diameter: f64,
     /// Inner diameter of the body \[m\], 0 to below the outer; usual 0.07 to 0.15 for drillpipe, 0.05 to 0.08 for collars. A narrow
@@ -272,13 +275,15 @@ pub struct UnbalanceMass {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mud {
-    /// Density rho_f \[kg/m3\], above 0; usual 1000 to 2300, below 500 and above 3000 is warned of. More means more added mass,
+    /// Density rho_f \[kg/m3\], above 0 and at most 10000; usual 1000 to 2300, below 800 (oil) and above 2600 (21.7 lb/gal) is
+    /// warned of. More means more added mass,
     /// buoyancy and damping, and lower frequencies; damping grows with its root only, so that orbits may grow with it.
     pub density: f64,
-    /// Flow rate Q \[m3/s\], 0 to 1; usual 0.01 to 0.08, 0 means still mud. Faster flow thins the mud, so that C_f and the damping
+    /// Flow rate Q \[m3/s\], 0 to 1; usual 0.01 to 0.08, above 0.12 (1900 gal/min, three large pumps) is warned of; 0 means still
+    /// mud. Faster flow thins the mud, so that C_f and the damping
     /// k fall; far beyond the usual range the flow's centrifugal force lowers frequencies, and in the end the string flutters.
     pub flow_rate: f64,
-    /// Yield stress tau_y \[Pa\], 0 or more; usual 0 to 15, 0 is a power-law fluid. More makes the mud stiffer at low shear rates:
+    /// Yield stress tau_y \[Pa\], 0 or more; usual 0 to 15, above 100 is warned of; 0 is a power-law fluid. More makes the mud stiffer at low shear rates:
     /// higher C_f, damping and pressure, and laminar flow up to higher rates.
     pub yield_stress: f64,
     /// Consistency K \[Pa s^n\], above 0; usual 0.05 to 2, water has 1e-3 with n = 1. It is the viscosity at a shear rate of 1 1/s,
@@ -301,12 +306,14 @@ pub struct Mud {
     /// rate where the string lies on the wall, so that viscosity and damping are higher there.
     #[serde(default)]
     pub viscosity_eccentricity: bool,
-    /// Pressure drop over the bit \[Pa\], 0 or more; 0 unless given, usual 2e6 to 1.5e7. It raises the reported pressure in the
+    /// Pressure drop over the bit \[Pa\], 0 or more; 0 unless given, usual 2e6 to 1.5e7, above 1.1e8 (15,000
+    /// psi) is warned of. It raises the reported pressure in the
     /// bore by as much and moves nothing: loads are written in the effective tension, which contains the pressures.
     #[serde(default)]
     pub bit_pressure_drop: f64,
     /// Pressure in the annulus at the top of the string \[Pa\], 0 or more; 0 unless given, an annulus open to the air. Usual up to
-    /// 1e7 with managed pressure, or what the mud above weighs where the string begins deep in the well. It raises the reported
+    /// 1e7 with managed pressure, or what the mud above weighs where the string begins deep in the well; above 1.1e8 is warned
+    /// of. It raises the reported
     /// pressures and moves nothing.
     #[serde(default)]
     pub back_pressure: f64,
@@ -331,17 +338,17 @@ pub enum RegimeChoice {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Operation {
-    /// Speed of rotation imposed at the top \[rpm\], clockwise seen from above, negative the other way; usual 60 to 200, more than
-    /// 1000 is warned of. Slow rotation favours stick-slip, since friction falls with speed; the force of the unbalance grows with
+    /// Speed of rotation imposed at the top \[rpm\], clockwise seen from above, negative the other way; at most 10000 either way,
+    /// usual 60 to 200; more than 400, beyond top drives, is warned of. Slow rotation favours stick-slip, since friction falls with speed; the force of the unbalance grows with
     /// the square of the speed. With 0 there is neither unbalance nor damping k.
     pub rotation_speed_rpm: f64,
     /// Weight on bit \[N\], the axial force in the string at the bit: negative is compression, positive a pull (overpull on a bit
     /// that is stuck or reams back), which is warned of, since a sign may have been lost; usual -2.5e5 to -2e4, 0 off bottom, up to
-    /// 5e5 of pull. Beyond the buckling load the string leaves the low side and presses on the wall in a helix; far beyond it the
+    /// 5e5 of pull; more than 6e5 either way is warned of, 1e8 is the limit. Beyond the buckling load the string leaves the low side and presses on the wall in a helix; far beyond it the
     /// search for the equilibrium may fail. A pull raises lateral frequencies and draws the string to the inside of bends.
     pub weight_on_bit: f64,
     /// Torque on bit \[N m\], of the sign opposite to the rotation's (either where nothing turns): negative opposes clockwise
-    /// rotation; usual -2e4 to -1e3, 0 off bottom. It winds the string up and lowers its buckling load; it is constant, so that
+    /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; it is constant, so that
     /// stick-slip comes from the wall alone.
     pub torque_on_bit: f64,
     /// How the top node is held; absent means `clamped`. Bending near the top depends on it, that of the rest of the string hardly.
@@ -399,7 +406,7 @@ pub struct ContactLaw {
     /// normal forces are never negative, and a rebound keeps more of its energy.
     #[serde(default)]
     pub adhesion: Adhesion,
-    /// Static friction coefficient mu_s, the peak of the friction curve, 0 or more; usual 0.15 to 0.5. It sets the torque along the
+    /// Static friction coefficient mu_s, the peak of the friction curve, 0 to 10; usual 0.15 to 0.5, above 1 is warned of. It sets the torque along the
     /// string at break-away, and that of the equilibrium unless `statics.friction` is `sliding`. 0 means no friction at all.
     pub static_friction: f64,
     /// Dynamic friction coefficient mu_d of fast sliding, 0 to mu_s; usual 0.1 to 0.4. The more it lies below mu_s, the more the

@@ -1,5 +1,7 @@
 //! Rules of the well.
 
+use std::ops::RangeInclusive;
+
 use drillsweep_scenario::Scenario;
 
 use super::report::Report;
@@ -8,9 +10,23 @@ use crate::well::{WellError, WellPath};
 /// Doglegs above this \[deg / 30 m\] are hardly drilled: the survey is probably wrong.
 const SHARPEST_DOGLEG: f64 = 30.0;
 
+/// Diameters of holes \[m\] from those of mineral exploration to those of hole openers for conductors, 48 in.
+const USUAL_DIAMETERS: RangeInclusive<f64> = 0.05..=1.2;
+
+/// Wider holes \[m\] are shafts, which no string of pipe drills.
+const WIDEST_HOLE: f64 = 5.0;
+
 pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     let well = &scenario.well;
-    report.positive(well.hole_diameter, "well.hole_diameter");
+    const DIAMETER: &str = "well.hole_diameter";
+    report.positive(well.hole_diameter, DIAMETER);
+    report.number(
+        well.hole_diameter,
+        DIAMETER,
+        |diameter| diameter <= WIDEST_HOLE,
+        format!("must be at most {WIDEST_HOLE} m (12 1/4 in are 0.311 m)"),
+    );
+    report.usual(well.hole_diameter, DIAMETER, &USUAL_DIAMETERS, "m");
 
     let survey = &well.survey;
     report.require(
@@ -79,6 +95,17 @@ mod tests {
         assert!(
             found.iter().any(|p| p.path == "well.hole_diameter" && p.message == "must be greater than 0")
         );
+    }
+
+    #[test]
+    fn hole_of_another_unit_is_refused_or_doubted() {
+        for diameter in [8.5, 215.9] {
+            let found = problem("well.hole_diameter", |s| s.well.hole_diameter = diameter);
+            assert!(found.message.contains("at most 5 m"), "{found}");
+        }
+        let found = warnings(|s| s.well.hole_diameter = 2.159);
+        assert_eq!((found.len(), found[0].path.as_str()), (1, "well.hole_diameter"));
+        assert_eq!(warnings(|s| s.well.hole_diameter = 1.2), []);
     }
 
     #[test]

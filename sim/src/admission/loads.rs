@@ -1,14 +1,46 @@
 //! Rules of mud, operation, contact and damping.
 
+use std::ops::RangeInclusive;
+
 use drillsweep_scenario::{ContactLaw, Mud, Operation, Scenario, WallLaw};
 
 use super::report::Report;
 
-/// Mud densities \[kg/m3\] outside this range are unheard of: another unit is probably meant.
-const USUAL_MUD_DENSITY: std::ops::RangeInclusive<f64> = 500.0..=3000.0;
+/// Densities of muds \[kg/m3\] from oil to the heaviest weighted ones, 21.7 lb/gal.
+const USUAL_MUD_DENSITIES: RangeInclusive<f64> = 800.0..=2600.0;
 
-/// Faster rotation \[rpm\] than any rig's: another unit is probably meant.
-const FASTEST_ROTATION: f64 = 1000.0;
+/// Heavier liquids \[kg/m3\] are molten metals and mercury.
+const HEAVIEST_MUD: f64 = 10_000.0;
+
+/// Flow rates \[m3/s\] up to that of three large pumps, 1900 gal/min.
+const USUAL_FLOW_RATES: RangeInclusive<f64> = 0.0..=0.12;
+
+/// Yield stresses \[Pa\] up to those of gels, 200 lbf/100 ft2.
+const USUAL_YIELD_STRESSES: RangeInclusive<f64> = 0.0..=100.0;
+
+/// Pressures \[Pa\] up to above the ratings of pumps and blowout preventers, 15,000 psi.
+const USUAL_PRESSURES: RangeInclusive<f64> = 0.0..=1.1e8;
+
+/// Speeds \[rpm\] that a string is turned at from above, either way; top drives reach 200 to 300.
+const USUAL_ROTATION: RangeInclusive<f64> = -400.0..=400.0;
+
+/// At this speed \[rpm\] the surface of a pipe of 0.2 m moves at 100 m/s.
+const FASTEST_ROTATION: f64 = 10_000.0;
+
+/// Axial forces at a bit \[N\], either way: the largest bits are pressed on with some 500 kN.
+const USUAL_WEIGHT_ON_BIT: RangeInclusive<f64> = -6e5..=6e5;
+
+/// Ten times the hook load of the largest rigs \[N\].
+const LARGEST_FORCE: f64 = 1e8;
+
+/// Torques \[N m\], either way, up to those of the largest top drives.
+const USUAL_TORQUES: RangeInclusive<f64> = -1e5..=1e5;
+
+/// Friction coefficients up to that of dry steel on dry rock.
+const USUAL_FRICTION: RangeInclusive<f64> = 0.0..=1.0;
+
+/// Rubber on dry rock has 1 to 4.
+const LARGEST_FRICTION: f64 = 10.0;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     if let Some(mud) = &scenario.mud {
@@ -22,18 +54,22 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
 
 fn check_mud(report: &mut Report, mud: &Mud) {
     report.positive(mud.density, "mud.density");
-    report.warn(
-        mud.density > 0.0 && !USUAL_MUD_DENSITY.contains(&mud.density),
+    report.number(
+        mud.density,
         "mud.density",
-        format!("{} kg/m3 is unusual for a mud: is it in another unit?", mud.density),
+        |density| density <= HEAVIEST_MUD,
+        format!("must be at most {HEAVIEST_MUD} kg/m3 (10 lb/gal is 1198 kg/m3)"),
     );
+    report.usual(mud.density, "mud.density", &USUAL_MUD_DENSITIES, "kg/m3");
     report.number(
         mud.flow_rate,
         "mud.flow_rate",
         |rate| (0.0..=1.0).contains(&rate),
         "must be 0 to 1 m3/s (10 l/s is 0.01 m3/s)",
     );
+    report.usual(mud.flow_rate, "mud.flow_rate", &USUAL_FLOW_RATES, "m3/s");
     report.not_negative(mud.yield_stress, "mud.yield_stress");
+    report.usual(mud.yield_stress, "mud.yield_stress", &USUAL_YIELD_STRESSES, "Pa");
     report.positive(mud.consistency, "mud.consistency");
     report.number(
         mud.flow_index,
@@ -42,11 +78,20 @@ fn check_mud(report: &mut Report, mud: &Mud) {
         "must be greater than 0 and at most 2 (1 is a Bingham fluid, less is shear-thinning)",
     );
     report.not_negative(mud.bit_pressure_drop, "mud.bit_pressure_drop");
+    report.usual(mud.bit_pressure_drop, "mud.bit_pressure_drop", &USUAL_PRESSURES, "Pa");
     report.not_negative(mud.back_pressure, "mud.back_pressure");
+    report.usual(mud.back_pressure, "mud.back_pressure", &USUAL_PRESSURES, "Pa");
 }
 
 fn check_operation(report: &mut Report, operation: &Operation) {
     let weight = operation.weight_on_bit;
+    report.number(
+        weight,
+        "operation.weight_on_bit",
+        |weight| weight.abs() <= LARGEST_FORCE,
+        format!("must be at most {LARGEST_FORCE:e} N either way (10,000 lbf are 44.5 kN)"),
+    );
+    report.usual(weight, "operation.weight_on_bit", &USUAL_WEIGHT_ON_BIT, "N either way");
     report.warn(
         weight > 0.0,
         "operation.weight_on_bit",
@@ -66,11 +111,14 @@ fn check_operation(report: &mut Report, operation: &Operation) {
             -torque
         ),
     );
-    report.warn(
-        speed.abs() > FASTEST_ROTATION,
+    report.usual(torque, "operation.torque_on_bit", &USUAL_TORQUES, "N m either way");
+    report.number(
+        speed,
         "operation.rotation_speed_rpm",
-        format!("{speed} rpm is faster than any rig turns: is it in another unit?"),
+        |speed| speed.abs() <= FASTEST_ROTATION,
+        format!("must be at most {FASTEST_ROTATION} rpm either way"),
     );
+    report.usual(speed, "operation.rotation_speed_rpm", &USUAL_ROTATION, "rpm either way");
 }
 
 fn check_contact(report: &mut Report, contact: &ContactLaw) {
@@ -91,6 +139,13 @@ fn check_contact(report: &mut Report, contact: &ContactLaw) {
     report.positive(contact.stiffness_sharpness, "contact.stiffness_sharpness");
     report.positive(contact.damping_sharpness, "contact.damping_sharpness");
     report.not_negative(contact.static_friction, "contact.static_friction");
+    report.number(
+        contact.static_friction,
+        "contact.static_friction",
+        |friction| friction <= LARGEST_FRICTION,
+        format!("must be at most {LARGEST_FRICTION} (30 % is 0.3)"),
+    );
+    report.usual(contact.static_friction, "contact.static_friction", &USUAL_FRICTION, "");
     report.not_negative(contact.dynamic_friction, "contact.dynamic_friction");
     let largest = contact.static_friction;
     if largest.is_finite() && largest >= 0.0 {
@@ -236,9 +291,34 @@ mod tests {
 
     #[test]
     fn units_that_look_wrong_earn_a_warning() {
-        let found = warnings(|s| s.mud.as_mut().unwrap().density = 1.2);
-        assert_eq!((found.len(), found[0].path.as_str()), (1, "mud.density"));
-        let found = warnings(|s| s.operation.rotation_speed_rpm = 7200.0);
-        assert_eq!((found.len(), found[0].path.as_str()), (1, "operation.rotation_speed_rpm"));
+        let doubted = |path: &str, change: &dyn Fn(&mut Scenario)| {
+            let found = warnings(change);
+            assert_eq!((found.len(), found[0].path.as_str()), (1, path), "{found:?}");
+            assert!(found[0].message.contains("usual range"), "{found:?}");
+        };
+        let mud = |change: fn(&mut Mud)| move |s: &mut Scenario| change(s.mud.as_mut().unwrap());
+        doubted("mud.density", &mud(|mud| mud.density = 1.2));
+        doubted("mud.density", &mud(|mud| mud.density = 2601.0));
+        doubted("mud.flow_rate", &mud(|mud| mud.flow_rate = 0.6));
+        doubted("mud.yield_stress", &mud(|mud| mud.yield_stress = 290.0));
+        doubted("mud.bit_pressure_drop", &mud(|mud| mud.bit_pressure_drop = 3e9));
+        doubted("mud.back_pressure", &mud(|mud| mud.back_pressure = 1e9));
+        doubted("operation.rotation_speed_rpm", &|s| s.operation.rotation_speed_rpm = 720.0);
+        doubted("operation.weight_on_bit", &|s| s.operation.weight_on_bit = -1e6);
+        doubted("operation.torque_on_bit", &|s| s.operation.torque_on_bit = -1e6);
+        doubted("contact.static_friction", &|s| s.contact.static_friction = 3.0);
+        assert_eq!(warnings(mud(|mud| (mud.density, mud.flow_rate) = (2600.0, 0.12))), []);
+        assert_eq!(warnings(|s| s.operation.rotation_speed_rpm = 400.0), []);
+        assert_eq!(warnings(|s| s.contact.static_friction = 1.0), []);
+    }
+
+    #[test]
+    fn the_impossible_is_refused() {
+        for density in [10_001.0, 1.8e9] {
+            assert!(mud_problem("density", |mud| mud.density = density).contains("lb/gal"));
+        }
+        problem("contact.static_friction", |s| s.contact.static_friction = 30.0);
+        problem("operation.rotation_speed_rpm", |s| s.operation.rotation_speed_rpm = 12_000.0);
+        problem("operation.weight_on_bit", |s| s.operation.weight_on_bit = -1e9);
     }
 }

@@ -1,6 +1,7 @@
 //! Collecting problems and warnings.
 
 use std::fmt::Display;
+use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{Problem, Problems, Warning};
 
@@ -51,6 +52,29 @@ impl Report {
         if doubtful {
             self.warnings.push(Warning { path: path.into(), message: message.into() });
         }
+    }
+
+    /// Warns of a number outside its usual range, whose bounds are in `unit`.
+    pub(super) fn usual(
+        &mut self,
+        value: f64,
+        path: impl Into<String>,
+        range: &RangeInclusive<f64>,
+        unit: &str,
+    ) {
+        let (least, most) = range.clone().into_inner();
+        // Without the value: a sweep warns once of an axis, whatever the number of its points.
+        let bounds = match (least == -most, least == 0.0) {
+            (true, _) => format!("up to {most}"),
+            (_, true) => format!("0 to {most}"),
+            _ => format!("{least} to {most}"),
+        };
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        self.warn(
+            value.is_finite() && !range.contains(&value),
+            path,
+            format!("is outside the usual range, {bounds}{unit}: is it in another unit?"),
+        );
     }
 
     /// The problems at a path, and those elsewhere.

@@ -1,5 +1,7 @@
 //! Rules of the string and its mesh.
 
+use std::ops::RangeInclusive;
+
 use drillsweep_scenario::{
     ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw,
 };
@@ -9,6 +11,21 @@ use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
 
 /// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
 const SAME_DEPTH: f64 = 1e-9;
+
+/// Outer diameters \[m\] from rods of mineral exploration to bits of 48 in.
+const USUAL_DIAMETERS: RangeInclusive<f64> = 0.02..=1.2;
+
+/// Young's moduli \[Pa\]: composite pipe has 2e10 and more, steel 2.1e11, tungsten 4.1e11.
+const USUAL_MODULI: RangeInclusive<f64> = 1e10..=5e11;
+
+/// Densities of solids \[kg/m3\]: composite pipe has 1500 and more, tungsten 19300.
+const USUAL_DENSITIES: RangeInclusive<f64> = 1000.0..=20_000.0;
+
+/// Osmium, the densest solid, has 22600 kg/m3.
+const DENSEST_SOLID: f64 = 23_000.0;
+
+/// Diamond, the stiffest solid, has 1.2e12 Pa.
+const STIFFEST_SOLID: f64 = 1.5e12;
 
 /// Checks the string; gives its mesh if it can be made.
 pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
@@ -28,8 +45,23 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMe
 }
 
 fn material(report: &mut Report, path: &str, material: &Material) {
-    report.positive(material.youngs_modulus, format!("{path}.youngs_modulus"));
-    report.positive(material.density, format!("{path}.density"));
+    let (modulus, density) = (format!("{path}.youngs_modulus"), format!("{path}.density"));
+    report.positive(material.youngs_modulus, &modulus);
+    report.number(
+        material.youngs_modulus,
+        &modulus,
+        |modulus| modulus <= STIFFEST_SOLID,
+        format!("must be at most {STIFFEST_SOLID:e} Pa (steel has 2.1e11)"),
+    );
+    report.usual(material.youngs_modulus, &modulus, &USUAL_MODULI, "Pa");
+    report.positive(material.density, &density);
+    report.number(
+        material.density,
+        &density,
+        |density| density <= DENSEST_SOLID,
+        format!("must be at most {DENSEST_SOLID} kg/m3 (steel has 7850)"),
+    );
+    report.usual(material.density, &density, &USUAL_DENSITIES, "kg/m3");
     report.number(
         material.poissons_ratio,
         format!("{path}.poissons_ratio"),
@@ -76,6 +108,7 @@ fn section(report: &mut Report, scenario: &Scenario, index: usize) {
 /// Diameters of a body or a tool joint.
 fn pipe(report: &mut Report, path: &str, outer_diameter: f64, inner_diameter: f64, hole_diameter: f64) {
     report.positive(outer_diameter, format!("{path}.outer_diameter"));
+    report.usual(outer_diameter, format!("{path}.outer_diameter"), &USUAL_DIAMETERS, "m");
     if hole_diameter.is_finite() && outer_diameter > 0.0 {
         report.number(
             outer_diameter,
@@ -271,6 +304,18 @@ mod tests {
             let own = Material { youngs_modulus: -7e10, ..s.string.material };
             s.string.sections[1].tool_joint.as_mut().unwrap().material = Some(own);
         });
+    }
+
+    #[test]
+    fn material_of_another_unit_is_refused_or_doubted() {
+        problem("string.material.youngs_modulus", |s| s.string.material.youngs_modulus = 2.1e14);
+        problem("string.material.density", |s| s.string.material.density = 7.85e6);
+        let found =
+            warnings(|s| (s.string.material.youngs_modulus, s.string.material.density) = (210.0, 7.85));
+        let paths: Vec<&str> = found.iter().map(|warning| warning.path.as_str()).collect();
+        assert_eq!(paths, ["string.material.youngs_modulus", "string.material.density"]);
+        let light = Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33 };
+        assert_eq!(warnings(|s| s.string.material = light), []);
     }
 
     #[test]

@@ -201,6 +201,10 @@ impl Metrics {
         let throttled = Family::<OwnerLabel, Counter>::default();
         registry.register("throttled", "Requests beyond the rate of their owner", throttled.clone());
         let collections = Family::<OutcomeLabel, Counter>::default();
+        // An alert on an increase needs the zero before it.
+        for outcome in ["succeeded", "failed"] {
+            collections.get_or_create(&OutcomeLabel { outcome });
+        }
         registry.register(
             "collections",
             "Collections of expired data by this process, by outcome",

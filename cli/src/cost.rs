@@ -28,37 +28,37 @@ pub(crate) struct CostArguments {
     changes: ChangeArguments,
     /// Seconds of simulated time of each run in place of the scenario's own; orbits are then looked at over the last third,
     /// spectra over the last sixth.
-    #[arg(long)]
+    #[arg(long, value_name = "SECONDS")]
     duration: Option<f64>,
     /// Members of the ensemble that each method runs: with 5 or more, bias can be distinguished from spread.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     members: Option<u32>,
     /// The two methods that make the reference, as JSON: `[{"integrator": "rk4", "step": 5e-5}, {"integrator": "esdirk4", "step":
     /// 1.25e-4, "contact_sweeps": 30}]`.
-    #[arg(long, value_parser = json_value)]
+    #[arg(long, value_name = "JSON", value_parser = json_value)]
     reference: Option<Value>,
     /// Named accuracies to compare, such as `draft,standard`; all three unless given, none for ''.
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_name = "ACCURACIES", value_delimiter = ',')]
     presets: Option<Vec<String>>,
     /// Methods and steps in place of the usual ones, as JSON: `[{"integrator": "esdirk4", "steps": [1e-3, 5e-4]}]`; `[]` for none.
-    #[arg(long, value_parser = json_value)]
+    #[arg(long, value_name = "JSON", value_parser = json_value)]
     methods: Option<Value>,
     /// Meshes to compare, as factors on the element lengths, such as `2,0.5,0.25`.
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',')]
     mesh_factors: Vec<f64>,
     /// Look for the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
     /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless given.
-    #[arg(long, value_parser = parse_share)]
+    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     total: Option<f64>,
     /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.
     #[arg(long, conflicts_with_all = ["methods", "mesh_factors", "total"])]
     effects: bool,
     /// Simulations run at the same time; absent means one per core. They disturb each other's processor time: 1 measures best.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZeroUsize>,
     /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png; of several scenarios a folder each, with
     /// summary.csv and summary.json of all beside them.
-    #[arg(long)]
+    #[arg(long, value_name = "DIRECTORY")]
     output: Option<PathBuf>,
     /// What the chart shows: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
     #[arg(long)]

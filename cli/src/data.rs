@@ -15,23 +15,23 @@ use crate::exposure::{Exposed, database_files, exposed};
 #[derive(Args, Clone)]
 pub(crate) struct DataArguments {
     /// Directory of the database and the object store, where these are not elsewhere.
-    #[arg(long, env = "DRILLSWEEP_DATA", default_value = "data")]
+    #[arg(long, value_name = "DIRECTORY", env = "DRILLSWEEP_DATA", default_value = "data")]
     data: PathBuf,
     /// Database: `postgres://user@host/name`, for many machines, or the path of a SQLite file, on a disk of this one;
     /// `drillsweep.sqlite` in the data directory unless given.
-    #[arg(long, env = "DRILLSWEEP_DATABASE", hide_env_values = true)]
+    #[arg(long, value_name = "LOCATION", env = "DRILLSWEEP_DATABASE", hide_env_values = true)]
     database: Option<DatabaseLocation>,
     /// Object store, for the tables of results: `s3://BUCKET/PREFIX`, with credentials and endpoint from the environment
     /// (AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT_URL, AWS_ALLOW_HTTP), or a directory; `blobs` in the data
     /// directory unless given.
-    #[arg(long, env = "DRILLSWEEP_OBJECTS")]
+    #[arg(long, value_name = "LOCATION", env = "DRILLSWEEP_OBJECTS")]
     objects: Option<ObjectsLocation>,
     /// File with the password for the PostgreSQL database.
-    #[arg(long, env = "DRILLSWEEP_DATABASE_PASSWORD_FILE")]
+    #[arg(long, value_name = "FILE", env = "DRILLSWEEP_DATABASE_PASSWORD_FILE")]
     database_password_file: Option<PathBuf>,
     /// File with the credentials for the bucket, in the place of the environment's: the profile `[default]` of a shared credentials
     /// file of AWS (aws_access_key_id, aws_secret_access_key, and aws_session_token where there is one).
-    #[arg(long, env = "DRILLSWEEP_OBJECTS_CREDENTIALS_FILE")]
+    #[arg(long, value_name = "FILE", env = "DRILLSWEEP_OBJECTS_CREDENTIALS_FILE")]
     objects_credentials_file: Option<PathBuf>,
 }
 

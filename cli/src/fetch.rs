@@ -33,7 +33,7 @@ pub(crate) struct FetchArguments {
     /// The sweep: its identifier, the beginning of it, or its name.
     sweep: String,
     /// Directory to write to; made if it does not exist.
-    #[arg(long, default_value = "results")]
+    #[arg(long, value_name = "DIRECTORY", default_value = "results")]
     output: PathBuf,
     /// Format of the files.
     #[arg(long, value_enum, default_value = "parquet")]

@@ -30,16 +30,16 @@ pub(crate) struct GcArguments {
 #[derive(Args, Clone)]
 pub(crate) struct RetentionArguments {
     /// Days for which recordings (histories, from which orbits and spectra are cut, and snapshots) are kept.
-    #[arg(long, default_value_t = 30)]
+    #[arg(long, value_name = "DAYS", default_value_t = 30)]
     recordings_days: u32,
     /// Days for which the other tables of points are kept.
-    #[arg(long, default_value_t = 365)]
+    #[arg(long, value_name = "DAYS", default_value_t = 365)]
     tables_days: u32,
     /// Days for which events are kept.
-    #[arg(long, default_value_t = 30)]
+    #[arg(long, value_name = "DAYS", default_value_t = 30)]
     events_days: u32,
     /// Hours for which a blob that no row names is kept: longer than a point may take.
-    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "HOURS", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..))]
     grace_hours: u32,
 }
 

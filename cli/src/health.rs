@@ -21,7 +21,7 @@ pub(crate) struct HealthArguments {
     #[arg(long)]
     worker: bool,
     /// Seconds without a heartbeat after which a worker counts as gone; workers send one every third of their lease.
-    #[arg(long, default_value_t = 60.0, requires = "worker")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "worker")]
     silence_seconds: f64,
 }
 

@@ -11,6 +11,7 @@ mod exposure;
 mod fetch;
 mod gc;
 mod health;
+mod help;
 mod migrate;
 mod modes;
 mod plan;
@@ -32,8 +33,9 @@ use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
+use help::with_help;
 use text::{chain, visible};
 use tracing_subscriber::Layer as _;
 use tracing_subscriber::filter::{LevelFilter, Targets};
@@ -178,7 +180,8 @@ fn logs_json() -> anyhow::Result<bool> {
 fn run() -> anyhow::Result<()> {
     #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
     processor::check().map_err(anyhow::Error::msg)?;
-    let arguments = Arguments::parse();
+    let matches = with_help(Arguments::command()).get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let has_colours =
         std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
     let log = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
@@ -228,7 +231,7 @@ fn run() -> anyhow::Result<()> {
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Arguments::command(), "drillsweep", &mut script);
+            clap_complete::generate(shell, &mut with_help(Arguments::command()), "drillsweep", &mut script);
             print(String::from_utf8_lossy(&script).trim_end());
             Ok(())
         }

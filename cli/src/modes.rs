@@ -16,10 +16,10 @@ pub(crate) struct ModesArguments {
     #[command(flatten)]
     scenario: ScenarioArguments,
     /// Lowest frequency in Hz.
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, value_name = "HERTZ", default_value_t = 0.0)]
     from: f64,
     /// Highest frequency in Hz.
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, value_name = "HERTZ", default_value_t = 20.0)]
     to: f64,
     /// Show only the modes that grow.
     #[arg(long)]

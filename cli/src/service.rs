@@ -39,33 +39,33 @@ const LAST_GRACE: Duration = Duration::from_secs(1);
 #[derive(Args, Clone)]
 struct ListenArguments {
     /// Address to listen on; anything but this machine needs a token first (`drillsweep token create`).
-    #[arg(long, env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
+    #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
     listen: SocketAddr,
     /// Address on which `/metrics` is served, without tokens; absent means not at all.
-    #[arg(long, env = "DRILLSWEEP_METRICS_LISTEN")]
+    #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_METRICS_LISTEN")]
     metrics_listen: Option<SocketAddr>,
     /// File with an administrator's token that was made elsewhere: 32 to 200 visible ASCII characters.
-    #[arg(long, env = "DRILLSWEEP_ADMIN_TOKEN_FILE")]
+    #[arg(long, value_name = "FILE", env = "DRILLSWEEP_ADMIN_TOKEN_FILE")]
     admin_token_file: Option<PathBuf>,
     /// Requests that an owner may make per second, on average.
-    #[arg(long, default_value_t = OwnerLimits::default().requests_per_second)]
+    #[arg(long, value_name = "NUMBER", default_value_t = OwnerLimits::default().requests_per_second)]
     requests_per_second: NonZeroU32,
     /// Requests that an owner may make at once (the size of the token bucket).
-    #[arg(long, default_value_t = OwnerLimits::default().request_burst)]
+    #[arg(long, value_name = "NUMBER", default_value_t = OwnerLimits::default().request_burst)]
     request_burst: NonZeroU32,
     /// How often what need not be kept any more is deleted, such as `24h`; `0` leaves that to `drillsweep gc`.
-    #[arg(long, env = "DRILLSWEEP_RETENTION_INTERVAL", default_value = "24h", value_parser = parse_interval)]
+    #[arg(long, value_name = "TIME_SPAN", env = "DRILLSWEEP_RETENTION_INTERVAL", default_value = "24h", value_parser = parse_interval)]
     retention_interval: Duration,
     #[command(flatten)]
     retention: RetentionArguments,
     /// Connections that may be open at once; beyond them is a reserve for health checks.
-    #[arg(long, default_value_t = ConnectionLimits::default().total)]
+    #[arg(long, value_name = "NUMBER", default_value_t = ConnectionLimits::default().total)]
     connections: usize,
     /// Connections that one address may have open at once; those of this machine, where a reverse proxy may be, are not counted.
-    #[arg(long, default_value_t = ConnectionLimits::default().per_address)]
+    #[arg(long, value_name = "NUMBER", default_value_t = ConnectionLimits::default().per_address)]
     connections_per_address: usize,
     /// Points of an owner that may be queued or running.
-    #[arg(long, default_value_t = OwnerLimits::default().open_points)]
+    #[arg(long, value_name = "NUMBER", default_value_t = OwnerLimits::default().open_points)]
     open_points: u64,
 }
 
@@ -76,13 +76,13 @@ pub(crate) struct UpArguments {
     #[command(flatten)]
     listen: ListenArguments,
     /// Number of worker processes; one per core unless given.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     workers: Option<usize>,
     /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
-    #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
+    #[arg(long, value_name = "SECONDS", env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
     /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
-    #[arg(long, value_parser = parse_span)]
+    #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     point_timeout: Option<Duration>,
     #[command(flatten)]
     scratch: ScratchArguments,
@@ -92,7 +92,7 @@ pub(crate) struct UpArguments {
 struct ScratchArguments {
     /// Directory for temporary files, which hold what a running point records: up to 7 GiB a worker, on a disk of its own machine; `scratch`
     /// in the data directory unless given.
-    #[arg(long, env = "DRILLSWEEP_SCRATCH")]
+    #[arg(long, value_name = "DIRECTORY", env = "DRILLSWEEP_SCRATCH")]
     scratch: Option<PathBuf>,
 }
 
@@ -109,17 +109,17 @@ pub(crate) struct WorkerArguments {
     #[command(flatten)]
     data: DataArguments,
     /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
-    #[arg(long, env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
+    #[arg(long, value_name = "SECONDS", env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
     /// End when there is nothing left to claim.
     #[arg(long)]
     drain: bool,
     /// End after so long, such as `3h`, `90m` or `600s`; the running point is suspended with a checkpoint, from which
     /// another worker continues.
-    #[arg(long, value_parser = parse_span)]
+    #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     max_runtime: Option<Duration>,
     /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
-    #[arg(long, value_parser = parse_span)]
+    #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     point_timeout: Option<Duration>,
     #[command(flatten)]
     scratch: ScratchArguments,

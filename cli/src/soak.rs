@@ -21,19 +21,19 @@ use crate::print;
 #[derive(Args)]
 pub(crate) struct SoakArguments {
     /// Scenes to run.
-    #[arg(long, default_value_t = 1000)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1000)]
     scenes: u64,
     /// Seed of the scenes; scene i of a seed is always the same one.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The first scene.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     first: u64,
     /// Scenes run at the same time.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     threads: usize,
     /// Seconds of wall time after which a scene counts as hung.
-    #[arg(long, default_value_t = 120.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
     limit: f64,
     /// Run the scenes at this accuracy for 0.4 s, in place of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
@@ -45,7 +45,7 @@ pub(crate) struct SoakArguments {
     #[arg(long)]
     json: bool,
     /// Print this scene as TOML and run nothing.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     show: Option<u64>,
 }
 

@@ -39,7 +39,7 @@ pub(crate) struct SubmitArguments {
     outputs: Option<Value>,
     /// Verify some of the points by a second run at the accuracy `reference`: a fraction of them such as 0.05, or a number of
     /// them.
-    #[arg(long)]
+    #[arg(long, value_name = "SHARE_OR_NUMBER")]
     verify: Option<f64>,
     /// A name for people.
     #[arg(long)]
@@ -75,10 +75,10 @@ pub(crate) struct SubmitArguments {
 #[derive(Args)]
 pub(crate) struct DesignArguments {
     /// Flow rates in m3/s: `0.01,0.04,0.06` or `from:to:count`.
-    #[arg(long, value_parser = parse_axis)]
+    #[arg(long, value_name = "M3_PER_S", value_parser = parse_axis)]
     flow_rate: Option<Axis>,
     /// Mud densities in kg/m3: `1200,1500` or `from:to:count`.
-    #[arg(long, value_parser = parse_axis)]
+    #[arg(long, value_name = "KG_PER_M3", value_parser = parse_axis)]
     mud_density: Option<Axis>,
     /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
     /// `contact.stiffness=1e5:1e7:5:log`; with the designs that draw, `from:to` or `from:to:log`.
@@ -92,13 +92,13 @@ pub(crate) struct DesignArguments {
     )]
     design: Design,
     /// Number of points of a design that draws.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     samples: Option<u32>,
     /// Seed of a design that draws.
     #[arg(long)]
     seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip: as many as a sweep of the same seed has already.
-    #[arg(long)]
+    #[arg(long, value_name = "NUMBER")]
     skip: Option<u32>,
 }
 

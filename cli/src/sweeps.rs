@@ -35,7 +35,7 @@ pub(crate) struct ListArguments {
     #[arg(long)]
     tag: Option<String>,
     /// At most so many, the newest first.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     limit: u32,
     /// Print JSON.
     #[arg(long)]
@@ -53,7 +53,7 @@ pub(crate) struct FailuresArguments {
     #[arg(long, value_parser = ["physical", "infrastructure", "crash", "timeout", "cancelled"])]
     class: Option<String>,
     /// At most so many, the latest first.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     limit: u32,
     /// Print JSON.
     #[arg(long)]

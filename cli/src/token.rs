@@ -48,7 +48,7 @@ pub(crate) struct CreateArguments {
     #[arg(long)]
     name: Option<String>,
     /// How long it is valid: a time span such as `90d` or `12h`, or `never` for without end.
-    #[arg(long, default_value = "365d")]
+    #[arg(long, value_name = "TIME_SPAN", default_value = "365d")]
     expires: Lifetime,
 }
 

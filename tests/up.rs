@@ -7,9 +7,10 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
+use serde_json::json;
 
-use crate::faults::{Logged, command};
-use crate::{BINARY, PATIENCE, Process, get};
+use crate::faults::{Logged, command, serve};
+use crate::{BINARY, PATIENCE, Process, get, post};
 
 impl Logged {
     /// Waits until the process ends by itself.
@@ -125,4 +126,32 @@ fn up_prints_where_its_page_and_its_data_are_once_it_listens() {
     assert!(page.contains("<html") && page.contains("drillsweep"), "{page}");
     up.signal(Signal::TERM);
     assert!(up.0.wait().unwrap().success());
+}
+
+/// Processor time of a process so far \[hundredths of a second, as Linux reports it\].
+fn processor_time(process: u32) -> u64 {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    let fields: Vec<&str> = stat.rsplit_once(") ").unwrap().1.split(' ').collect();
+    // Fields 14 and 15: user and system.
+    fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+}
+
+#[test]
+fn server_ends_in_time_while_a_request_computes() {
+    let data = tempfile::tempdir().unwrap();
+    let (mut server, address) = serve(data.path(), None);
+    let run = post(&format!("{address}/v1/runs"), &json!({ "preset": "hard/elements-5000" }));
+    // Modes of 5,000 elements: minutes, in a thread that cannot be interrupted.
+    let url = format!("{address}/v1/sweeps/{}/points/1/modes?to_hz=50", run["id"].as_str().unwrap());
+    let process = server.process.0.id();
+    let before = processor_time(process);
+    let request = std::thread::spawn(move || ureq::get(&url).call().map(|answer| answer.status()));
+    server.wait_for(|_| (processor_time(process) > before + 100).then_some(()));
+    assert!(!request.is_finished());
+    server.process.signal(Signal::TERM);
+    // At most 13 s, and a few more on a machine that is busy.
+    let status = server.ended_within(Duration::from_secs(20));
+    assert!(request.join().unwrap().is_err(), "it was cut off");
+    assert_eq!(status.code(), Some(1));
+    server.wait_for(|log| log.contains("requests were still open 10s after").then_some(()));
 }

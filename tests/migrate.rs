@@ -274,20 +274,21 @@ fn public(directory: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn store_that_others_may_read_is_reported() {
-    let data = tempfile::tempdir().unwrap();
-    let (mut server, _) = serve(data.path(), None);
+    let place = tempfile::tempdir().unwrap();
+    let data = place.path().join("data");
+    let (mut server, _) = serve(&data, None);
     assert!(!server.log().contains("other users have access"));
     server.kill();
-    let database = data.path().join("drillsweep.sqlite");
-    for (path, mode) in [(&database, 0o644), (&data.path().to_owned(), 0o750)] {
+    let database = data.join("drillsweep.sqlite");
+    for (path, mode) in [(&database, 0o644), (&data, 0o750)] {
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).unwrap();
         let warning = format!("other users have access to {} (mode {mode:04o})", path.display());
-        let (mut server, _) = serve(data.path(), None);
+        let (mut server, _) = serve(&data, None);
         server.wait_for(|log| {
             log.lines().any(|line| line.contains("WARN") && line.contains(&warning)).then_some(())
         });
         server.kill();
-        let warnings = report(&mut command(data.path(), &["check", "--json"]))["warnings"].clone();
+        let warnings = report(&mut command(&data, &["check", "--json"]))["warnings"].clone();
         let is_there = |text: &Value| text.as_str().unwrap().starts_with(&warning);
         assert!(warnings.as_array().unwrap().iter().any(is_there), "{warnings}");
     }

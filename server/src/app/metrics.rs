@@ -203,7 +203,7 @@ impl Metrics {
         let collections = Family::<OutcomeLabel, Counter>::default();
         // An alert on an increase needs the zero before it.
         for outcome in ["succeeded", "failed"] {
-            collections.get_or_create(&OutcomeLabel { outcome });
+            drop(collections.get_or_create(&OutcomeLabel { outcome }));
         }
         registry.register(
             "collections",

@@ -133,7 +133,10 @@ fn every_hard_scene_ships_with_its_reason() {
     assert!(hard.clone().count() >= 25);
     for (name, description) in hard {
         assert!(description.len() > 12, "{name}");
-        assert_eq!(validate(&preset(name).expect("resolves")), Ok(vec![]), "{name}");
+        let warnings = validate(&preset(name).expect("resolves")).expect("can be simulated");
+        // Some go beyond usual ranges on purpose.
+        let others = warnings.iter().find(|warning| !warning.message.contains("usual range"));
+        assert_eq!(others, None, "{name}");
     }
 }
 

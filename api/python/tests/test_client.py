@@ -75,16 +75,16 @@ def test_warnings_of_the_service_are_warnings_at_the_callers_line(client: Client
     # 10.5 ppg are 1258 kg/m3.
     ppg: dict[str, drillsweep.Axis] = {"mud_density": [10.5]}
     set_of: dict[str, Any] = {**SHORT, "effects.transient": "off"}
-    unit = r"^/axes/mud_density/values/0: 10.5 kg/m3 is unusual"
+    unit = r"^/axes/mud_density/values/0: is outside the usual range, 800 to 2600 kg/m3"
     with pytest.warns(DrillsweepWarning, match=unit) as submitted:
         sweep = client.submit("paper-200m", set=set_of, axes=ppg)
     assert [warning.filename for warning in submitted] == [__file__]
     assert [str(warning.message) for warning in submitted] == [str(warning) for warning in sweep.warnings]
     with pytest.warns(DrillsweepWarning, match=unit) as planned:
         client.plan("paper-200m", set=set_of, axes=ppg)
-    with pytest.warns(DrillsweepWarning, match=r"10.25 kg/m3 is unusual") as appended:
+    with pytest.warns(DrillsweepWarning, match=r"is outside the usual range, 800 to 2600 kg/m3") as appended:
         sweep.append({"mud_density": [10.25]})
-    with pytest.warns(DrillsweepWarning, match=r"10.5 kg/m3 is unusual") as run:
+    with pytest.warns(DrillsweepWarning, match=r"is outside the usual range, 800 to 2600 kg/m3") as run:
         client.run("paper-200m", set=set_of | {"mud.density": 10.5})
     assert {warning.filename for warned in (planned, appended, run) for warning in warned} == {__file__}
 

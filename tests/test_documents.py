@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import yaml
 
 from service import REPOSITORY, Service, binary
 
@@ -222,7 +223,11 @@ def test_blocks_are_run_or_say_why_not() -> None:
     assert marks == sum(block.reason is not None for block in BLOCKS), "a mark is misspelt"
     for document in DOCUMENTS:
         languages = set(re.findall(r"^ *```(\S+)$", document.read_text(), re.MULTILINE))
-        assert languages <= {"sh", "python", "console", "text", "mermaid"}, f"{document.name}: a block that is not run"
+        assert languages <= {"sh", "python", "console", "text", "mermaid", "yaml"}, (
+            f"{document.name}: a block that is not run"
+        )
+        for block in re.findall(r"^```yaml\n(.*?)^```", document.read_text(), re.MULTILINE | re.DOTALL):
+            assert yaml.safe_load(block), f"{document.name}: {block}"
     for block in BLOCKS:
         for named in re.findall(r"tests/\w+\.\w+", block.reason or ""):
             assert (REPOSITORY / named).exists(), f"{block.place} names {named}"

@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::Request;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Response, StatusCode, Version, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCode, Version, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use drillsweep_api::{PROBLEM_MEDIA_TYPE, ProblemKind};
@@ -206,9 +206,10 @@ async fn keep_reserve(request: Request, next: Next) -> Response<Body> {
     next.run(request).await
 }
 
-/// Answers 304 instead of what the client has a copy of.
+/// Answers 304 instead of what the client has a copy of. Only reading has such an answer (RFC 9110 section 13.1.2).
 async fn tell_unchanged(request: Request, next: Next) -> Response<Body> {
-    let known = request.headers().typed_get::<IfNoneMatch>();
+    let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
+    let known = request.headers().typed_get::<IfNoneMatch>().filter(|_| is_reading);
     let response = next.run(request).await;
     let tag = response.headers().typed_get::<ETag>().filter(|_| response.status() == StatusCode::OK);
     if known.zip(tag).is_none_or(|(known, tag)| known.precondition_passes(&tag)) {
@@ -262,7 +263,7 @@ fn refuse_other_sites(error: ProtectionError) -> Response<Body> {
 mod tests {
     use axum::body::to_bytes;
     use axum::http::Request;
-    use axum::routing::get;
+    use axum::routing::{get, patch};
     use tower::ServiceExt as _;
 
     use super::*;
@@ -286,5 +287,10 @@ mod tests {
                 assert_eq!(body.is_empty(), status == StatusCode::OK, "{status}");
             }
         }
+        let answer = async || ([(header::ETAG, "\"copy\"")], "changed");
+        let routes = Router::new().route("/", patch(answer)).layer(from_fn(tell_unchanged));
+        let request = Request::patch("/").header(header::IF_NONE_MATCH, "\"copy\"").body(Body::empty());
+        let response = routes.oneshot(request.unwrap()).await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK, "what has changed something is no copy");
     }
 }

@@ -164,7 +164,7 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() })
 }
 
-/// The most memory that a process ever had \[MiB\].
+/// Peak memory of a process \[MiB\].
 fn peak_memory(process: &Process) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{}/status", process.0.id())).unwrap();
     let line = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();
@@ -230,10 +230,10 @@ fn grown(request: &Value, place: &str, times: usize) -> String {
     rest.to_string().replace(&json!(MARK).to_string(), &grown)
 }
 
-/// What a server may take, whatever is asked of it.
+/// Largest memory of a server, whatever is requested \[MiB\].
 const MOST_MEMORY: u64 = 300;
 
-/// The deadline of an expansion, with what is done before and after it.
+/// Largest processor time of a request: the deadline of an expansion, and the work before and after it.
 const MOST_TIME: Duration = Duration::from_secs(8);
 
 #[test]
@@ -293,11 +293,15 @@ fn requests_of_any_size_take_bounded_time_and_memory() {
     let grid = json!({"preset": "paper-200m", "axes": {
         "flow_rate": {"from": 0.01, "to": 0.06, "count": 1_000},
         "mud_density": {"from": 1200, "to": 2100, "count": 100}}});
-    std::thread::scope(|scope| {
-        for _ in 0..4 {
-            scope.spawn(|| check(agent.post(&url).send_json(&grid).unwrap()).unwrap());
-        }
+    let statuses = std::thread::scope(|scope| {
+        let send = || agent.post(&url).send_json(&grid).unwrap().status().as_u16();
+        [(); 2].map(|()| scope.spawn(send)).map(|sent| sent.join().unwrap())
     });
+    // On a loaded machine the second may have waited too long for the first.
+    assert!(
+        statuses.contains(&200) && statuses.iter().all(|status| [200, 503].contains(status)),
+        "{statuses:?}"
+    );
     let peak = peak_memory(&process);
     assert!(peak < MOST_MEMORY, "{peak} MiB");
 }

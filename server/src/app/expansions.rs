@@ -33,7 +33,7 @@ pub struct ExpansionLimits {
     pub bytes: usize,
     /// Requests that wait; further ones are refused. One owner has a quarter of these places.
     pub waiting: usize,
-    /// Processor time of one expansion.
+    /// Processor time of one expansion, to which that of its points is added.
     pub deadline: Duration,
 }
 
@@ -231,7 +231,7 @@ impl Place {
     /// Runs work on a thread of its own, which has the turn until its end. What it returns has the memory, until that is dropped.
     ///
     /// # Errors
-    /// Those of the work.
+    /// Errors of the work.
     pub(crate) async fn run<T: Send + 'static>(
         self,
         work: impl FnOnce(&mut Work) -> Result<T> + Send + 'static,
@@ -306,6 +306,11 @@ impl Work {
             self.memory.bytes = bytes;
         }
         is_free
+    }
+
+    /// Adds processor time for work that is known to take more.
+    pub(crate) fn allow(&mut self, more: Duration) {
+        self.deadline += more;
     }
 
     /// Ends the work if its client has left, the service stops or its processor time is over.

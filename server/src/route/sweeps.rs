@@ -166,8 +166,8 @@ async fn submit<R: DeserializeOwned + Into<SweepRequest>>(
         move |request: R, work, memory| {
             let mut request: SweepRequest = request.into();
             request.owner = caller.submits_as(request.owner)?;
-            if !work.grow(memory_of_request(memory, &request)) {
-                return Ok(Err(memory_of_request(memory, &request)));
+            if let Err(needed) = make_room(work, memory, &request) {
+                return Ok(Err(needed));
             }
             let expansion = expand(&request, &|| work.check())?;
             let new_sweep = records::new_sweep(&request, &expansion, cache, idempotency_key.clone())?;
@@ -209,10 +209,21 @@ async fn submit<R: DeserializeOwned + Into<SweepRequest>>(
 /// Memory of an expanded point until it is stored \[bytes\].
 const MEMORY_OF_POINT: usize = 700;
 
-/// Memory that a request takes with all of its points, next to that of reading it \[bytes\].
-fn memory_of_request(of_reading: usize, request: &SweepRequest) -> usize {
+/// Processor time of expanding a point: twice that of the slowest presets, whose meshes follow from the scenario.
+const TIME_OF_POINT: Duration = Duration::from_micros(300);
+
+/// Takes memory and processor time for all points of a request, next to what reading it takes \[bytes\].
+///
+/// # Errors
+/// The memory that the request takes, if so much is not free.
+fn make_room(work: &mut Work, of_reading: usize, request: &SweepRequest) -> std::result::Result<(), usize> {
     let points = request.point_count().unwrap_or(usize::MAX).min(LIMITS.points_per_sweep);
-    of_reading + points * MEMORY_OF_POINT
+    let needed = of_reading + points * MEMORY_OF_POINT;
+    if !work.grow(needed) {
+        return Err(needed);
+    }
+    work.allow(TIME_OF_POINT * points as u32);
+    Ok(())
 }
 
 /// Reads a body and expands its request in a place for expansions. Where the place has less memory than the request turns out to take,
@@ -728,8 +739,8 @@ pub(crate) async fn append(
     let expanded = expand_body(&app, &caller, &body, move |added: AppendRequest, work, memory| {
         let request_json = records::write(&added)?;
         let request = added.of(&original)?;
-        if !work.grow(memory_of_request(memory, &request)) {
-            return Ok(Err(memory_of_request(memory, &request)));
+        if let Err(needed) = make_room(work, memory, &request) {
+            return Ok(Err(needed));
         }
         let expansion = expand_added(&request, &original, &|| work.check())?;
         let points = records::new_points(&expansion)?;

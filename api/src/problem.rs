@@ -17,7 +17,7 @@ pub enum ProblemKind {
     MalformedBody,
     /// The body is well-formed but what it asks for cannot be simulated.
     InvalidRequest,
-    /// What the body asks for takes too long to prepare.
+    /// The request takes too long to prepare.
     TooMuchWork,
     /// A path, query or header parameter is missing, unknown or out of range.
     InvalidParameter,

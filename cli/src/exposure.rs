@@ -14,7 +14,7 @@ pub(crate) struct Exposed {
     mode: u32,
 }
 
-/// Those of some files and directories to which group or others have access.
+/// Files and directories among `paths` to which group or others have access.
 pub(crate) fn exposed(paths: impl IntoIterator<Item = PathBuf>) -> Vec<Exposed> {
     let exposed = |path: PathBuf| {
         // A path that is not there, as the write-ahead log of a closed database, exposes nothing.

@@ -29,10 +29,10 @@ use crate::data::DataArguments;
 use crate::gc::RetentionArguments;
 use crate::token;
 
-/// How long children may take to give their points back: as long as open requests may take to end.
+/// Time for children to give their points back: as long as open requests have to end.
 const CHILD_GRACE: Duration = Duration::from_secs(10);
 
-/// How long the database may take to close, and then blocking threads to return, before the process ends without them.
+/// Time for the database to close, and then for blocking threads to return, before the process ends without them.
 const LAST_GRACE: Duration = Duration::from_secs(1);
 
 /// Where the server listens, and what it allows.

@@ -14,7 +14,7 @@ use crate::request::{AxisName, Design, SweepRequest};
 /// The scenario that the axes are applied to: preset or scenario, with the changes of `set`.
 ///
 /// # Errors
-/// That of the interruption.
+/// The error of the interruption.
 pub(super) fn resolve(
     request: &SweepRequest,
     written: &Written<'_>,

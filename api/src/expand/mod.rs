@@ -34,7 +34,7 @@ pub const UNINTERRUPTED: Interruption<'static> = &|| Ok(());
 ///
 /// # Errors
 /// Every distinct problem of the request and of any of its points, once, with JSON Pointers into the request; of very
-/// many the first hundred. That of the interruption.
+/// many the first hundred. The error of the interruption.
 pub fn expand(
     request: &SweepRequest,
     interruption: Interruption<'_>,

@@ -14,7 +14,7 @@ use crate::request::AxisName;
 /// All points. The first is validated in full, the others where the axes may have made a difference.
 ///
 /// # Errors
-/// That of the interruption.
+/// The error of the interruption.
 pub(super) fn points(
     written: &Written<'_>,
     layout: &Layout<'_>,

@@ -17,7 +17,7 @@ impl Expansion {
     /// ordinals. Parameters of the accuracy itself are left out.
     ///
     /// # Errors
-    /// When there is nothing to verify, or the reference cannot run such a point, of the request as a whole; that of the interruption.
+    /// Nothing to verify, or a point that the reference cannot run, as problems of the request as a whole; the error of the interruption.
     pub fn references(
         &self,
         indices: &[usize],

@@ -35,7 +35,7 @@ impl Pictures {
     /// The picture of a key, which is drawn if it is not kept; while one request draws it, others wait for it.
     ///
     /// # Errors
-    /// Those of the drawing; the next request tries again.
+    /// Errors of the drawing; the next request tries again.
     pub(crate) async fn get_or_draw(
         &self,
         key: &str,

@@ -5,7 +5,7 @@ use drillsweep_store::{TokenRecord, TokenScope};
 
 use crate::answer::error::{Error, Result};
 
-/// Who asks.
+/// Caller of a request.
 #[derive(Debug, Clone)]
 pub(crate) enum Caller {
     /// Somebody on this machine, while there are no tokens.

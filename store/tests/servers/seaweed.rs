@@ -121,6 +121,8 @@ impl Seaweed {
         // It has nobody to elect but itself.
         command.args(["-master.electionTimeout=1s"]);
         command.args(["-volume.max=100", "-master.volumeSizeLimitMB=64", "-master.volumePreallocate=false"]);
+        // A hundredth of the disk, the default, is more than the tests need.
+        command.args(["-volume.minFreeSpace=100MiB"]);
         command.env("AWS_ACCESS_KEY_ID", ACCESS_KEY_ID).env("AWS_SECRET_ACCESS_KEY", SECRET_ACCESS_KEY);
         let log = self.directory.join("log");
         // It puts sockets there, wherever its data are.

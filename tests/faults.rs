@@ -636,9 +636,10 @@ fn damaged_result_is_told_and_computed_again() {
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
     for query in ["profile", "history?format=parquet", "orbit?node=49", "spectrum?node=49"] {
         let mut answer = agent.get(format!("{address}/v1/sweeps/{sweep}/points/1/{query}")).call().unwrap();
-        assert_eq!(answer.status(), 500, "{query}");
+        assert_eq!(answer.status(), 503, "{query}");
+        assert_eq!(answer.headers()["retry-after"], "30");
         let problem: Value = answer.body_mut().read_json().unwrap();
-        assert_eq!(problem["type"], "urn:drillsweep:problem:damaged", "{problem}");
+        assert_eq!(problem["type"], "urn:drillsweep:problem:recomputing", "{problem}");
     }
     assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["counts"]["queued"], 1);
     assert_eq!(check(data.path()).1.len(), 5, "the tables of the point");
@@ -660,7 +661,7 @@ fn damaged_result_is_told_and_computed_again() {
 }
 
 /// All files below a directory.
-fn files(directory: &Path) -> Vec<PathBuf> {
+pub(crate) fn files(directory: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
     entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
 }

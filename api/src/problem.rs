@@ -63,6 +63,8 @@ pub enum ProblemKind {
     Expired,
     /// Storage has lost the table, or a part of it.
     Damaged,
+    /// Storage has lost the table, and its point is computed again.
+    Recomputing,
     /// The sweep's state does not allow the operation.
     Conflict,
     /// The sweep is not any more what `If-Match` says.
@@ -105,6 +107,7 @@ impl ProblemKind {
         ProblemKind::NoSuchTable,
         ProblemKind::Expired,
         ProblemKind::Damaged,
+        ProblemKind::Recomputing,
         ProblemKind::Conflict,
         ProblemKind::PreconditionFailed,
         ProblemKind::IdempotencyKeyReused,
@@ -162,6 +165,7 @@ impl ProblemKind {
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
             ProblemKind::Expired => ("expired", "The table has expired", 410),
             ProblemKind::Damaged => ("damaged", "Storage has lost the table", 500),
+            ProblemKind::Recomputing => ("recomputing", "The table is computed again", 503),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
             ProblemKind::PreconditionFailed => {
                 ("precondition-failed", "The sweep was changed since it was read", 412)

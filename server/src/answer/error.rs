@@ -57,8 +57,8 @@ impl Error {
         Error::new(ProblemKind::Unauthorized, detail)
     }
 
-    /// The caller has had what they may have; another try may succeed after `wait`.
-    pub(crate) fn too_many(kind: ProblemKind, detail: impl Into<String>, wait: Duration) -> Self {
+    /// A problem that may pass: another try may succeed after `wait`.
+    pub(crate) fn temporary(kind: ProblemKind, detail: impl Into<String>, wait: Duration) -> Self {
         Error { retry_after: Some(whole_seconds(wait)), ..Error::new(kind, detail) }
     }
 

@@ -215,11 +215,16 @@ pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
     Err(Error::new(ProblemKind::Expired, detail))
 }
 
+/// Wait that a reader of a table is advised whose point is computed again: a run takes minutes.
+const RECOMPUTING: Duration = Duration::from_secs(30);
+
 /// The problem that a table is lost, with what becomes of it.
 fn damaged(name: &str, repair: Repair) -> Error {
+    let is_lost = format!("the table {name} is lost or was changed in storage, and nothing of it is served");
     let consequence = match repair {
         Repair::Queued | Repair::UnderWay => {
-            "the point is being computed again; ask again when it is done".to_owned()
+            let detail = format!("{is_lost}; its point is computed again: request it when that is done");
+            return Error::temporary(ProblemKind::Recomputing, detail, RECOMPUTING);
         }
         Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
                                 submit it again to have another try"
@@ -230,8 +235,5 @@ fn damaged(name: &str, repair: Repair) -> Error {
         ),
         Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
     };
-    let detail = format!(
-        "the table {name} is lost or was changed in storage, and nothing of it is served; {consequence}"
-    );
-    Error::new(ProblemKind::Damaged, detail)
+    Error::new(ProblemKind::Damaged, format!("{is_lost}; {consequence}"))
 }

@@ -127,7 +127,7 @@ impl Expansions {
         if of_owner >= (self.limits.waiting / 4).max(1) {
             state.refused += 1;
             let detail = format!("{of_owner} submissions and plans of this owner wait already");
-            return Err(Error::too_many(ProblemKind::TooManyRequests, detail, ADVICE));
+            return Err(Error::temporary(ProblemKind::TooManyRequests, detail, ADVICE));
         }
         state.owners.entry(owner.to_owned()).or_default().waiting += 1;
         let bytes = bytes.min(self.limits.bytes);

@@ -47,7 +47,7 @@ impl RequestLimiter {
     pub(crate) fn admit(&self, owner: &str) -> Result<()> {
         self.limiter.check_key(&owner.to_owned()).map_err(|not_until| {
             let wait = not_until.wait_time_from(self.clock.now());
-            Error::too_many(ProblemKind::TooManyRequests, "too many requests at once", wait)
+            Error::temporary(ProblemKind::TooManyRequests, "too many requests at once", wait)
         })
     }
 }

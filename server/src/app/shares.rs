@@ -44,7 +44,7 @@ impl Shares {
         let own = open.get(owner).copied().unwrap_or_default();
         if own >= self.of_owner && !owner.is_empty() {
             let detail = format!("{owner} has {own} {} open, as many as an owner may have", self.answers);
-            return Err(Error::too_many(ProblemKind::TooManyRequests, detail, ADVICE));
+            return Err(Error::temporary(ProblemKind::TooManyRequests, detail, ADVICE));
         }
         open.insert(owner.to_owned(), own + 1);
         Ok(Share { shares: self.clone(), owner: owner.to_owned() })

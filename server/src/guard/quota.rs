@@ -19,5 +19,5 @@ pub(crate) async fn check_open_points(app: &App, owner: &str, added: usize) -> R
     }
     let detail =
         format!("{owner} has {open} points queued or running; {added} more would exceed the {limit} allowed");
-    Err(Error::too_many(ProblemKind::QuotaExceeded, detail, WAIT))
+    Err(Error::temporary(ProblemKind::QuotaExceeded, detail, WAIT))
 }

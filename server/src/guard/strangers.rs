@@ -142,7 +142,7 @@ impl Stranger {
 
 fn too_many() -> Error {
     let detail = "too many tokens from this address were unknown, expired or revoked";
-    Error::too_many(ProblemKind::TooManyRequests, detail, Duration::from_secs_f64(1.0 / PER_SECOND))
+    Error::temporary(ProblemKind::TooManyRequests, detail, Duration::from_secs_f64(1.0 / PER_SECOND))
 }
 
 /// The network that a request comes from; without a connection, as in tests, the unspecified address.

@@ -31,6 +31,7 @@ pub(crate) struct ListQuery {
     #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
     limit: Option<u32>,
     /// `next` of the page before.
+    #[cfg_attr(feature = "openapi", param(min_length = 1))]
     cursor: Option<String>,
     /// Only these fields of each point, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
@@ -62,12 +63,13 @@ pub(crate) async fn list(
         let detail = format!("must be some of {}", PointRow::FIELDS.join(", "));
         return Err(Error::parameter("fields", Some(unknown), detail));
     }
-    let after = match &query.cursor {
-        None => 0,
-        Some(cursor) => cursor
-            .parse()
-            .map_err(|_| Error::parameter("cursor", Some(cursor), "must be `next` of the page before"))?,
-    };
+    let after =
+        match &query.cursor {
+            None => 0,
+            Some(cursor) => cursor.parse().ok().filter(|ordinal| *ordinal > 0).ok_or_else(|| {
+                Error::parameter("cursor", Some(cursor), "must be `next` of the page before")
+            })?,
+        };
     if app.store.sweep_version(&id).await?.is_none() {
         return Err(records::no_such_sweep(&id));
     }
@@ -112,6 +114,7 @@ pub(crate) struct FailuresQuery {
     #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
     limit: Option<u32>,
     /// `next` of the page before.
+    #[cfg_attr(feature = "openapi", param(min_length = 1))]
     cursor: Option<String>,
 }
 

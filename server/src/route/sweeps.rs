@@ -72,8 +72,8 @@ pub(crate) enum Cache {
     /// Their results are taken; the others are computed.
     #[default]
     Reuse,
-    /// All points are recomputed, failed ones too. The old results stay until new ones replace them, for all sweeps
-    /// that have the points; these are running again meanwhile.
+    /// All points are recomputed, failed ones too. The old results stay until new ones replace them, for all sweeps of
+    /// the owner that have the points; these are running again meanwhile. Sweeps of other owners keep theirs.
     Refresh,
     /// Their results are taken, and nothing is computed: a sweep with points that nobody has computed yet is refused (409),
     /// and the answer names them.
@@ -339,6 +339,7 @@ pub(crate) struct ListQuery {
     #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
     limit: Option<u32>,
     /// `next` of the page before.
+    #[cfg_attr(feature = "openapi", param(min_length = 1))]
     cursor: Option<String>,
     /// Only sweeps of this owner.
     owner: Option<String>,
@@ -606,7 +607,7 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
         operation_id = "change_sweep",
         params(
             ("id" = String, Path, description = "Identifier of the sweep"),
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+            ("If-Match" = Option<String>, Header, min_length = 1, description = "The `ETag` of the sweep as it was read."),
         ),
         request_body = SweepPatch,
         responses(
@@ -680,7 +681,7 @@ pub(crate) struct DeleteQuery {
         params(
             ("id" = String, Path, description = "Identifier of the sweep"),
             DeleteQuery,
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+            ("If-Match" = Option<String>, Header, min_length = 1, description = "The `ETag` of the sweep as it was read."),
         ),
         responses((status = 200, description = "What is deleted, or would be", body = SweepDeletion), Problems)
     )

@@ -40,7 +40,7 @@ async fn a_reader_of_a_damaged_table_has_it_computed_again() {
 
     let point = format!("{path}/points/1");
     for ask in ["artifacts/history", "history", "orbit?node=49", "spectrum?node=49"] {
-        let problem = bench.get(&format!("{point}/{ask}")).await.problem(500, "damaged");
+        let problem = bench.get(&format!("{point}/{ask}")).await.problem(503, "recomputing");
         let detail = problem["detail"].as_str().unwrap();
         assert!(detail.contains("table history") && detail.contains("computed again"), "{detail}");
         // Once: the second reader finds it on its way.
@@ -75,7 +75,7 @@ async fn no_range_of_a_damaged_file_is_served() {
     assert_eq!(range(&bench, &file, "bytes=0-9").await.status, StatusCode::PARTIAL_CONTENT);
     damage(&bench, &path, "history").await;
     for bytes in [format!("bytes={0}-{0}", length / 2), format!("bytes=0-{}", length - 1)] {
-        range(&bench, &file, &bytes).await.problem(500, "damaged");
+        range(&bench, &file, &bytes).await.problem(503, "recomputing");
     }
 }
 
@@ -85,7 +85,7 @@ async fn what_cannot_be_computed_again_says_so() {
     let path = finished(&bench).await;
     damage(&bench, &path, "history").await;
     let file = format!("{path}/points/1/artifacts/history");
-    bench.get(&file).await.problem(500, "damaged");
+    bench.get(&file).await.problem(503, "recomputing");
     bench.diverge().await;
     let problem = bench.get(&file).await.problem(500, "damaged");
     assert!(problem["detail"].as_str().unwrap().contains("has brought no result"), "{problem}");

@@ -36,6 +36,8 @@ async fn a_wrong_parameter_is_named_with_what_would_be_valid() {
         ("/points?limit=0", "limit", "0", "whole number of 1 or more"),
         ("/points?limit=501", "limit", "501", "at most 500"),
         ("/points?cursor=x", "cursor", "x", "next"),
+        ("/points?cursor=-1", "cursor", "-1", "next"),
+        ("/points?cursor=0", "cursor", "0", "next"),
         ("/points?state=done", "state", "done", "`succeeded`"),
         ("/points/one", "n", "one", "whole number"),
         ("/points/1/orbit?node=x", "node", "x", "whole number"),

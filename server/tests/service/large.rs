@@ -136,7 +136,7 @@ async fn an_answer_breaks_off_at_what_is_damaged_and_has_it_computed_again() {
     damaged[10] ^= 1;
     std::fs::write(&file, damaged).unwrap();
     for ask in ["history?format=csv", "history?format=parquet", "artifacts/history", "orbit?node=1"] {
-        bench.get(&format!("{point}/{ask}")).await.problem(500, "damaged");
+        bench.get(&format!("{point}/{ask}")).await.problem(503, "recomputing");
     }
 }
 

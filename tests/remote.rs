@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use drillsweep_server::Retaining;
-use drillsweep_store::{ObjectsLocation, RetentionPolicy, Role, Store, StoreConfig};
+use drillsweep_store::{Metrics, ObjectsLocation, RetentionPolicy, Role, Store, StoreConfig};
 use jiff::{SignedDuration, Timestamp};
 use serde_json::{Value, json};
 
@@ -95,6 +95,7 @@ impl Site {
             objects: self.objects.location(&self.objects.address(), "team"),
             role: Role::Server,
             clock_offset_ms,
+            metrics: Metrics::default(),
         }
     }
 

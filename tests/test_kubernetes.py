@@ -59,7 +59,7 @@ def test_every_file_is_a_resource() -> None:
 
 def test_kubernetes_knows_every_field() -> None:
     own = [document for document in documents() if not document["apiVersion"].startswith("keda.sh/")]
-    assert len(own) == 8
+    assert len(own) == 9
     for document in own:
         kubernetes_validate.validate(document, VERSION, strict=True)
 

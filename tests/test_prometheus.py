@@ -7,6 +7,7 @@ import re
 import shutil
 import socket
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import httpx
 import pytest
 import yaml
 
-from service import REPOSITORY, Service
+from service import REPOSITORY, Service, binary
 
 ALERTS = REPOSITORY / "deploy" / "prometheus"
 DASHBOARD = REPOSITORY / "deploy" / "grafana" / "drillsweep.json"
@@ -35,7 +36,23 @@ def metrics(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     answers = []
     while 429 not in answers:
         answers.append(httpx.get(f"http://{api}/v1/queue").status_code)
-    yield httpx.get(f"{service.server}/metrics").text
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        of_worker = "{}:{}".format(*free.getsockname())
+    worker = subprocess.Popen([binary(), "worker", "--metrics-listen", of_worker, "--data", data])
+    while True:
+        try:
+            of_worker_text = httpx.get(f"http://{of_worker}/metrics").text
+        except httpx.ConnectError:
+            of_worker_text = ""
+        # It opens its store after it listens.
+        if "drillsweep_worker" in of_worker_text:
+            break
+        assert worker.poll() is None
+        time.sleep(0.05)
+    worker.terminate()
+    worker.wait()
+    yield httpx.get(f"{service.server}/metrics").text + of_worker_text
     service.stop()
 
 

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::json;
 
-use crate::faults::{Logged, command, serve};
-use crate::{BINARY, PATIENCE, Process, get, post};
+use crate::faults::{Logged, bytes, command, request, serve, submit};
+use crate::{BINARY, PATIENCE, Process, completed, get, post, wait};
 
 impl Logged {
     /// Waits until the process ends by itself.
@@ -64,6 +64,7 @@ fn up_that_cannot_start_ends_with_the_reason_and_leaves_no_worker() {
         (&data, ["--metrics-listen", &address], &cannot_listen),
         (&data, ["--listen", "0.0.0.0:0"], "will not listen on 0.0.0.0"),
         (&data, ["--admin-token-file", &missing], "Not a directory"),
+        (&data, ["--worker-metrics-listen", &address], &cannot_listen),
         (&data, ["--scratch", &missing], "Not a directory"),
         (&data, ["--lease-seconds", "0.5"], "--lease-seconds must be from 1 to 3600, got 0.5"),
         (&below_file, ["--workers", "2"], "Not a directory"),
@@ -154,4 +155,59 @@ fn server_ends_in_time_while_a_request_computes() {
     assert!(request.join().unwrap().is_err(), "it was cut off");
     assert_eq!(status.code(), Some(1));
     server.wait_for(|log| log.contains("requests were still open 10s after").then_some(()));
+}
+
+/// The value of a metric.
+fn value(metrics: &str, name: &str) -> f64 {
+    let line = metrics.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+    line.unwrap_or_else(|| panic!("no {name} in {metrics}")).parse().unwrap()
+}
+
+#[test]
+fn server_and_workers_count_what_they_do() {
+    let place = tempfile::tempdir().unwrap();
+    let free = || TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+    let (address, of_server, of_worker) = (free(), free(), free());
+    let mut up = command(place.path(), &["up", "--workers", "1", "--listen", &address]);
+    up.args(["--metrics-listen", &of_server, "--worker-metrics-listen", &of_worker]);
+    let up = Logged::start(&mut up);
+    up.wait_for(|log| log.contains("worker ready").then_some(()));
+    let server = format!("http://{address}");
+    let sweep = submit(&server, &request(0.2, 3, 1));
+    wait(&server, &sweep, completed);
+    // Without its wall the string is buckled by the weight on bit.
+    let mut failing = request(0.2, 1, 1);
+    failing["set"]["effects.contact"] = json!("off");
+    let failing = submit(&server, &failing);
+    wait(&server, &failing, |sweep| sweep["counts"]["failed"] == 1);
+    let metrics = |address: &str| String::from_utf8(bytes(&format!("http://{address}/metrics"))).unwrap();
+    // The worker counts an end after it has stored it.
+    let worker = up.wait_for(|_| {
+        let worker = metrics(&of_worker);
+        (value(&worker, "drillsweep_worker_running") == 0.0).then_some(worker)
+    });
+    let attempts = |outcome: &str| {
+        value(&worker, &format!("drillsweep_worker_attempt_duration_seconds_count{{outcome=\"{outcome}\"}}"))
+    };
+    assert_eq!(["succeeded", "failed", "lost", "crashed"].map(attempts), [3.0, 1.0, 0.0, 0.0]);
+    assert_eq!(value(&worker, "drillsweep_worker_claims_total{attempt=\"first\"}"), 4.0);
+    assert_eq!(value(&worker, "drillsweep_worker_heartbeat_failures_total"), 0.0);
+    // Tables of three results, and no more bytes than are on the disk.
+    let put = value(&worker, "drillsweep_object_transfer_bytes_total{operation=\"put\"}");
+    let stored: u64 = crate::faults::files(&place.path().join("blobs"))
+        .iter()
+        .map(|file| file.metadata().unwrap().len())
+        .sum();
+    assert_eq!(put, stored as f64);
+    let server = metrics(&of_server);
+    for metrics in [&server, &worker] {
+        assert!(value(metrics, "process_resident_memory_bytes") > 1e6);
+        assert!(metrics.contains("drillsweep_build_info{version="));
+        assert_eq!(value(metrics, "drillsweep_expired_leases_total{state=\"queued\"}"), 0.0);
+        let connections =
+            |state: &str| value(metrics, &format!("drillsweep_database_connections{{state=\"{state}\"}}"));
+        let open = connections("idle") + connections("used");
+        assert!((1.0..=4.0).contains(&open), "{open} connections");
+        assert!(metrics.ends_with("# EOF\n"));
+    }
 }

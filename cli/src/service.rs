@@ -14,7 +14,9 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
-use drillsweep_server::{Config, ConnectionLimits, DEFAULT_ADDRESS, Listeners, OwnerLimits, Retaining};
+use drillsweep_server::{
+    Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, Retaining,
+};
 use drillsweep_store::{Role, Store, StoreConfig, patiently};
 use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit};
@@ -75,6 +77,9 @@ pub(crate) struct UpArguments {
     data: DataArguments,
     #[command(flatten)]
     listen: ListenArguments,
+    /// First of the addresses on which the workers serve `/metrics`, without tokens: one a worker, with ports that follow each other.
+    #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_WORKER_METRICS_LISTEN")]
+    worker_metrics_listen: Option<SocketAddr>,
     /// Number of worker processes; one per core unless given.
     #[arg(long, value_name = "NUMBER")]
     workers: Option<usize>,
@@ -121,6 +126,9 @@ pub(crate) struct WorkerArguments {
     /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
     #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     point_timeout: Option<Duration>,
+    /// Address on which `/metrics` is served, without tokens; absent means not at all.
+    #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_WORKER_METRICS_LISTEN")]
+    metrics_listen: Option<SocketAddr>,
     #[command(flatten)]
     scratch: ScratchArguments,
     /// Simulated seconds per second at most: holds points back, to see what becomes of a running one that is stopped or lost.
@@ -133,6 +141,16 @@ pub(crate) struct WorkerArguments {
     /// End when the process that started this one ends.
     #[arg(long, hide = true)]
     with_parent: bool,
+}
+
+impl UpArguments {
+    /// The address of a worker's metrics.
+    fn worker_metrics_listen(&self, index: usize) -> anyhow::Result<Option<SocketAddr>> {
+        let Some(first) = self.worker_metrics_listen else { return Ok(None) };
+        let port = u16::try_from(index).ok().and_then(|index| first.port().checked_add(index));
+        let port = port.context("--worker-metrics-listen leaves no port for the last worker")?;
+        Ok(Some(SocketAddr::new(first.ip(), port)))
+    }
 }
 
 impl ScratchArguments {
@@ -199,7 +217,9 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         set_parent_process_death_signal(Some(Signal::TERM))
             .context("the worker cannot follow the process that started it")?;
     }
+    let exposition = arguments.metrics_listen.map(|address| (address, Exposition::new()));
     let config = WorkerConfig {
+        registry: exposition.as_ref().map(|(_, exposition)| exposition.registry().clone()),
         lease: lease(arguments.lease_seconds)?,
         drain: arguments.drain,
         max_runtime: arguments.max_runtime,
@@ -211,7 +231,12 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
         ..WorkerConfig::new(arguments.data.store(Role::Worker)?)
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(async { Ok(drillsweep_worker::run(config, stop_on_signal()?.subscribe()).await?) })
+    runtime.block_on(async {
+        if let Some((address, exposition)) = exposition {
+            tokio::spawn(exposition.serve(bind(address).await?));
+        }
+        Ok(drillsweep_worker::run(config, stop_on_signal()?.subscribe()).await?)
+    })
 }
 
 /// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
@@ -378,9 +403,11 @@ async fn keep_workers(
     number: usize,
     stop: &watch::Sender<bool>,
 ) -> anyhow::Result<()> {
+    let commands: Vec<Command> =
+        (0..number).map(|index| worker_command(arguments, index)).collect::<anyhow::Result<_>>()?;
     let mut keepers = JoinSet::new();
-    for _ in 0..number {
-        let (command, store) = (worker_command(arguments)?, arguments.data.store(Role::Server)?);
+    for command in commands {
+        let store = arguments.data.store(Role::Server)?;
         let stop = stop.subscribe();
         keepers.spawn(async move { keep_worker(command, &store, stop).await });
     }
@@ -395,9 +422,14 @@ async fn keep_workers(
     kept
 }
 
-fn worker_command(arguments: &UpArguments) -> anyhow::Result<Command> {
+fn worker_command(arguments: &UpArguments, index: usize) -> anyhow::Result<Command> {
     let mut command = Command::new(std::env::current_exe()?);
     command.arg("worker").arg("--with-parent");
+    if let Some(address) = arguments.worker_metrics_listen(index)? {
+        // A worker that ends since its address is taken would be started again and again.
+        drop(std::net::TcpListener::bind(address).with_context(|| format!("cannot listen on {address}"))?);
+        command.arg("--metrics-listen").arg(address.to_string());
+    }
     arguments.data.hand_on(&mut command);
     command
         .arg("--lease-seconds")

@@ -6,6 +6,7 @@
 mod answer;
 mod app;
 mod collect;
+mod exposition;
 mod guard;
 mod listen;
 #[cfg(feature = "openapi")]
@@ -18,6 +19,7 @@ pub use app::Config;
 pub use app::expansions::ExpansionLimits;
 pub use app::limit::OwnerLimits;
 pub use app::retain::Retaining;
+pub use exposition::Exposition;
 pub use listen::ConnectionLimits;
 #[cfg(feature = "openapi")]
 pub use openapi::openapi_of_annotations;

@@ -157,7 +157,6 @@ async fn reap_expired_leases(mut app: App) {
         match app.store.reap_expired().await {
             Ok(0) => {}
             Ok(number) => {
-                app.metrics.expired_leases.inc_by(number);
                 tracing::warn!(number, "leases have expired; their points are queued again");
             }
             Err(error) => tracing::error!(%error, "the search for expired leases failed"),

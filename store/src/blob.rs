@@ -2,6 +2,7 @@
 
 mod backend;
 mod certificate;
+mod counted;
 mod location;
 
 use std::fs::File;
@@ -22,6 +23,7 @@ pub(crate) use self::certificate::untrusted_certificate;
 pub use self::location::{LocationError, ObjectsLocation};
 use crate::error::{Result, StoreError};
 use crate::hash_tree::{self, HashTree, HashTreeBuilder, HashTrees};
+use crate::metrics::ObjectMetrics;
 
 /// Bytes of a large file that are in memory at once.
 const PART: usize = 8 << 20;
@@ -83,7 +85,12 @@ impl BlobStore {
     /// # Errors
     /// When a directory cannot be made, or what the environment says of the service is wrong or not enough.
     pub fn open(location: &ObjectsLocation) -> Result<Self> {
-        Ok(Self { backend: Backend::open(location)?, trees: Arc::default() })
+        Self::counted(location, &ObjectMetrics::default())
+    }
+
+    /// The same, its requests counted.
+    pub(crate) fn counted(location: &ObjectsLocation, metrics: &ObjectMetrics) -> Result<Self> {
+        Ok(Self { backend: Backend::open(location, metrics)?, trees: Arc::default() })
     }
 
     /// Writes a blob, durably, unless it is there. What is there under its name is read, and replaced in one step where it

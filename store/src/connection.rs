@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::blob::{BlobStore, ObjectsLocation};
 use crate::database::{Database, DatabaseLocation, Transaction};
 use crate::error::Result;
+use crate::metrics::Metrics;
 use crate::notification::Listening;
 use crate::query::query;
 use crate::queue::Looking;
@@ -21,6 +22,8 @@ pub struct StoreConfig {
     pub role: Role,
     /// Added to the database's clock \[ms\]: zero but in tests of what time does.
     pub clock_offset_ms: i64,
+    /// Counts its use.
+    pub metrics: Metrics,
 }
 
 impl StoreConfig {
@@ -31,6 +34,7 @@ impl StoreConfig {
             objects: ObjectsLocation::Directory(directory.join("blobs")),
             role,
             clock_offset_ms: 0,
+            metrics: Metrics::default(),
         }
     }
 
@@ -67,6 +71,7 @@ pub struct Store {
     pub(crate) listening: Listening,
     pub(crate) reaping: Looking,
     pub(crate) applying: Looking,
+    pub(crate) metrics: Metrics,
     blobs: BlobStore,
 }
 
@@ -98,7 +103,8 @@ impl Store {
             listening: Listening::default(),
             reaping: Looking::default(),
             applying: Looking::default(),
-            blobs: BlobStore::open(&config.objects)?,
+            metrics: config.metrics.clone(),
+            blobs: BlobStore::counted(&config.objects, &config.metrics.objects)?,
         })
     }
 

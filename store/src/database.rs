@@ -34,6 +34,15 @@ pub(crate) enum Database {
     Postgres(Connections),
 }
 
+/// Numbers of connections.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ConnectionNumbers {
+    /// Connections that are open.
+    pub(crate) open: u32,
+    /// Of them, those that nobody uses.
+    pub(crate) idle: u32,
+}
+
 /// A transaction. It is undone unless it is committed.
 pub(crate) enum Transaction {
     Sqlite {
@@ -128,6 +137,16 @@ impl Database {
                 Database::Postgres(connections) => postgres::apply_transitions(connections).await,
             }
         })
+    }
+
+    /// Connections at this time.
+    pub(crate) fn connections(&self) -> ConnectionNumbers {
+        match self {
+            Database::Sqlite(pool, _) => {
+                ConnectionNumbers { open: pool.size(), idle: pool.num_idle() as u32 }
+            }
+            Database::Postgres(connections) => connections.numbers(),
+        }
     }
 
     /// Closes all connections.

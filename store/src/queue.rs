@@ -473,6 +473,7 @@ impl Store {
         query(sql::queue::WAKE).bind(LONGEST_RETRY_MS).execute(&mut tx).await?;
         tx.commit().await?;
         for (state, crashes, owner, note) in &expired {
+            self.metrics.lease_expired(state);
             tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
         }
         Ok(Some(expired.len() as u64))

@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use drillsweep_api::{FailureClass, PointError, compose};
@@ -16,6 +16,7 @@ use drillsweep_store::{
     StoreError, WorkerRecord, patiently,
 };
 use jiff::Timestamp;
+use prometheus_client::registry::Registry;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 use tracing::Instrument as _;
@@ -25,6 +26,7 @@ use crate::calibration::calibrate;
 use crate::compute::{Computation, ComputeError, compute_from, simulated_time_total};
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 use crate::memory::Memory;
+use crate::metrics::{Metrics, Outcome};
 use crate::priority::{NotComputed, compute_at_low_priority, parallel_threads};
 use crate::provenance::WorkerProvenance;
 use crate::spool::{Suspended, SuspendedError};
@@ -51,6 +53,8 @@ pub struct WorkerConfig {
     pub pace: Option<f64>,
     /// Version of the physics whose points it claims: that of this program but in tests of workers of several versions side by side.
     pub physics_version: u32,
+    /// Registry of counts for operators, in which this worker enters its own and those of its use of the store.
+    pub registry: Option<Arc<Mutex<Registry>>>,
 }
 
 impl WorkerConfig {
@@ -67,6 +71,7 @@ impl WorkerConfig {
             point_timeout: None,
             pace: None,
             physics_version: PHYSICS_VERSION,
+            registry: None,
         }
     }
 }
@@ -156,10 +161,18 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
     // Before the first claim, so that who holds a point can always be found.
     patiently(|| store.register_worker(&record)).await?;
     keep_speed(&store, &record.host).await;
-    let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease)?;
+    let metrics = Metrics::default();
+    if let Some(registry) = &config.registry {
+        let mut registry = registry.lock().unwrap_or_else(PoisonError::into_inner);
+        let registry = registry.sub_registry_with_prefix("drillsweep");
+        store.register_metrics(registry);
+        metrics.register(registry.sub_registry_with_prefix("worker"));
+    }
+    let heartbeat = Heartbeat::start(config.store.clone(), record.clone(), config.lease, metrics.clone())?;
     let mut changes = store.work_changes().await;
     tracing::info!(worker = %id, "worker ready");
-    let worker = Worker { config: &config, store: &store, heartbeat: &heartbeat, record: &record };
+    let worker =
+        Worker { config: &config, store: &store, heartbeat: &heartbeat, record: &record, metrics: &metrics };
     while !*stop.borrow() {
         let asked = Instant::now();
         match store.claim(&id, record.physics_version, worker.lease_ms()).await {
@@ -182,6 +195,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
                 () = stopped(&mut stop) => {}
             },
             Err(error) => {
+                metrics.store_failures.inc();
                 tracing::warn!(%error, "no work can be claimed");
                 idle(config.poll_interval * 4, &mut stop).await;
             }
@@ -233,6 +247,7 @@ struct Worker<'a> {
     store: &'a Store,
     heartbeat: &'a Heartbeat,
     record: &'a WorkerRecord,
+    metrics: &'a Metrics,
 }
 
 impl Worker<'_> {
@@ -243,19 +258,21 @@ impl Worker<'_> {
 
     /// Computes a point and stores what came of it. Gives the next point, where it was claimed with the result.
     async fn work_on(&self, claim: Claim, stop: &mut watch::Receiver<bool>) -> Option<Claim> {
-        let Self { config, store, heartbeat, record } = self;
+        let Self { config, store, heartbeat, record, metrics } = self;
         let lease = claim.lease;
+        metrics.claimed(lease.fencing_token);
+        let begun = Instant::now();
         let scenario = match compose(&claim.scenario.base_json, &claim.scenario.changes_json) {
             Ok(scenario) => scenario,
             Err(problem) => {
                 let error = ComputeError::Invalid(problem.to_string());
                 let ended = Ended::Computed(Err(error));
-                return self.end(&lease, ended, StopReason::None, Halt::No, stop).await;
+                return self.end(&lease, ended, (StopReason::None, Halt::No), begun, stop).await;
             }
         };
         if let Some(error) = too_large(&scenario) {
             let ended = Ended::Computed(Err(error));
-            return self.end(&lease, ended, StopReason::None, Halt::No, stop).await;
+            return self.end(&lease, ended, (StopReason::None, Halt::No), begun, stop).await;
         }
         let control = Arc::new(config.pace.map_or_else(Control::new, paced));
         let verdict = Arc::new(Verdict::default());
@@ -313,8 +330,9 @@ impl Worker<'_> {
             Err(NotComputed::NotStarted(error)) => Ended::Computed(Err(ComputeError::Thread(error))),
             Err(NotComputed::Panicked(panic)) => Ended::Panicked(panic_text(&*panic)),
         };
+        let halted = (verdict.get(), halt);
         let next =
-            self.end(&lease, ended, verdict.get(), halt, stop).instrument(tracing::info_span!("store")).await;
+            self.end(&lease, ended, halted, begun, stop).instrument(tracing::info_span!("store")).await;
         heartbeat.watch(None);
         next
     }
@@ -325,8 +343,8 @@ impl Worker<'_> {
         &self,
         lease: &Lease,
         mut ended: Ended,
-        reason: StopReason,
-        halt: Halt,
+        halted: (StopReason, Halt),
+        begun: Instant,
         stop: &watch::Receiver<bool>,
     ) -> Option<Claim> {
         /// The longest wait between two tries.
@@ -335,17 +353,23 @@ impl Worker<'_> {
         let mut pause = Duration::from_millis(250);
         loop {
             let goes_on = !*stop.borrow();
-            match self.write_end(lease, &mut ended, reason, halt, goes_on).await {
-                Ok(Finished { is_stored, next }) => {
+            match self.write_end(lease, &mut ended, halted, goes_on).await {
+                Ok((outcome, Finished { is_stored, next })) => {
+                    let outcome = if is_stored { outcome } else { Outcome::Lost };
+                    self.metrics.ended(outcome, begun.elapsed());
                     if !is_stored {
                         tracing::warn!("lease lost, result dropped");
                     }
                     return next;
                 }
-                Err(error) => tracing::warn!(%error, "the end of a point cannot be stored"),
+                Err(error) => {
+                    self.metrics.store_failures.inc();
+                    tracing::warn!(%error, "the end of a point cannot be stored");
+                }
             }
             if Instant::now() + pause > deadline {
                 // The lease runs out by itself, and the point is taken over.
+                self.metrics.ended(Outcome::Lost, begun.elapsed());
                 return None;
             }
             tokio::time::sleep(pause).await;
@@ -358,15 +382,14 @@ impl Worker<'_> {
         &self,
         lease: &Lease,
         ended: &mut Ended,
-        reason: StopReason,
-        halt: Halt,
+        (reason, halt): (StopReason, Halt),
         goes_on: bool,
-    ) -> drillsweep_store::Result<Finished> {
+    ) -> drillsweep_store::Result<(Outcome, Finished)> {
         let Self { store, record, .. } = self;
-        let is_stored = match ended {
+        let (outcome, is_stored) = match ended {
             Ended::Computed(Ok(Computation::Finished(computed))) => {
                 match self.upload(lease, &computed.artifacts).await {
-                    Ok(None) => Ok(false),
+                    Ok(None) => (Outcome::Lost, false),
                     Ok(Some(artifacts)) => {
                         let summary = Value::Object(computed.summary_row()).to_string();
                         let provenance = json!(computed.provenance).to_string();
@@ -379,38 +402,43 @@ impl Worker<'_> {
                         };
                         if goes_on {
                             let version = record.physics_version;
-                            return store.finish_and_claim(lease, &result, version, self.lease_ms()).await;
+                            let finished =
+                                store.finish_and_claim(lease, &result, version, self.lease_ms()).await?;
+                            return Ok((Outcome::Succeeded, finished));
                         }
-                        store.finish_done(lease, &result).await
+                        (Outcome::Succeeded, store.finish_done(lease, &result).await?)
                     }
                     // The database, by which blobs are reserved, or a certificate, which is not waited for: the whole is tried again.
-                    Err(error @ (StoreError::Database(_) | StoreError::UntrustedObjects(_))) => Err(error),
+                    Err(error @ (StoreError::Database(_) | StoreError::UntrustedObjects(_))) => {
+                        return Err(error);
+                    }
                     Err(error) => {
                         tracing::warn!(%error, "artifacts cannot be written");
                         let error = PointError::new(FailureClass::Infrastructure, error.to_string());
-                        store.retry_later(lease, &text_of(&error)).await
+                        (Outcome::Retried, store.retry_later(lease, &text_of(&error)).await?)
                     }
                 }
             }
             Ended::Computed(Ok(Computation::Suspended(suspended))) => {
-                halted(store, lease, Some(suspended), reason, halt).await
+                halted(store, lease, Some(suspended), reason, halt).await?
             }
             Ended::Computed(Err(error)) if error.is_of_this_worker() => {
                 tracing::error!(%error, "this worker cannot compute the point");
-                store.retry_later(lease, &text_of(&error.to_point_error())).await
+                (Outcome::Retried, store.retry_later(lease, &text_of(&error.to_point_error())).await?)
             }
-            Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await,
+            Ended::Computed(Err(ComputeError::Cancelled)) => halted(store, lease, None, reason, halt).await?,
             Ended::Computed(Err(error)) => {
                 tracing::warn!(%error, "point failed");
-                store.finish_failed(lease, &text_of(&error.to_point_error())).await
+                (Outcome::Failed, store.finish_failed(lease, &text_of(&error.to_point_error())).await?)
             }
             Ended::Panicked(text) => {
                 tracing::error!(text, "the simulation panicked");
                 let reason = format!("the simulation panicked: {text}");
-                store.crashed(lease, &text_of(&PointError::new(FailureClass::Crash, reason))).await
+                let error = PointError::new(FailureClass::Crash, reason);
+                (Outcome::Crashed, store.crashed(lease, &text_of(&error)).await?)
             }
         };
-        Ok(Finished { is_stored: is_stored?, next: None })
+        Ok((outcome, Finished { is_stored, next: None }))
     }
 
     /// Writes the tables as blobs, before any row refers to them; none if the lease is lost.
@@ -490,27 +518,28 @@ async fn halted(
     suspended: Option<&mut Suspended>,
     reason: StopReason,
     halt: Halt,
-) -> drillsweep_store::Result<bool> {
-    match (reason, halt) {
-        (StopReason::LeaseLost, _) => Ok(false),
+) -> drillsweep_store::Result<(Outcome, bool)> {
+    Ok(match (reason, halt) {
+        (StopReason::LeaseLost, _) => (Outcome::Lost, false),
         (StopReason::Cancelled, _) => {
             let error = PointError::new(FailureClass::Cancelled, "cancelled");
-            store.finish_cancelled(lease, &text_of(&error)).await
+            (Outcome::Cancelled, store.finish_cancelled(lease, &text_of(&error)).await?)
         }
         (StopReason::None, Halt::Timeout(time)) => {
             let reason = format!("it exceeded the worker's time limit of {} s", time.as_secs_f64());
             if let Some(blob) = write_suspended(store, suspended).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
-            store.finish_failed(lease, &text_of(&PointError::new(FailureClass::Timeout, reason))).await
+            let error = PointError::new(FailureClass::Timeout, reason);
+            (Outcome::Failed, store.finish_failed(lease, &text_of(&error)).await?)
         }
         (StopReason::None, Halt::Stop | Halt::No) => {
             if let Some(blob) = write_suspended(store, suspended).await {
                 store.keep_checkpoint(lease, blob).await?;
             }
-            store.release(lease).await
+            (Outcome::Suspended, store.release(lease).await?)
         }
-    }
+    })
 }
 
 /// Writes a suspended run as a blob, before any row refers to it; none where it cannot be written.

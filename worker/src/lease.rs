@@ -11,6 +11,7 @@ use drillsweep_sim::control::Control;
 use drillsweep_store::{Lease, Renewal, Store, StoreConfig, WorkerRecord};
 
 use crate::memory::Memory;
+use crate::metrics::Metrics;
 
 /// Renewals per lease: two may fail before it runs out.
 const RENEWALS_PER_LEASE: u32 = 3;
@@ -66,11 +67,16 @@ pub(crate) struct Heartbeat {
 
 impl Heartbeat {
     /// Starts the thread, which keeps the entry of `worker` in the register fresh, while idle too, until it is dropped.
-    pub(crate) fn start(config: StoreConfig, worker: WorkerRecord, lease: Duration) -> std::io::Result<Self> {
+    pub(crate) fn start(
+        config: StoreConfig,
+        worker: WorkerRecord,
+        lease: Duration,
+        metrics: Metrics,
+    ) -> std::io::Result<Self> {
         let (jobs, inbox) = mpsc::channel();
         let thread = std::thread::Builder::new()
             .name("heartbeat".to_owned())
-            .spawn(move || beat(&config, &worker, lease, &inbox))?;
+            .spawn(move || beat(&config, &worker, lease, &inbox, &metrics))?;
         Ok(Self { jobs: Some(jobs), thread: Some(thread) })
     }
 
@@ -97,6 +103,7 @@ fn beat(
     worker: &WorkerRecord,
     lease: Duration,
     inbox: &mpsc::Receiver<Option<Watched>>,
+    metrics: &Metrics,
 ) {
     let runtime = match tokio::runtime::Builder::new_current_thread().enable_all().build() {
         Ok(runtime) => runtime,
@@ -129,6 +136,7 @@ fn beat(
         }
         next = Instant::now() + interval;
         if let Err(error) = runtime.block_on(renew(config, worker, lease_ms, &mut store, point.as_ref())) {
+            metrics.heartbeat_failures.inc();
             tracing::warn!(%error, "a heartbeat failed");
             // Better to lose the work than to compute as a zombie.
             if let Some(point) = point.as_ref().filter(|_| renewed.elapsed() * 2 > lease) {
@@ -195,7 +203,8 @@ mod tests {
         runtime.block_on(store.register_worker(&worker)).unwrap();
         let last_seen = || runtime.block_on(store.workers(i64::MAX / 2)).unwrap()[0].last_seen;
         let (first, patience) = (last_seen(), Instant::now() + Duration::from_secs(30));
-        let heartbeat = Heartbeat::start(config, worker, Duration::from_millis(300)).unwrap();
+        let heartbeat =
+            Heartbeat::start(config, worker, Duration::from_millis(300), Metrics::default()).unwrap();
         while last_seen() < first + 500 {
             assert!(Instant::now() < patience, "never heard of again");
             heartbeat.watch(None);

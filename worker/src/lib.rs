@@ -12,6 +12,7 @@ mod compute;
 mod cost;
 mod lease;
 mod memory;
+mod metrics;
 mod priority;
 mod provenance;
 mod spool;

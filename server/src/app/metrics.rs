@@ -1,25 +1,21 @@
 //! What is counted for operators, as Prometheus text.
 
-use std::sync::Mutex;
+use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use axum::http::{Method, StatusCode};
-use drillsweep_api::PHYSICS_VERSION;
-use drillsweep_store::Census;
+use drillsweep_store::{Census, Store};
 use prometheus_client::encoding::EncodeLabelSet;
-use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::{Registry, Unit};
 
-use crate::answer::error::{Error, Result};
+use crate::answer::error::Result;
+use crate::exposition::Exposition;
 use crate::listen::ConnectionCounts;
-
-/// The media type of [`Metrics::text`].
-pub(crate) const TEXT: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 /// Upper ends \[s\] of the ranges in which requests are counted by their duration.
 const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.5, 2.0, 10.0];
@@ -37,16 +33,14 @@ pub(crate) struct Occupancy {
 
 /// What is counted.
 pub(crate) struct Metrics {
-    registry: Mutex<Registry>,
+    exposition: Exposition,
     requests: Family<RequestLabels, Histogram>,
     streams: Gauge,
-    pub(crate) expired_leases: Counter,
     pub(crate) connections: ConnectionCounts,
     /// Tokens that were not valid.
     pub(crate) refused_tokens: Counter,
     throttled: Family<OwnerLabel, Counter>,
     collections: Family<OutcomeLabel, Counter>,
-    process: ProcessMetrics,
     lanes: LaneMetrics,
     census: CensusGauges,
 }
@@ -71,47 +65,6 @@ struct OwnerLabel {
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct OutcomeLabel {
     outcome: &'static str,
-}
-
-#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct BuildLabels {
-    version: &'static str,
-    physics_version: u32,
-}
-
-/// The process, by the names that are usual for it.
-#[derive(Default)]
-struct ProcessMetrics {
-    cpu: Counter<f64, AtomicU64>,
-    memory: Gauge,
-    files: Gauge,
-    start: Gauge<f64, AtomicU64>,
-}
-
-impl ProcessMetrics {
-    fn register(&self, registry: &mut Registry) {
-        registry.register_with_unit("cpu", "Processor time", Unit::Seconds, self.cpu.clone());
-        registry.register_with_unit("resident_memory", "Resident memory", Unit::Bytes, self.memory.clone());
-        registry.register("open_fds", "Open file descriptors", self.files.clone());
-        registry.register_with_unit("start_time", "Start since the epoch", Unit::Seconds, self.start.clone());
-    }
-
-    /// Reads the process's figures, on systems that show them.
-    fn read(&self) {
-        let Ok(process) = procfs::process::Process::myself() else { return };
-        if let Ok(stat) = process.stat() {
-            let ticks = procfs::ticks_per_second() as f64;
-            let cpu = (stat.utime + stat.stime) as f64 / ticks;
-            self.cpu.inner().store(cpu.to_bits(), Ordering::Relaxed);
-            self.memory.set((stat.rss * procfs::page_size()) as i64);
-            if let Ok(boot) = procfs::boot_time_secs() {
-                self.start.set(boot as f64 + stat.starttime as f64 / ticks);
-            }
-        }
-        if let Ok(files) = process.fd_count() {
-            self.files.set(files as i64);
-        }
-    }
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
@@ -164,14 +117,14 @@ struct CensusGauges {
 }
 
 impl Metrics {
-    pub(crate) fn new() -> Self {
-        let mut all = Registry::default();
-        let process = ProcessMetrics::default();
-        process.register(all.sub_registry_with_prefix("process"));
+    pub(crate) fn new(store: &Store) -> Self {
+        let exposition = Exposition::new();
+        let mut all = exposition.registry().lock().unwrap_or_else(PoisonError::into_inner);
         let registry = all.sub_registry_with_prefix("drillsweep");
+        store.register_metrics(registry);
         let requests =
             Family::<RequestLabels, Histogram>::new_with_constructor(|| Histogram::new(REQUEST_SECONDS));
-        let (streams, expired_leases) = (Gauge::default(), Counter::default());
+        let streams = Gauge::default();
         let (lanes, census) = (LaneMetrics::default(), CensusGauges::default());
         registry.register("event_streams", "Event streams that are open", streams.clone());
         registry.register_with_unit(
@@ -179,11 +132,6 @@ impl Metrics {
             "Time from a request's headers to its answer's headers, by route",
             Unit::Seconds,
             requests.clone(),
-        );
-        registry.register(
-            "expired_leases",
-            "Expired leases of silent workers that this process has found",
-            expired_leases.clone(),
         );
         let connections = ConnectionCounts::default();
         registry.register("connections", "Connections that are open", connections.open.clone());
@@ -210,26 +158,17 @@ impl Metrics {
             "Collections of expired data by this process, by outcome",
             collections.clone(),
         );
-        let build = Family::<BuildLabels, Gauge>::default();
-        build
-            .get_or_create(&BuildLabels {
-                version: env!("CARGO_PKG_VERSION"),
-                physics_version: PHYSICS_VERSION,
-            })
-            .set(1);
-        registry.register("build_info", "Version of the program and of its numbers", build);
         lanes.register(registry);
         census.register(registry);
+        drop(all);
         Metrics {
-            registry: Mutex::new(all),
+            exposition,
             requests,
             streams,
-            expired_leases,
             connections,
             refused_tokens,
             throttled,
             collections,
-            process,
             lanes,
             census,
         }
@@ -259,14 +198,10 @@ impl Metrics {
         streams: usize,
         lanes: &[(&'static str, Occupancy)],
     ) -> Result<String> {
-        let registry = self.registry.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         self.streams.set(streams as i64);
-        self.process.read();
         self.lanes.set(lanes);
         self.census.set(census);
-        let mut text = String::new();
-        encode(&mut text, &registry).map_err(|error| Error::internal(&error))?;
-        Ok(text)
+        self.exposition.text()
     }
 }
 

@@ -135,7 +135,7 @@ impl App {
             let grace = config.large_answer_grace;
             Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, grace))
         };
-        let metrics = Metrics::new();
+        let metrics = Metrics::new(&store);
         let strangers = Strangers::new(metrics.refused_tokens.clone());
         App {
             store,

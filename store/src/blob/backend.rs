@@ -15,8 +15,10 @@ use object_store::{BackoffConfig, ObjectStore, RetryConfig};
 
 use super::StoredObject;
 use super::certificate::Connector;
+use super::counted::Counted;
 use super::location::ObjectsLocation;
 use crate::error::{Result, StoreError};
+use crate::metrics::ObjectMetrics;
 
 /// Bytes that are read at once of an object in a directory where it is read from its beginning to its end. The object store's own
 /// stream hands out 8 KiB at a time, each from another thread, which takes longer than hashing them.
@@ -67,18 +69,20 @@ pub(super) struct Backend {
 impl Backend {
     /// # Errors
     /// When a directory cannot be made, or the settings of a service are wrong. Whether it answers is not tried.
-    pub(super) fn open(location: &ObjectsLocation) -> Result<Self> {
+    pub(super) fn open(location: &ObjectsLocation, metrics: &ObjectMetrics) -> Result<Self> {
         match location {
-            ObjectsLocation::Directory(path) => Self::in_directory(path),
-            ObjectsLocation::S3 { bucket, prefix, settings } => Self::in_bucket(bucket, prefix, settings),
+            ObjectsLocation::Directory(path) => Self::in_directory(path, metrics),
+            ObjectsLocation::S3 { bucket, prefix, settings } => {
+                Self::in_bucket(bucket, prefix, settings, metrics)
+            }
         }
     }
 
-    fn in_directory(directory: &Path) -> Result<Self> {
+    fn in_directory(directory: &Path, metrics: &ObjectMetrics) -> Result<Self> {
         std::fs::create_dir_all(directory)
             .map_err(|source| StoreError::Directory { path: directory.display().to_string(), source })?;
-        let objects: Arc<dyn ObjectStore> =
-            Arc::new(LocalFileSystem::new_with_prefix(directory)?.with_fsync(true));
+        let files = LocalFileSystem::new_with_prefix(directory)?.with_fsync(true);
+        let objects: Arc<dyn ObjectStore> = Arc::new(Counted::new(files, metrics.clone()));
         Ok(Self {
             uploads: objects.clone(),
             objects,
@@ -88,11 +92,17 @@ impl Backend {
         })
     }
 
-    fn in_bucket(bucket: &str, prefix: &str, settings: &BTreeMap<String, String>) -> Result<Self> {
+    fn in_bucket(
+        bucket: &str,
+        prefix: &str,
+        settings: &BTreeMap<String, String>,
+        metrics: &ObjectMetrics,
+    ) -> Result<Self> {
         // An error says that there is one already, which will do.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let open = |patience: &Patience| -> Result<Arc<dyn ObjectStore>> {
-            Ok(Arc::new(PrefixStore::new(s3(bucket, settings, patience)?, prefix)))
+            let bucket = PrefixStore::new(s3(bucket, settings, patience)?, prefix);
+            Ok(Arc::new(Counted::new(bucket, metrics.clone())))
         };
         Ok(Self {
             objects: open(&SHORT)?,

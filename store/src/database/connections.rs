@@ -14,6 +14,8 @@ use sqlx::postgres::{PgConnection, PgPool};
 use sqlx::{Connection as _, Postgres};
 use tokio::sync::{Mutex, OwnedMutexGuard};
 
+use super::ConnectionNumbers;
+
 /// How long a connection is trusted after its last use; later it is asked first whether it is still there, which takes a message and its
 /// answer.
 pub(super) const TRUSTED_FOR: Duration = Duration::from_secs(1);
@@ -79,6 +81,18 @@ impl Connections {
         let connection = self.pool.acquire().await?.detach();
         let now = Instant::now();
         Ok(Lent::Own(Box::new(AtHand { connection, made: now, used: now }), at_hand))
+    }
+
+    /// Connections of the pool and the one beside it.
+    pub(crate) fn numbers(&self) -> ConnectionNumbers {
+        let (open, idle) = (self.pool.size(), self.pool.num_idle() as u32);
+        match self.at_hand.try_lock() {
+            Ok(at_hand) => {
+                let at_hand = u32::from(at_hand.is_some());
+                ConnectionNumbers { open: open + at_hand, idle: idle + at_hand }
+            }
+            Err(_) => ConnectionNumbers { open: open + 1, idle },
+        }
     }
 
     /// Closes all connections; those in use once they are given back.

@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
+use bytes::Bytes;
 use clap::Args;
-use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails, Sweep, SweepList};
+use drillsweep_api::{LIMITS, PointList, PointRow, ProblemDetails, ProblemKind, Sweep, SweepList};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use reqwest::header::{AUTHORIZATION, CONTENT_TYPE, HeaderMap, RETRY_AFTER};
-use reqwest::{Method, StatusCode};
+use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tokio::runtime::Runtime;
@@ -30,10 +31,10 @@ pub(crate) struct ServerArguments {
 }
 
 /// How long a command that watches tolerates a server that does not answer, as during a restart.
-const PATIENCE: Duration = Duration::from_secs(60);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// How long it waits between two tries.
-const RETRY_PAUSE: Duration = Duration::from_secs(1);
+pub(crate) const RETRY_PAUSE: Duration = Duration::from_secs(1);
 
 /// A client of one server. Its calls block.
 pub(crate) struct Client {
@@ -44,10 +45,10 @@ pub(crate) struct Client {
 }
 
 /// What a server answered.
-struct Answer {
-    status: StatusCode,
+pub(crate) struct Answer {
+    pub(crate) status: StatusCode,
     headers: HeaderMap,
-    body: Vec<u8>,
+    pub(crate) body: Bytes,
 }
 
 impl Client {
@@ -103,14 +104,10 @@ impl Client {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let answer = self.request(path);
-            let is_worth_another_try = match &answer {
-                Ok(answer) => matches!(answer.status.as_u16(), 429 | 502..=504),
-                Err(_) => true,
-            };
-            if !is_worth_another_try || Instant::now() >= deadline {
+            if !is_worth_another_try(answer.as_ref()) || Instant::now() >= deadline {
                 return answer?.json();
             }
-            let asked = answer.as_ref().ok().and_then(|answer| retry_after(&answer.headers));
+            let asked = answer.as_ref().ok().and_then(Answer::retry_after);
             std::thread::sleep(asked.unwrap_or(RETRY_PAUSE));
         }
     }
@@ -170,15 +167,15 @@ impl Client {
     }
 
     /// Reads a file.
-    pub(crate) fn bytes(&self, path: &str) -> anyhow::Result<Vec<u8>> {
+    pub(crate) fn bytes(&self, path: &str) -> anyhow::Result<Bytes> {
         self.file(path)?.map_err(|problem| anyhow!("{path}: {problem}"))
     }
 
     /// Reads a file, or the problem that the server answers with in its place. What keeps all files back is an error: no server, or
     /// no right to read.
-    pub(crate) fn file(&self, path: &str) -> anyhow::Result<Result<Vec<u8>, String>> {
+    pub(crate) fn file(&self, path: &str) -> anyhow::Result<Result<Bytes, String>> {
         let answer = self.request(path)?;
-        if matches!(answer.status.as_u16(), 401 | 403 | 429) {
+        if answer.refuses_all() {
             bail!("{path}: {}", answer.problem());
         }
         if !answer.status.is_success() {
@@ -198,24 +195,39 @@ impl Client {
         json: Option<Vec<u8>>,
         headers: &[(&str, &str)],
     ) -> anyhow::Result<Answer> {
-        let url = format!("{}{path}", self.server);
-        let mut request = self.http.request(method, &url);
-        if let Some(token) = &self.token {
-            request = request.header(AUTHORIZATION, format!("Bearer {token}"));
-        }
+        let mut request = self.prepare(method, path);
         if let Some(json) = json {
             request = request.header(CONTENT_TYPE, "application/json").body(json);
         }
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        let answer = self.runtime.block_on(async {
+        self.block_on(self.answer(request, path))
+    }
+
+    /// A request with this client's token.
+    pub(crate) fn prepare(&self, method: Method, path: &str) -> RequestBuilder {
+        let request = self.http.request(method, format!("{}{path}", self.server));
+        match &self.token {
+            Some(token) => request.header(AUTHORIZATION, format!("Bearer {token}")),
+            None => request,
+        }
+    }
+
+    /// Sends a request and reads the whole answer.
+    pub(crate) async fn answer(&self, request: RequestBuilder, path: &str) -> anyhow::Result<Answer> {
+        let answer = async {
             let response = request.send().await?;
             let (status, headers) = (response.status(), response.headers().clone());
-            Ok::<_, reqwest::Error>(Answer { status, headers, body: response.bytes().await?.into() })
-        });
+            Ok::<_, reqwest::Error>(Answer { status, headers, body: response.bytes().await? })
+        };
         // The error names the address too.
-        answer.map_err(reqwest::Error::without_url).with_context(|| no_answer(&url))
+        let answer = answer.await.map_err(reqwest::Error::without_url);
+        answer.with_context(|| no_answer(&format!("{}{path}", self.server)))
+    }
+
+    pub(crate) fn block_on<T>(&self, future: impl Future<Output = T>) -> T {
+        self.runtime.block_on(future)
     }
 }
 
@@ -227,13 +239,35 @@ impl Answer {
         Ok(serde_json::from_slice(&self.body)?)
     }
 
+    /// Whether it is a problem of this kind.
+    pub(crate) fn is_of(&self, kind: ProblemKind) -> bool {
+        let problem = serde_json::from_slice::<ProblemDetails>(&self.body);
+        self.status.as_u16() == kind.status() && problem.is_ok_and(|problem| problem.type_uri == kind.uri())
+    }
+
+    /// Whether all other files would be refused like this.
+    pub(crate) fn refuses_all(&self) -> bool {
+        matches!(self.status.as_u16(), 401 | 403 | 429)
+    }
+
+    /// Wait that the server asks for, at most a minute.
+    pub(crate) fn retry_after(&self) -> Option<Duration> {
+        let seconds: u64 = self.headers.get(RETRY_AFTER)?.to_str().ok()?.parse().ok()?;
+        Some(Duration::from_secs(seconds.min(60)))
+    }
+
     /// A problem document in lines for people.
-    fn problem(&self) -> String {
+    pub(crate) fn problem(&self) -> String {
         match serde_json::from_slice::<ProblemDetails>(&self.body) {
             Ok(problem) => format!("{}: {problem}", self.status),
             Err(_) => format!("the server answered {}", self.status),
         }
     }
+}
+
+/// Whether the server does not answer, or is not available for the time being.
+pub(crate) fn is_worth_another_try(answer: Result<&Answer, &anyhow::Error>) -> bool {
+    answer.is_ok_and(|answer| matches!(answer.status.as_u16(), 429 | 502..=504)) || answer.is_err()
 }
 
 /// An address as a URL without its last slash; `host:port` is one of HTTP.
@@ -244,12 +278,6 @@ fn address(text: &str) -> String {
 
 fn no_answer(url: &str) -> String {
     format!("no answer from {url}; is the server up?")
-}
-
-/// Seconds that the server asks to wait for, at most a minute.
-fn retry_after(headers: &HeaderMap) -> Option<Duration> {
-    let seconds: u64 = headers.get(RETRY_AFTER)?.to_str().ok()?.parse().ok()?;
-    Some(Duration::from_secs(seconds.min(60)))
 }
 
 /// What does not stand for itself in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.

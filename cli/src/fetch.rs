@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, ValueEnum};
-use drillsweep_api::{PointDetail, Sweep};
+use drillsweep_api::{ArtifactEntry, ArtifactList, PointDetail, Sweep};
 use drillsweep_table::quantity::columns::ORBIT_MEAN_RADIUS;
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::quantity::{Name, Place, Variant};
@@ -153,9 +153,17 @@ fn points(
         let (mark, described) = (folder.join("point.json"), serde_json::to_string_pretty(&point)?);
         files.is_unchanged = std::fs::read(&mark).is_ok_and(|known| known == described.as_bytes());
         let has = |name: &str| point.tables.iter().any(|table| table == name);
+        // Parquet is served as it is stored, and a long history in stretches.
+        let stored: Vec<ArtifactEntry> = match format == Format::Parquet.name() && !point.tables.is_empty() {
+            true => client.get::<ArtifactList>(&format!("{path}/artifacts"))?.artifacts,
+            false => Vec::new(),
+        };
         for table in TABLES.iter().map(|table| table.name).filter(|table| has(table)) {
             let file = folder.join(format!("{table}.{format}"));
-            files.download(client, &format!("{path}/{table}?format={format}"), file)?;
+            match stored.iter().find(|entry| entry.name == table && entry.expired.is_none()) {
+                Some(entry) => files.download_stored(client, entry, file)?,
+                None => files.download(client, &format!("{path}/{table}?format={format}"), file)?,
+            }
         }
         if has("cost") {
             for extension in ["json", "csv", "svg", "png"] {
@@ -235,6 +243,24 @@ impl Files {
                 Ok(())
             }
         }
+    }
+
+    /// The same of a table as it is stored.
+    fn download_stored(
+        &mut self,
+        client: &Client,
+        entry: &ArtifactEntry,
+        file: PathBuf,
+    ) -> anyhow::Result<()> {
+        if self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() == entry.bytes) {
+            self.written.push(file);
+            return Ok(());
+        }
+        match client.stored_table(entry, &file)? {
+            Ok(()) => self.written.push(file),
+            Err(reason) => self.missing.push(Missing { file, reason }),
+        }
+        Ok(())
     }
 
     fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {

@@ -7,6 +7,7 @@ mod check;
 mod client;
 mod cost;
 mod data;
+mod download;
 mod exposure;
 mod fetch;
 mod gc;

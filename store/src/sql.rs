@@ -163,6 +163,8 @@ statements! {
     submit {
         ANALYZE = "analyze",
         APPENDED = "appended",
+        COPY_ARTIFACTS = "copy_artifacts",
+        COPY_RESULTS = "copy_results",
         COUNT = "count",
         ENDS_OF_ORDER = "ends_of_order",
         EXTENDED_SWEEP = "extended_sweep",
@@ -178,6 +180,7 @@ statements! {
         KNOWN_RESULTS = "known_results",
         KNOWN_SWEEP = "known_sweep",
         KNOWN_WORK = "known_work",
+        OTHERS_RESULTS = "others_results",
         POINTS_OF = "points_of",
         SET_POINTS = "set_points",
         SHOW = "show",

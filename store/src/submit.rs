@@ -99,7 +99,8 @@ pub enum CachePolicy {
     /// Their result is taken.
     #[default]
     Reuse,
-    /// They are recomputed, failed ones too. The old result stays until a new one takes its place.
+    /// They are recomputed, failed ones too. The old result stays until a new one takes its place; where sweeps of other owners have
+    /// it, it stays theirs, and the new one is this sweep's.
     Refresh,
     /// Their result is taken, or that they failed; a sweep with other points is not stored.
     Only,
@@ -229,12 +230,13 @@ impl Store {
                 still_hidden(&mut tx, sql::submit::KEEP_HIDDEN, &sweep.id).await?;
             }
             is_first = false;
-            let rows = match sweep.cache {
-                CachePolicy::Reuse | CachePolicy::Only => with_fuller(&mut tx, rows).await?,
-                CachePolicy::Refresh => Cow::from(rows),
+            let (rows, copied) = match sweep.cache {
+                CachePolicy::Reuse | CachePolicy::Only => (with_fuller(&mut tx, rows).await?, Vec::new()),
+                CachePolicy::Refresh => apart(&mut tx, sweep, rows).await?,
             };
             let base = insert_base(&mut tx, base_json).await?;
             insert_work(&mut tx, &wanted, base, &rows, place, now).await?;
+            copy_results(&mut tx, &copied).await?;
             insert_points(&mut tx, &sweep.id, role, &rows).await?;
             count(&mut tx, &sweep.id, role, &rows, now).await?;
             place += PLACE_OF_A_POINT * rows.len() as i64;
@@ -424,6 +426,44 @@ async fn with_fuller<'p>(
     Ok(all)
 }
 
+/// The points, those whose results sweeps of other owners have as points of work of their own; and the keys of both.
+async fn apart<'p>(
+    tx: &mut Transaction,
+    sweep: &NewSweep,
+    points: &'p [NewPoint],
+) -> Result<(Cow<'p, [NewPoint]>, Vec<(WorkKey, WorkKey)>)> {
+    let keys = list_of(points.iter().map(|point| &point.work_key));
+    let found: Vec<Vec<u8>> =
+        query(sql::submit::OTHERS_RESULTS).bind(keys).bind(&sweep.owner).scalars(&mut *tx).await?;
+    let found: HashSet<&[u8]> = found.iter().map(Vec::as_slice).collect();
+    let (mut all, mut keys) = (Cow::from(points), Vec::new());
+    for (index, point) in points.iter().enumerate() {
+        if found.contains(point.work_key.as_slice()) {
+            let own = key_apart(&point.work_key, &sweep.id);
+            keys.push((point.work_key, own));
+            all.to_mut()[index].work_key = own;
+        }
+    }
+    Ok((all, keys))
+}
+
+/// The key of work that a sweep has for itself, of the scenario of another key.
+fn key_apart(key: &WorkKey, sweep_id: &str) -> WorkKey {
+    *blake3::Hasher::new().update(key).update(sweep_id.as_bytes()).finalize().as_bytes()
+}
+
+/// Gives work that a sweep has for itself the results that it is to recompute, to be shown and compared.
+async fn copy_results(tx: &mut Transaction, keys: &[(WorkKey, WorkKey)]) -> Result<()> {
+    if keys.is_empty() {
+        return Ok(());
+    }
+    let pairs: Value = keys.iter().map(|(from, to)| json!([hexadecimal(from), hexadecimal(to)])).collect();
+    for statement in [sql::submit::COPY_RESULTS, sql::submit::COPY_ARTIFACTS] {
+        query(statement).bind(pairs.to_string()).execute(&mut *tx).await?;
+    }
+    Ok(())
+}
+
 /// Which of the keys belong to work that has a result with all its tables, and is not being recomputed.
 async fn fuller_results<'c>(session: impl Into<Session<'c>>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
     if keys.is_empty() {
@@ -450,23 +490,24 @@ async fn not_computed(tx: &mut Transaction, points: &[NewPoint]) -> Result<Vec<i
 /// The points that a sweep has not, each once; those for which fuller work has a result as points of that work.
 async fn lacking(connection: &mut Transaction, sweep_id: &str, points: &[NewPoint]) -> Result<Vec<NewPoint>> {
     let points = with_fuller(connection, points).await?;
-    let mut seen: HashSet<WorkKey> = points_of(connection, sweep_id, &points)
+    let apart = |key: &WorkKey| key_apart(key, sweep_id);
+    let keys: Vec<WorkKey> =
+        points.iter().flat_map(|point| [point.work_key, apart(&point.work_key)]).collect();
+    let known: HashSet<WorkKey> = points_of(connection, sweep_id, &keys)
         .await?
         .iter()
         .map(|key| work_key(key))
         .collect::<Result<_>>()?;
+    let keys = points.iter().map(|point| point.work_key);
+    let mut seen: HashSet<WorkKey> =
+        keys.filter(|key| known.contains(key) || known.contains(&apart(key))).collect();
     Ok(points.iter().filter(|point| seen.insert(point.work_key)).cloned().collect())
 }
 
-/// Keys of the given points that the sweep has already.
-async fn points_of(
-    connection: &mut Transaction,
-    sweep_id: &str,
-    points: &[NewPoint],
-) -> Result<Vec<Vec<u8>>> {
+/// The given keys that the sweep has points of.
+async fn points_of(connection: &mut Transaction, sweep_id: &str, keys: &[WorkKey]) -> Result<Vec<Vec<u8>>> {
     let mut found = Vec::new();
-    for points in points.chunks(ROWS_AT_ONCE) {
-        let keys = points.iter().map(|point| &point.work_key);
+    for keys in keys.chunks(ROWS_AT_ONCE) {
         found.extend(
             query(sql::submit::POINTS_OF)
                 .bind(sweep_id)

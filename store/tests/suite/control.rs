@@ -217,6 +217,43 @@ pub(crate) async fn a_refresh_computes_anew_and_keeps_the_old_result_until_then<
     assert_eq!(store.artifacts(&key(1)).await.unwrap().len(), 1);
 }
 
+pub(crate) async fn a_refresh_by_another_owner_leaves_finished_sweeps_as_they_are<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("old", [1, 2])).await;
+    finish_with(&store, "first", r#"{"radius":1}"#, b"orbit", true).await;
+    let failed = claim(&store, "first").await;
+    assert!(store.finish_failed(&failed.lease, "{}").await.unwrap());
+    let before = sweep_record(&store, "old").await;
+    let others =
+        NewSweep { owner: "another".to_owned(), cache: CachePolicy::Refresh, ..sweep("new", [1, 2]) };
+    submit(&store, &others).await;
+    assert_eq!(sweep_record(&store, "old").await, before);
+    assert_eq!(states(&store, "new").await, [WorkState::Queued, WorkState::Queued]);
+    // Until the new one is there the old result is shown, with its tables.
+    let point = async || point_record(&store, "new", 1).await;
+    assert_eq!(point().await.summary_json.as_deref(), Some(r#"{"radius":1}"#));
+    assert_eq!(store.artifacts(&point().await.work_key).await.unwrap().len(), 1);
+
+    finish_with(&store, "second", r#"{"radius":2}"#, b"orbit", true).await;
+    finish_with(&store, "second", r#"{"radius":3}"#, b"another", true).await;
+    let told = r#"{"worker":"second","disagreement":{"differs":"summary","earlier":{"worker":"first"}}}"#;
+    assert_eq!(json(&point().await.provenance_json.unwrap()), json(told));
+    assert_eq!(sweep_record(&store, "old").await, before);
+    assert_eq!(states(&store, "old").await, [WorkState::Done, WorkState::Failed]);
+    let old = point_record(&store, "old", 1).await;
+    assert_eq!(old.summary_json.as_deref(), Some(r#"{"radius":1}"#));
+    assert!(!old.provenance_json.unwrap().contains("disagreement"));
+    // The sweep has its points, whichever work they are of.
+    let lacking = store.lacking_points("new", &sweep("new", [1, 2, 3]).points).await.unwrap();
+    assert_eq!(lacking, [3]);
+    // Who refreshes once more recomputes what is theirs, and what nobody else has.
+    submit(&store, &NewSweep { cache: CachePolicy::Refresh, ..sweep("again", [1]) }).await;
+    assert_eq!(states(&store, "again").await, [WorkState::Queued]);
+    assert_eq!(states(&store, "old").await, [WorkState::Queued, WorkState::Failed]);
+    assert_eq!(states(&store, "new").await, [WorkState::Done, WorkState::Done]);
+}
+
 /// Claims what is next and finishes it with this summary and, as the history, this content.
 async fn finish_with(store: &Store, worker: &str, summary: &str, history: &[u8], is_repeatable: bool) {
     let claim = claim(store, worker).await;

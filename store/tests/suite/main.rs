@@ -41,6 +41,7 @@ macro_rules! conformance {
                 what_is_added_to_a_paused_sweep_waits_with_the_rest,
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
                 a_refresh_that_disagrees_is_told,
+                a_refresh_by_another_owner_leaves_finished_sweeps_as_they_are,
                 a_table_that_a_refresh_lacks_is_told,
                 a_refresh_of_what_was_measured_may_disagree,
                 a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it,
@@ -173,6 +174,7 @@ macro_rules! with_objects {
             control {
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
                 a_refresh_that_disagrees_is_told,
+                a_refresh_by_another_owner_leaves_finished_sweeps_as_they_are,
             }
             lease {
                 a_late_writer_changes_nothing,

@@ -121,15 +121,19 @@ fn submit(server: &str, seconds: f64, changes: &Value) -> String {
     post(&format!("{server}/v1/sweeps"), &request)["id"].as_str().unwrap().to_owned()
 }
 
-/// Long-polls the sweep until `reached`.
+/// Long-polls the sweep until `reached`, for as long as it goes on: other programs may have the cores.
 fn wait(server: &str, sweep: &str, reached: impl Fn(&Value) -> bool) -> Value {
-    let deadline = Instant::now() + PATIENCE;
+    let (mut last, mut deadline) = (Value::Null, Instant::now() + PATIENCE);
     loop {
         let state = get(&format!("{server}/v1/sweeps/{sweep}?wait=1s"));
         if reached(&state) {
             return state;
         }
+        if (&state["counts"], &state["progress"]) != (&last["counts"], &last["progress"]) {
+            deadline = Instant::now() + PATIENCE;
+        }
         assert!(Instant::now() < deadline, "not reached: {state}");
+        last = state;
     }
 }
 

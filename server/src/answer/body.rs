@@ -16,7 +16,7 @@ use crate::answer::eviction::Eviction;
 use crate::answer::format::Answer;
 
 /// Bytes that are sent at once.
-const CHUNK: usize = 256 << 10;
+const CHUNK: usize = 64 << 10;
 
 /// Chunks that may wait for the client; then the writing waits.
 pub(crate) const WAITING_CHUNKS: usize = 2;

@@ -9,6 +9,7 @@ pub(crate) mod eviction;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod json;
+pub(crate) mod need;
 pub(crate) mod records;
 pub(crate) mod snapshots;
 pub(crate) mod stored;

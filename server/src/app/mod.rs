@@ -24,6 +24,7 @@ use crate::answer::body::MEMORY_OF_BODY;
 use crate::answer::error::Result;
 use crate::answer::eviction::Eviction;
 use crate::answer::format::{Answer, Format};
+use crate::answer::need::Need;
 use crate::answer::stored::MEMORY_OF_FILE;
 use crate::app::bodies::Bodies;
 use crate::app::columns::KnownColumns;
@@ -158,10 +159,11 @@ impl App {
         }
     }
 
-    /// Takes so much memory \[bytes\] for a view of a result, and what its body takes on its way.
-    pub(crate) async fn view(&self, bytes: u64) -> Result<Place> {
-        let memory = kibibytes(bytes.saturating_add(MEMORY_OF_BODY));
-        if memory > self.config.large_answer_bytes / 4 / KIB {
+    /// Takes the memory for a view of a result, and what its body takes on its way.
+    pub(crate) async fn view(&self, need: impl Into<Need>) -> Result<Place> {
+        let need = need.into();
+        let memory = kibibytes(need.bytes.saturating_add(MEMORY_OF_BODY));
+        if need.is_long || memory > self.config.large_answer_bytes / 4 / KIB {
             return self.views.enter(memory).await;
         }
         let free = self.small_views.try_enter(memory).or_else(|| self.views.try_enter(memory));
@@ -182,18 +184,18 @@ impl App {
         ]
     }
 
-    /// Answers with what `prepare` makes in a place of so much memory \[bytes\]; a picture is kept under `key`, by which it is the same.
+    /// Answers with what `prepare` makes in a place of the memory that it needs; a picture is kept under `key`, by which it is the same.
     pub(crate) async fn answer(
         &self,
         format: Format,
         key: &str,
-        bytes: u64,
+        need: impl Into<Need>,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
         if !format.is_picture() {
-            return self.view(bytes).await?.answer(prepare).await;
+            return self.view(need).await?.answer(prepare).await;
         }
-        let draw = async { self.view(bytes).await?.make(prepare).await };
+        let draw = async { self.view(need).await?.make(prepare).await };
         self.pictures.get_or_draw(key, draw).await
     }
 

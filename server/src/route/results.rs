@@ -18,6 +18,7 @@ use crate::answer::artifact::{self, Recording, Samples, SpectrumSource, mark_cut
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat, Tag};
+use crate::answer::need::Need;
 use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
@@ -219,7 +220,7 @@ async fn part(
     if let Some(unchanged) = tag.unchanged(headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(stored.memory().await?)).await?;
+    let place = app.view(Need::of(&stored, format, fields.as_deref()).await?).await?;
     place
         .answer(move || {
             let table = stored.open()?;
@@ -358,10 +359,11 @@ pub(crate) async fn history(
         Decimation::Stride => 0,
         Decimation::Minmax => memory_of_rows(&recording.history, query.max_points),
     };
-    let reading = recording.history.memory().await? + reading_snapshots;
-    let memory = format.memory(reading + drawing + kept);
+    let fields = query.fields.as_deref().filter(|_| !format.is_picture());
+    let mut need = Need::of(&recording.history, format, fields).await?;
+    need.bytes += if format == Format::Parquet { 3 * kept } else { reading_snapshots + drawing + kept };
     let key = format!("{} {id}/{n}", tag.as_str());
-    app.answer(format, &key, memory, move || {
+    app.answer(format, &key, need, move || {
         let history = recording.history.open()?;
         let layout = match choice {
             None => history.layout().clone(),

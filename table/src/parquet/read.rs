@@ -22,6 +22,12 @@ use crate::table::{Column, Table};
 /// Bytes of the values of a piece in memory, unless one row or one column has more.
 const PIECE_BYTES: usize = 16 << 20;
 
+/// The same of a piece of rows, unless a row group has more than [`PIECES_OF_GROUP`] times as many: a long table is written in little memory.
+const ROWS_BYTES: usize = 512 << 10;
+
+/// Pieces of a row group at most. For each of them the columns are read from the beginning of the row group.
+const PIECES_OF_GROUP: usize = 8;
+
 /// Bytes that are read at once, from a multiple of them on.
 const BLOCK: u64 = 256 << 10;
 
@@ -109,6 +115,18 @@ impl<R: ReadAt> StoredTable<R> {
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.bounds.last().copied().unwrap_or_default()
+    }
+
+    /// Bytes of memory that it takes to write the columns of `layout` in another format, some rows at a time.
+    pub fn memory_by_rows(&self, layout: &Table) -> u64 {
+        let metadata = self.reader.metadata();
+        let groups = metadata.row_groups();
+        let rows = groups.iter().map(|group| group.num_rows().unsigned_abs() as usize).max().unwrap_or(0);
+        let width: usize = layout.columns.values().map(width).sum();
+        // A page as it lies there, and decompressed.
+        let chunks = groups.iter().flat_map(|group| group.columns());
+        let page = chunks.map(|chunk| chunk.uncompressed_size().unsigned_abs()).max().unwrap_or(0);
+        metadata.memory_size() as u64 + (rows_of_piece(rows, width) * width) as u64 + 2 * page + BLOCK
     }
 
     /// Some columns of some rows, in the order of the file. Columns that there are not, and rows beyond the end, are left out.
@@ -258,11 +276,18 @@ impl<R: ReadAt> Cut<R> {
             return None;
         }
         let bounds = &self.stored.bounds;
-        let group_end = bounds[bounds.partition_point(|bound| *bound <= start)];
+        let group = bounds.partition_point(|bound| *bound <= start);
+        let (group_start, group_end) = (bounds[group - 1], bounds[group]);
         let width: usize = self.layout.columns.values().map(width).sum();
-        let most = (PIECE_BYTES / width.max(1)).max(1).saturating_mul(self.thinning.stride);
+        let most = rows_of_piece(group_end - group_start, width).saturating_mul(self.thinning.stride);
         Some(start..start.saturating_add(most).min(group_end).min(self.rows.end))
     }
+}
+
+/// Rows of a piece of a row group with so many rows of `width` bytes.
+fn rows_of_piece(rows: usize, width: usize) -> usize {
+    let most = (ROWS_BYTES / width.max(1)).max(rows.div_ceil(PIECES_OF_GROUP));
+    most.min(PIECE_BYTES / width.max(1)).min(rows).max(1)
 }
 
 impl<R: ReadAt> Source for Cut<R> {

@@ -7,6 +7,8 @@ out by themselves what is not the same every time, such as times.
 
 Blocks of `sh` and `python` are run as well, those of one document in order, in one shell and one directory, with a
 service. One that cannot be has a comment on the line before it, `<!-- not run: REASON -->`, and must parse.
+
+With DRILLSWEEP_WRITE_TRANSCRIPTS set, transcripts are not compared: the documents get what commands print now.
 """
 
 from __future__ import annotations
@@ -93,6 +95,7 @@ def test_the_readme_stays_short() -> None:
 class Transcript(NamedTuple):
     """A marked block of a document."""
 
+    document: Path
     place: str
     needs_service: bool
     text: str
@@ -103,6 +106,12 @@ class Transcript(NamedTuple):
         assert "".join(f"$ {command}\n{output}" for command, output in steps) == self.text, "begins with a command"
         return steps
 
+    def write(self, outputs: list[str]) -> None:
+        """Replaces the output of each command."""
+        commands = [command for command, _ in self.steps()]
+        text = "".join(f"$ {command}\n{output}" for command, output in zip(commands, outputs, strict=True))
+        self.document.write_text(self.document.read_text().replace(self.text, text))
+
 
 def transcripts() -> Iterator[Transcript]:
     for document in DOCUMENTS:
@@ -112,7 +121,7 @@ def transcripts() -> Iterator[Transcript]:
         ):
             place = f"{document.relative_to(REPOSITORY)}:{text.count(chr(10), 0, mark.start()) + 1}"
             assert mark[2], f"{place}: a mark without a transcript"
-            yield Transcript(place, bool(mark[1]), mark[2])
+            yield Transcript(document, place, bool(mark[1]), mark[2])
 
 
 TRANSCRIPTS = list(transcripts())
@@ -152,6 +161,9 @@ def test_commands_print_what_is_shown(transcript: Transcript, request: pytest.Fi
     )
     *printed, rest = done.stdout.split("\0")
     assert rest == "", done.stderr
+    if "DRILLSWEEP_WRITE_TRANSCRIPTS" in os.environ:
+        transcript.write(printed)
+        return
     assert [*zip([command for command, _ in steps], printed, strict=True)] == steps, done.stderr
 
 

@@ -14,8 +14,8 @@ fn every_state_is_reached_and_can_be_left() {
 }
 
 #[test]
-fn the_architecture_draws_this_machine() {
-    let text = include_str!("../../../ARCHITECTURE.md");
+fn the_book_draws_this_machine() {
+    let text = include_str!("../../../docs/store.md");
     let drawing = text.split("```mermaid\nstateDiagram-v2\n").nth(1).unwrap().split("```").next().unwrap();
     let drawn: BTreeSet<&str> =
         drawing.lines().map(str::trim).filter(|line| line.contains("-->") && !line.contains("[*]")).collect();

@@ -1,6 +1,7 @@
 # Recipes for daily work. `just` lists them; CONTRIBUTING.md has the steps around them.
 
 set shell := ["bash", "-euo", "pipefail", "-c"]
+set positional-arguments
 
 target := absolute_path(env("CARGO_TARGET_DIR", "target"))
 bin := target / "python/bin"
@@ -11,11 +12,11 @@ default:
 
 # Build the program and start server and workers at http://127.0.0.1:7340
 up *options:
-    cargo run --release -- up {{ options }}
+    cargo run --release -- up "$@"
 
 # Test without PostgreSQL, object store, browser and whole runs
 test-fast *filter:
-    cargo nextest run --workspace --profile fast {{ filter }}
+    cargo nextest run --workspace --profile fast "$@"
 
 # Check formatting, lints and types
 check: python

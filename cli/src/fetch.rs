@@ -231,8 +231,7 @@ struct Missing {
 impl Files {
     /// Writes what the server answers; a problem that it answers with is noted.
     fn download(&mut self, client: &Client, path: &str, file: PathBuf) -> anyhow::Result<()> {
-        // A file may be empty: the machine lost power before its bytes were on the disk.
-        if self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() > 0) {
+        if self.has(&file) {
             self.written.push(file);
             return Ok(());
         }
@@ -252,7 +251,7 @@ impl Files {
         entry: &ArtifactEntry,
         file: PathBuf,
     ) -> anyhow::Result<()> {
-        if self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() == entry.bytes) {
+        if self.has(&file) {
             self.written.push(file);
             return Ok(());
         }
@@ -261,6 +260,11 @@ impl Files {
             Err(reason) => self.missing.push(Missing { file, reason }),
         }
         Ok(())
+    }
+
+    /// Whether a file need not be downloaded. One may be empty: the machine lost power before its bytes were on the disk.
+    fn has(&self, file: &Path) -> bool {
+        self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() > 0)
     }
 
     fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {

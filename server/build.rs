@@ -8,13 +8,15 @@ use std::{env, fs, io};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-/// What is served; the rest of the folder is for those who work on it.
+/// Endings of the files that are served; other files are for developers.
 const SERVED: [&str; 4] = ["html", "css", "js", "svg"];
+
+/// Folders of the page that are for developers alone.
+const UNSERVED: [&str; 2] = ["node_modules", "tests"];
 
 const OPENAPI: &str = "../api/openapi.json";
 
 fn main() -> io::Result<()> {
-    println!("cargo::rerun-if-changed=web");
     println!("cargo::rerun-if-changed={OPENAPI}");
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?);
     let mut paths = Vec::new();
@@ -28,7 +30,7 @@ fn main() -> io::Result<()> {
         let name = path.strip_prefix("web").map_err(io::Error::other)?;
         let hash = blake3::hash(&bytes).to_hex();
         let imported =
-            if name.extension().is_some_and(|end| end == "js") { imports(&bytes)? } else { Vec::new() };
+            if name.extension().is_some_and(|end| end == "js") { imports(name, &bytes)? } else { Vec::new() };
         writeln!(
             list,
             "    ({:?}, {:?}, include_bytes!({compressed:?}), &{imported:?}),",
@@ -48,22 +50,40 @@ fn compress(bytes: &[u8]) -> io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-/// The modules beside it that a module needs before it runs.
-fn imports(bytes: &[u8]) -> io::Result<Vec<&str>> {
+/// The modules that a module imports statically, by their paths from the page's folder.
+fn imports(module: &Path, bytes: &[u8]) -> io::Result<Vec<String>> {
     let lines = str::from_utf8(bytes).map_err(io::Error::other)?.lines();
-    let beside = lines.filter(|line| line.starts_with("import ")).filter_map(|line| line.split_once("\"./"));
-    Ok(beside.filter_map(|(_, path)| path.split('"').next()).collect())
+    let statements = lines.filter(|line| line.starts_with("import ") || line.starts_with("} from "));
+    let relative = statements.filter_map(|line| line.split('"').nth(1)).filter(|path| path.starts_with('.'));
+    relative.map(|path| resolve(module, path)).collect()
+}
+
+/// A path from the page's folder, from one that is relative to a module.
+fn resolve(module: &Path, relative: &str) -> io::Result<String> {
+    let mut path = module.parent().unwrap_or(Path::new("")).to_owned();
+    for part in relative.split('/') {
+        match part {
+            "." => {}
+            ".." if path.pop() => {}
+            ".." => return Err(io::Error::other(format!("{} imports {relative}", module.display()))),
+            name => path.push(name),
+        }
+    }
+    path.into_os_string().into_string().map_err(|_| io::Error::other("paths of the page are UTF-8"))
 }
 
 fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default();
+        if UNSERVED.iter().any(|unserved| name == *unserved) {
+            continue;
+        }
         if path.is_dir() {
-            if name != "node_modules" {
-                collect(&path, paths)?;
-            }
+            collect(&path, paths)?;
         } else if path.extension().is_some_and(|end| SERVED.iter().any(|served| end == *served)) {
+            // A new file is named by one that is here already, which changes with it.
+            println!("cargo::rerun-if-changed={}", path.display());
             paths.push(path);
         }
     }

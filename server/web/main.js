@@ -1,25 +1,25 @@
 // The frame: which view the link asks for, the session, settings, and what is said when the service is gone.
 
-import { answerAfter, connection, Problem, Unreachable } from "./api.js";
-import { fill, h } from "./dom.js";
-import { reported } from "./notices.js";
-import { arrive, route } from "./router.js";
-import { loadSession, logIn, logOut, onLoginNeeded, session } from "./session.js";
-import { apply, choose, settings, theme, unitSystem } from "./settings.js";
-import { loadQuantities } from "./units.js";
+import { answerAfter, connection, Problem, Unreachable } from "./data/api.js";
+import { fill, h } from "./ui/dom.js";
+import { reported } from "./ui/notices.js";
+import { arrive, route } from "./ui/router.js";
+import { loadSession, logIn, logOut, onLoginNeeded, session } from "./ui/session.js";
+import { apply, choose, settings, theme, unitSystem } from "./data/settings.js";
+import { loadQuantities } from "./data/units.js";
 
 /**
  * A view fills `main` until `signal` is aborted, and gives its title.
- * @typedef {(main: HTMLElement, route: import("./router.js").Route, signal: AbortSignal) => Promise<string>} View
+ * @typedef {(main: HTMLElement, route: import("./ui/router.js").Route, signal: AbortSignal) => Promise<string>} View
  */
 
 /** The module of each view, by its name. @type {Record<string, () => Promise<{show: View}>>} */
 const VIEWS = {
-  sweeps: () => import("./sweeps.js"),
-  sweep: () => import("./sweep.js"),
-  point: () => import("./point.js"),
-  compare: () => import("./compare.js"),
-  new: () => import("./new.js"),
+  list: () => import("./list/view.js"),
+  sweep: () => import("./sweep/view.js"),
+  point: () => import("./point/view.js"),
+  compare: () => import("./compare/view.js"),
+  submit: () => import("./submit/view.js"),
 };
 
 /** How long a view may take before the page says that it is loading. */
@@ -44,7 +44,7 @@ async function show() {
   shown.abort();
   const mine = (shown = new AbortController());
   const asked = route();
-  const view = ahead.viewOf(asked.path);
+  const view = preload.viewOf(asked.path);
   const isElsewhere = arrive(asked.path);
   for (const entry of document.querySelectorAll(".bar nav a")) {
     const isHere = entry.getAttribute("href") === `#/${asked.path[0]}`;
@@ -59,7 +59,7 @@ async function show() {
   const waits = setTimeout(() => isElsewhere && fill(main, h("p", { class: "empty", role: "status" }, "Loading…")), SLOW_MS);
   // A view is built aside and takes its place complete, so that one that is shown anew does not flicker.
   const next = h("div", {});
-  ahead.preload(asked);
+  preload.modules(asked);
   try {
     const title = await (await VIEWS[view]()).show(next, asked, mine.signal);
     if (mine.signal.aborted) return;
@@ -80,7 +80,7 @@ async function show() {
 
 /** Whether a form is shown that somebody may have typed in; it follows what changes by itself. */
 function isTyped() {
-  return ahead.viewOf(route().path) === "new" && main.querySelector("form") !== null;
+  return preload.viewOf(route().path) === "submit" && main.querySelector("form") !== null;
 }
 
 /** @param {unknown} error */

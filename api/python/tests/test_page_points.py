@@ -480,7 +480,7 @@ def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens
     asked: list[str] = []
     held: list[Route] = []
     page.on("request", lambda request: asked.append(request.url.partition("/points/1/")[2]))
-    page.route("**/point-motion.js", lambda route: held.append(route))
+    page.route("**/point/motion.js", lambda route: held.append(route))
     address = page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion{choices}")
     page.goto("about:blank")
     page.goto(address, wait_until="commit")
@@ -502,7 +502,7 @@ def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens
 def test_a_mode_is_named_beside_a_line_only_where_that_says_something(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion")
     drawn(page, "Full spectrum of node")
-    module = page.evaluate("document.querySelector('script[src$=\"main.js\"]').src.replace('main.js', 'orbit.js')")
+    module = page.evaluate("document.querySelector('script[src$=\"main.js\"]').src.replace('main.js', 'draw/orbit.js')")
     read = """async ([module, line, frequencies, resolution]) => {
         const { modeOf } = await import(module);
         const modes = frequencies.map((frequency_hz) => ({ frequency_hz, whirl: 1, kind: "lateral" }));

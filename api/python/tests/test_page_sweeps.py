@@ -342,7 +342,7 @@ PACE = """(() => {
 def test_the_time_left_goes_by_how_fast_points_were_while_they_ran(
     opened: Opens, seen: list[tuple[float, float, int, str]], seconds: float | None, left: float | None
 ) -> None:
-    found = module(opened(), "pace.js", PACE, {"seen": seen, "seconds": seconds})
+    found = module(opened(), "data/pace.js", PACE, {"seen": seen, "seconds": seconds})
     assert found == (left if left is None else pytest.approx(left))
 
 
@@ -815,7 +815,7 @@ def test_first_order_indices_are_those_of_the_ishigami_function(opened: Opens) -
     rng = random.Random(7)
     points = [[rng.uniform(-math.pi, math.pi) for _ in range(3)] for _ in range(2000)]
     values = [math.sin(a) + 7 * math.sin(b) ** 2 + 0.1 * c**4 * math.sin(a) for a, b, c in points]
-    found = module(opened(), "sensitivity.js", "module.shares(...argument)", [list(zip(*points, strict=True)), values])
+    found = module(opened(), "data/sensitivity.js", "module.shares(...argument)", [list(zip(*points, strict=True)), values])
     for share, index in zip(found, exact, strict=True):
         assert share["first"] == pytest.approx(index, abs=0.04)
         low, high = share["interval"]
@@ -977,7 +977,7 @@ def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Cli
 )
 def test_a_logarithmic_scale_has_ticks_in_any_range(opened: Opens, least: float, largest: float) -> None:
     ends = [math.log10(least), math.log10(largest)]
-    found = module(opened(), "plots.js", "module.logTicks(...argument)", ends)
+    found = module(opened(), "draw/plots.js", "module.logTicks(...argument)", ends)
     assert 2 <= len(found["tickvals"]) <= 13
     assert all(ends[0] - 1e-9 <= value <= ends[1] + 1e-9 for value in found["tickvals"])
     said = [float(text) for text in found["ticktext"]]

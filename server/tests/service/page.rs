@@ -1,5 +1,6 @@
 //! The web page and its sessions.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Duration;
 
@@ -188,42 +189,47 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
         let answer = bench.get(&format!("{folder}{path}")).await;
         assert_eq!(answer.status, StatusCode::OK, "{path}");
         assert!(answer.headers[header::CACHE_CONTROL].to_str().unwrap().contains("immutable"));
-        if path.ends_with(".js") && !path.contains('/') {
+        if path.ends_with(".js") && !path.starts_with("vendor/") {
             assert_eq!(answer.headers[header::CONTENT_TYPE], "text/javascript; charset=utf-8");
-            // Modules name each other by paths beside them.
+            // Modules name each other by relative paths.
             let text = answer.text().to_owned();
-            waiting.extend(text.split('"').filter_map(|part| part.strip_prefix("./")).map(str::to_owned));
+            let named = text.split('"').filter(|part| part.starts_with("./") || part.starts_with("../"));
+            waiting.extend(named.map(|relative| resolve(&path, relative)));
         }
         seen.push(path);
     }
     assert!(seen.len() > 5, "{seen:?}");
     // The head says what each module imports, and then runs what has all of a view's modules come at once by that.
-    let (said, ahead) = (
+    let (said, preload) = (
         text.find("id=\"imports\"").unwrap(),
-        text.find(&format!("<script src=\"{folder}ahead.js\"")).unwrap(),
+        text.find(&format!("<script src=\"{folder}preload.js\"")).unwrap(),
     );
-    assert!(said < ahead && ahead < text.find("type=\"module\"").unwrap());
+    assert!(said < preload && preload < text.find("type=\"module\"").unwrap());
     let imports =
         text.split("id=\"imports\">").nth(1).and_then(|rest| rest.split("</script>").next()).unwrap();
     let imports: Value = serde_json::from_str(imports).unwrap();
-    for module in seen.iter().filter(|path| path.ends_with(".js") && !path.contains('/')) {
+    for module in seen.iter().filter(|path| path.ends_with(".js") && !path.starts_with("vendor/")) {
         let answer = bench.get(&format!("{folder}{module}")).await;
-        for imported in answer.text().split(" from \"./").skip(1).filter_map(|rest| rest.split('"').next()) {
+        for relative in answer.text().split(" from \"").skip(1).filter_map(|rest| rest.split('"').next()) {
+            let imported = resolve(module, relative);
             let said = imports[module].as_array().unwrap();
-            assert!(said.iter().any(|path| path == imported), "{module} imports {imported}: {said:?}");
+            assert!(said.iter().any(|path| *path == imported), "{module} imports {imported}: {said:?}");
         }
     }
-    // It knows by name those that views are imported from.
+    // It knows by name the modules of the parts of views.
     let text_of = async |module: &str| bench.get(&format!("{folder}{module}")).await.text().to_owned();
-    let ahead = text_of("ahead.js").await;
-    let named: Vec<&str> =
-        ahead.split('"').filter(|part| part.starts_with(['s', 'p']) && part.ends_with(".js")).collect();
-    let parts = [text_of("sweep.js").await, text_of("point.js").await].concat();
-    let imported: Vec<&str> =
-        parts.split("await import(\"./").skip(1).filter_map(|rest| rest.split('"').next()).collect();
-    let distinct: std::collections::BTreeSet<&str> = imported.into_iter().collect();
-    assert!(distinct.len() > 10, "{distinct:?}");
-    assert_eq!(named.into_iter().collect::<std::collections::BTreeSet<_>>(), distinct);
+    let preload = text_of("preload.js").await;
+    let is_part =
+        |path: &&str| (path.starts_with("sweep/") || path.starts_with("point/")) && path.ends_with(".js");
+    let named: BTreeSet<String> = preload.split('"').filter(is_part).map(str::to_owned).collect();
+    let mut imported = BTreeSet::new();
+    for view in ["sweep/view.js", "point/view.js"] {
+        let text = text_of(view).await;
+        let parts = text.split("await import(\"").skip(1).filter_map(|rest| rest.split('"').next());
+        imported.extend(parts.map(|relative| resolve(view, relative)));
+    }
+    assert!(imported.len() > 10, "{imported:?}");
+    assert_eq!(named, imported);
 
     // What has a copy is told that it is still right; another version has no files here.
     let tag = page.headers[header::ETAG].clone();
@@ -232,6 +238,19 @@ async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
     bench.get("/web/0000000000000000/main.js").await.problem(404, "no-such-route");
     bench.get(&format!("{folder}../Cargo.toml")).await.problem(404, "no-such-route");
     bench.get(&format!("{folder}index.html")).await.problem(404, "no-such-route");
+}
+
+/// A path from the page's folder, from one that is relative to a module.
+fn resolve(module: &str, relative: &str) -> String {
+    let mut path = Path::new(module).parent().unwrap().to_owned();
+    for part in relative.split('/') {
+        match part {
+            "." => {}
+            ".." => assert!(path.pop(), "{module} names {relative}"),
+            name => path.push(name),
+        }
+    }
+    path.to_str().unwrap().to_owned()
 }
 
 #[tokio::test]

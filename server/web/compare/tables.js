@@ -1,0 +1,104 @@
+// What points are compared by in numbers and words: a row a fact, a column a point.
+
+import { get } from "../data/api.js";
+import { Biases } from "../data/biases.js";
+import { each, noteNode } from "./views.js";
+import { fill, h } from "../ui/dom.js";
+import { accuracyFacts, accuracyReasons, costFacts } from "../point/about.js";
+import { biasOver, recordedAs, STATISTICS } from "../data/statistics.js";
+import { say } from "../data/units.js";
+
+/** @typedef {import("./views.js").Comparison} Comparison */
+/** @typedef {import("./views.js").Compared} Compared */
+
+/** Modes are looked for up to this frequency [Hz]. */
+const MODES_HZ = 20;
+
+/**
+ * @param {HTMLElement} place
+ * @param {string} name of the table
+ * @param {Compared[]} points
+ * @param {[string, (string | HTMLElement | null)[]][]} rows what each is of, and its cells
+ */
+function drawTable(place, name, points, rows) {
+  const heads = points.map((point) => h("th", { scope: "col" }, h("span", { style: `color:${point.colour}`, "aria-hidden": "true" }, "━ "), point.name));
+  const body = rows.map(([text, cells]) => h("tr", {}, h("th", { scope: "row" }, text), cells.map((cell) => h("td", {}, cell ?? "–"))));
+  fill(place, points.length > 0 && h("table", { "aria-label": name }, h("thead", {}, h("tr", {}, h("td", {}), heads)), h("tbody", {}, body)));
+}
+
+/**
+ * Rows of facts that have a name each, in the order in which points bring them.
+ * @template T
+ * @param {[Compared, [string, T][]][]} found
+ * @returns {[string, (T | null)[]][]}
+ */
+function rowsOf(found) {
+  const names = [...new Set(found.flatMap(([, facts]) => facts.map(([name]) => name)))];
+  const maps = found.map(([, facts]) => new Map(facts));
+  return names.map((name) => [name, maps.map((facts) => facts.get(name) ?? null)]);
+}
+
+/** Statistics of the orbit over the window, with the bias of those that verifying looks at. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawStatistics(place, comparison) {
+  const { drawing, window } = comparison;
+  /** @type {Map<string, Promise<Biases>>} */
+  const biases = new Map();
+  const biasesOf = (/** @type {string} */ id) => {
+    const known = biases.get(id) ?? loadBiases(id, drawing);
+    biases.set(id, known);
+    return known;
+  };
+  const found = await each(comparison, async (point) => {
+    const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
+    const [node] = columns.node;
+    noteNode(comparison, point, node, columns.measured_depth[0]);
+    const as = recordedAs(point.detail.scenario, node, columns.measured_depth[0]);
+    const beside = biasOver(point.detail, window, (name) => bias.beside(`${name}_${as}`, point.ordinal));
+    /** @type {[string, string][]} */
+    const facts = STATISTICS.map(([name, text]) => [text, say(name, columns[name][0]) + beside(name)]);
+    return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);
+  });
+  drawTable(place, "Statistics", found.map(([point]) => point), rowsOf(found));
+}
+
+/**
+ * @param {string} id of a sweep
+ * @param {AbortSignal} signal
+ */
+async function loadBiases(id, signal) {
+  const biases = new Biases();
+  await biases.load(await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal), signal);
+  return biases;
+}
+
+/** Which effects take part, and why. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawEffects(place, comparison) {
+  const found = await each(comparison, async (point) => {
+    const plan = await get(`${point.path}/plan`, {}, comparison.drawing);
+    return plan.effects.map((/** @type {any} */ effect) => [effect.effect.replaceAll("_", " "), h("span", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off"), h("span", { class: "small soft" }, ` ${effect.reason}`))]);
+  });
+  drawTable(place, "Effects", found.map(([point]) => point), rowsOf(found));
+}
+
+/** Modes about the equilibrium, from the lowest. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawModes(place, comparison) {
+  const found = await each(comparison, async (point) => {
+    const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.drawing);
+    return modes
+      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.frequency_hz - b.frequency_hz)
+      .map((/** @type {any} */ mode, /** @type {number} */ index) => [String(index + 1), `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`]);
+  });
+  drawTable(place, "Modes", found.map(([point]) => point), rowsOf(found));
+}
+
+/** How far the numbers can be trusted. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawAccuracy(place, comparison) {
+  const found = await each(comparison, async ({ detail }) => /** @type {[string, string][]} */ ([...accuracyFacts(detail), ...accuracyReasons(detail).map(([of, text]) => [`${of}: condition or reason`, text])]));
+  drawTable(place, "Accuracy", found.map(([point]) => point), rowsOf(found));
+}
+
+/** What the runs cost. @param {HTMLElement} place @param {Comparison} comparison */
+export async function drawCost(place, comparison) {
+  const found = await each(comparison, async (point) => costFacts(point.detail));
+  drawTable(place, "Cost", found.map(([point]) => point), rowsOf(found));
+}

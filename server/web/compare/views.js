@@ -1,0 +1,336 @@
+// What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
+
+import { Problem } from "../data/api.js";
+import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
+import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
+import { h } from "../ui/dom.js";
+import { spectrumRange } from "../data/motion-requests.js";
+import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "../draw/orbit.js";
+import { colourBar, draw, inks, lineScale } from "../draw/plots.js";
+import { ACCOUNTS, ledger } from "../point/energy.js";
+import { drawProfiles, nodeDepths, QUANTITIES, reading, tableOf } from "../point/profiles.js";
+import { displaced, exaggeration, onNodes, saysExaggeration } from "../point/well.js";
+import { label, say, shown, title, unit } from "../data/units.js";
+
+/** Samples of a line. */
+const SHOWN = 6000;
+/** Clearances that differ by less are one [m]. */
+const SAME_CLEARANCE = 1e-6;
+/** Part of a depth below which the ends of two strings are one. */
+const SAME_END = 1e-6;
+/** How many times a string's distance from the axis of its hole is drawn, unless the link says so. */
+const EXAGGERATION = 100;
+/** Part of a well's length by which coloured wells are drawn aside of each other. */
+const APART = 0.12;
+
+/** @typedef {{number: number, id: string, ordinal: number, path: string, detail: any, name: string, colour: string, dash: string}} Compared */
+
+/**
+ * What a view is drawn with.
+ * @typedef {object} Comparison
+ * @property {Compared[]} points
+ * @property {URLSearchParams} query
+ * @property {string[]} profiles chosen quantities over depth
+ * @property {Record<string, any>} node asks each point for its recorded node that is nearest to the chosen depth
+ * @property {{from: number, to: number}} window [s]
+ * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
+ * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
+ * @property {string[]} lacking sentences about what points lack, which a view adds to
+ * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
+ * @property {string[]} says sentences of the caption, which a view adds to
+ * @property {{depths: number[], read: (depth: number, told: any[]) => import("../ui/dom.js").Child[]}} [profiled] what a depth cursor reads of a
+ *   view over depth, which sets it
+ * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
+ * @property {AbortSignal} signal of the view, whose one picture stays while it is drawn anew
+ * @property {AbortSignal} drawing the same, which ends as well when what is shown is asked for anew: of requests, and of what is made anew
+ */
+
+/**
+ * @typedef {object} CompareView
+ * @property {string} name
+ * @property {string} table behind it
+ * @property {boolean} [isWindowed] whether it is of a window
+ * @property {boolean} [isOfNode] whether it is of a recorded node
+ * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
+ * @property {import("../draw/library.js").Build} [build] of the drawing library, where the usual one does not do
+ * @property {"table" | "several"} [kind] what it is where it is not one picture
+ * @property {boolean} [isDocument] whether the service answers with a document in place of a table
+ * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
+ */
+
+/** @type {Record<string, CompareView>} */
+export const VIEWS = {
+  profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
+  orbit: { name: "Orbits", table: "orbit", isWindowed: true, isOfNode: true, draw: drawOrbits },
+  history: { name: "Histories", table: "orbit", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawHistories },
+  rotation: { name: "Rotation and torque", table: "history", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawRotation },
+  spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, isOfNode: true, draw: drawSpectra },
+  statistics: { name: "Statistics", table: "statistics", isWindowed: true, isOfNode: true, kind: "table", draw: drawStatistics },
+  spectrogram: { name: "Spectrograms", table: "spectrogram", isWindowed: true, isOfNode: true, kind: "several", draw: drawSpectrograms },
+  bit: { name: "Rotation at bit and top", table: "history", build: "whole", isWindowed: true, hasTime: true, draw: drawEnds },
+  string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
+  contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
+  well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
+  energy: { name: "Energy", table: "energy", draw: drawEnergy },
+  modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
+  effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },
+  accuracy: { name: "Accuracy", table: "", kind: "table", isDocument: true, draw: drawAccuracy },
+  cost: { name: "Cost", table: "", kind: "table", isDocument: true, draw: drawCost },
+};
+
+/**
+ * Why a point has no result at all; nothing of one that has.
+ * @param {any} detail
+ */
+function withoutResult({ summary, state, error }) {
+  if (summary) return "";
+  if (error) return `it failed (${error.class}): ${error.reason}`;
+  return state === "cancelled" ? "it was cancelled" : `it is ${state}, without results yet`;
+}
+
+/** What a point lacks that a view needs, in words. */
+export class Lacking extends Error {}
+
+/**
+ * What a view needs of each point, of those that have it; what the others lack is said.
+ * @template T
+ * @param {Comparison} comparison
+ * @param {(point: Compared) => Promise<T>} read
+ * @param {string} [part] of the view that is drawn without them, where that is not all
+ * @returns {Promise<[Compared, T][]>}
+ */
+export async function each({ points, lacking, drawing }, read, part = "") {
+  const found = await Promise.all(
+    points.map(async (point) => {
+      const nothing = withoutResult(point.detail);
+      if (nothing) return { point, lacks: `Point ${point.number} is missing: ${nothing}.` };
+      try {
+        return { point, value: await read(point) };
+      } catch (error) {
+        if (error instanceof Lacking) return { point, lacks: `Point ${point.number} is missing: ${error.message}.` };
+        if (drawing.aborted || !(error instanceof Problem) || error.status === 401) throw error;
+        return { point, lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.` };
+      }
+    }),
+  );
+  const sentences = found.flatMap(({ lacks }) => lacks ?? []);
+  lacking.push(...sentences.filter((sentence) => !lacking.includes(sentence)));
+  return found.flatMap(({ point, value, lacks }) => (lacks ? [] : [/** @type {[Compared, T]} */ ([point, value])]));
+}
+
+/** @param {Comparison} comparison @param {Compared} point @param {number} node @param {number} depth [m] */
+export function noteNode({ nodes }, point, node, depth) {
+  nodes.set(point.number, `point ${point.number} node ${node} at ${say("measured_depth", depth)}`);
+}
+
+/** @param {Compared} point @param {number[]} time @param {(number | null)[]} values */
+function overTime(point, time, values) {
+  return { type: "scattergl", mode: "lines", name: point.name, showlegend: true, x: time, y: values, line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" };
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawQuantities(place, comparison) {
+  const { profiles } = comparison;
+  /** @type {Map<number, Record<string, any>>} */
+  const tables = new Map();
+  for (const name of new Set(profiles.map(tableOf))) {
+    const parts = profiles.filter((entry) => tableOf(entry) === name).map(label).join(", ");
+    const found = await each(comparison, (point) => comparison.table(point, name), parts);
+    for (const [point, table] of found) tables.set(point.number, { ...tables.get(point.number), [name]: table });
+  }
+  const drawable = comparison.points.filter((point) => tables.has(point.number)).map((point) => ({ ...point, table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)] }));
+  const nodes = new Map(drawable.map((point) => [point.number, nodeDepths(profiles, point.table)]));
+  const endOfString = (/** @type {number} */ number) => nodes.get(number)?.at(-1) ?? -Infinity;
+  const deepest = drawable.reduce((/** @type {number} */ best, { number }) => (endOfString(number) > endOfString(best) ? number : best), drawable[0]?.number);
+  comparison.profiled = {
+    depths: nodes.get(deepest) ?? [],
+    read: (depth, told) => drawable.map((point) => h("p", {}, `${point.name}: ${depth > endOfString(point.number) * (1 + SAME_END) ? "its string ends above" : reading(profiles, point.table, depth, told.filter(({ data }) => data.name === point.name))}`)),
+  };
+  return drawProfiles(place, profiles, drawable, comparison.signal);
+}
+
+/**
+ * The orbit of each point's node with what the equilibrium says of that node.
+ * @param {Comparison} comparison
+ */
+function orbits(comparison) {
+  return each(comparison, async (point) => {
+    const [orbit, { columns }] = await Promise.all([
+      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: SHOWN }),
+      comparison.table(point, "statics", { fields: "node,low_side_angle,clearance" }),
+    ]);
+    const row = Math.max(0, columns.node.indexOf(orbit.attributes.node));
+    noteNode(comparison, point, orbit.attributes.node, orbit.attributes.measured_depth);
+    return { orbit, lowSide: columns.low_side_angle[row], clearance: columns.clearance[row] };
+  });
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawOrbits(place, comparison) {
+  const found = await orbits(comparison);
+  const holes = holesOf(found);
+  const clearance = Math.max(...holes.map((hole) => hole.clearance));
+  const traces = found.map(([point, { orbit, lowSide }]) => orbitTrace(orbit, lowSide, { color: point.colour }, point.name));
+  const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
+  if (!found.length) return draw(place, [], {}, comparison.signal);
+  const isOne = holes.length === 1;
+  const which = (/** @type {Compared[]} */ points) => `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
+  const colourOf = (/** @type {Compared[]} */ points) => (isOne || points.length > 1 ? inks().soft : points[0].colour);
+  comparison.says.push(isOne ? "On the grey circle the node touches the wall." : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`);
+  const annotations = isOne ? [] : holes.map((hole) => ({ x: 0, y: shown("radius", [hole.clearance])[0], text: `wall of ${which(hole.points)}`, showarrow: false, yanchor: "bottom", font: { size: 11 } }));
+  return draw(place, [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces], { ...orbitLayout(isZoomed, traces, clearance), shows: [comparison.node, isZoomed], annotations, legend: { orientation: "v" } }, comparison.signal);
+}
+
+/**
+ * The holes around the nodes that are shown: points of one clearance have one.
+ * @param {[Compared, {clearance: number}][]} found
+ */
+function holesOf(found) {
+  /** @type {{clearance: number, points: Compared[]}[]} */
+  const holes = [];
+  for (const [point, { clearance }] of found) {
+    const same = holes.find((hole) => Math.abs(hole.clearance - clearance) < SAME_CLEARANCE);
+    if (same) same.points.push(point);
+    else holes.push({ clearance, points: [point] });
+  }
+  return holes;
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawHistories(place, comparison) {
+  const direction = comparison.query.get("direction") ?? "up";
+  const found = await orbits(comparison);
+  const traces = found.map(([point, { orbit, lowSide }]) => {
+    const { time, u, v, radius } = orbit.columns;
+    const seen = seenDownhole(u, v, lowSide);
+    return overTime(point, time, shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up));
+  });
+  return draw(place, traces, { ...timeLayout(comparison), shows: [comparison.window, direction], yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, comparison.signal);
+}
+
+/**
+ * An axis of time across which a window is dragged; with another window a zoom is taken back.
+ * @param {Comparison} comparison
+ */
+function timeLayout({ window }) {
+  return { shows: window, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]" } };
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawRotation(place, comparison) {
+  const quantity = comparison.query.get("quantity") === "torque" ? "torque" : "rotation_speed";
+  const found = await each(comparison, async (point) => {
+    const { columns } = await comparison.table(point, "statistics", { ...comparison.node, fields: "node,measured_depth" });
+    const [node] = columns.node;
+    const name = `${quantity}_${node}`;
+    const history = await comparison.table(point, "history", { node, ...comparison.window, fields: `time,${name}`, max_points: SHOWN, decimation: "minmax" });
+    noteNode(comparison, point, node, columns.measured_depth[0]);
+    return overTime(point, history.columns.time, shown(name, history.columns[name]));
+  });
+  return draw(place, found.map(([, trace]) => trace), { ...timeLayout(comparison), yaxis: { title: title(quantity), quantity } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawSpectra(place, comparison) {
+  const range = comparedRange(comparison);
+  const found = await each(comparison, async (point) => {
+    const spectrum = await comparison.table(point, "spectrum", { ...comparison.node, ...comparison.window, window: "hann", range_hz: range });
+    noteNode(comparison, point, spectrum.attributes.node, spectrum.attributes.measured_depth);
+    return spectrum;
+  });
+  const least = found.reduce((/** @type {[Compared, any] | null} */ best, one) => (one[1].attributes.resolved_hz < (best?.[1].attributes.resolved_hz ?? range) ? one : best), null);
+  const isAlike = found.every(([, table]) => table.attributes.resolved_hz === least?.[1].attributes.resolved_hz);
+  if (least) comparison.says.push(`Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`);
+  const traces = found.map(([point, spectrum]) => spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name));
+  const layout = spectrumLayout(found.map(([point, table]) => ({ table, name: String(point.number) })), comparison.query.get("amplitude") === "log");
+  return draw(place, traces, { ...layout, shows: range }, comparison.signal);
+}
+
+/** How far compared spectra are shown [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
+export function comparedRange({ query, points }) {
+  return spectrumRange(query, comparedRate(points));
+}
+
+/** The rate of what was recorded most slowly [Hz]. @param {Compared[]} points */
+export function comparedRate(points) {
+  return Math.min(...points.map((point) => point.detail.scenario.recording.rate_hz));
+}
+
+/** The quantity that colours wells; none where each has the colour of its point. @param {URLSearchParams} query */
+export function wellColour(query) {
+  return QUANTITIES.find(([name]) => name === query.get("colour"))?.[0];
+}
+
+/**
+ * How far aside of each other wells are drawn, horizontally and across: most often all points have the same.
+ * @param {any} statics
+ */
+function asideOf({ north, east, measured_depth }) {
+  const last = north.length - 1;
+  const [along, across] = [north[last] - north[0], east[last] - east[0]];
+  const apart = (APART * (measured_depth[last] - measured_depth[0])) / (Math.hypot(along, across) || 1);
+  return Math.hypot(along, across) ? { north: -across * apart, east: along * apart } : { north: 0, east: APART * measured_depth[last] };
+}
+
+/** How many times the distance from the axis of the hole is drawn. @param {URLSearchParams} query */
+export function wellFactor(query) {
+  return exaggeration(query, EXAGGERATION);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawWells(place, comparison) {
+  const colour = wellColour(comparison.query);
+  const factor = wellFactor(comparison.query);
+  comparison.says.push(saysExaggeration("The strings at rest; their", factor));
+  const found = await each(comparison, async (point) => {
+    const [{ columns: statics }, table] = await Promise.all(["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) => comparison.table(point, name)));
+    const { columns } = table ?? { columns: statics };
+    if (colour && !columns[colour]) comparison.lacking.push(`Point ${point.number} has no ${label(colour)}.`);
+    return { statics, values: colour && columns[colour] ? onNodes(columns, colour, statics.measured_depth.length) : null };
+  });
+  // One scale for all.
+  const finite = colour ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null)) : [];
+  const [cmin, cmax] = [finite.reduce((a, b) => Math.min(a, b), Infinity), finite.reduce((a, b) => Math.max(a, b), -Infinity)];
+  const barOf = found.find(([, { values }]) => values)?.[0];
+  const aside = colour && found.length > 1 ? asideOf(found[0][1].statics) : null;
+  if (aside) comparison.says.push("Wells are drawn aside of each other, so that each is seen.");
+  const traces = found.map(([point, { statics, values }], order) => {
+    const beside = (/** @type {number[]} */ path, /** @type {number} */ step) => path.map((value) => value + order * step);
+    const axis = { north: beside(statics.north, aside?.north ?? 0), east: beside(statics.east, aside?.east ?? 0), down: statics.true_vertical_depth };
+    const path = displaced(statics, axis, factor);
+    const line = colour && values ? { color: shown(colour, values), colorscale: lineScale(), cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
+    const last = statics.measured_depth.length - 1;
+    // Where colours tell values, numbers tell the wells apart.
+    const told = colour ? { mode: "lines+text", text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) => (index === last ? `point ${point.number}` : "")), hovertext: values?.map((value, index) => `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`), hoverinfo: "text", showlegend: false } : { mode: "lines", hoverinfo: "name", showlegend: true };
+    return { type: "scatter3d", ...told, name: point.name, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line };
+  });
+  const { soft, line } = inks();
+  const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
+  return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } }, comparison.signal);
+}
+
+/** The account whose energy is compared over time; empty where all are by what they changed. @param {URLSearchParams} query */
+export function energyAccount(query) {
+  return ACCOUNTS.find((name) => name === query.get("account")) ?? "";
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison */
+async function drawEnergy(place, comparison) {
+  const account = energyAccount(comparison.query);
+  if (account) return drawAccount(place, comparison, account);
+  const found = await each(comparison, async (point) => ledger((await comparison.table(point, "energy")).columns));
+  const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
+  const { symbol } = unit("kinetic");
+  const traces = found.map(([point, one]) => ({ type: "bar", name: point.name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: point.colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
+  return draw(place, traces, { shows: "", barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, comparison.signal);
+}
+
+/** @param {HTMLElement} place @param {Comparison} comparison @param {string} account of the ledger */
+async function drawAccount(place, comparison, account) {
+  const found = await each(comparison, async (point) => {
+    const { columns } = await comparison.table(point, "energy");
+    if (!columns[account]) throw new Lacking(`its ledger has no account of ${label(account)}`);
+    return { ...overTime(point, columns.time, shown(account, columns[account])), type: "scatter" };
+  });
+  return draw(place, found.map(([, trace]) => trace), { shows: account, xaxis: { title: "time [s]" }, yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account } }, comparison.signal);
+}

@@ -1,0 +1,122 @@
+// Requests for the motion of a recorded node. This module imports nothing, so that `preload.js` can use it before the other modules have run.
+
+/** Samples in a picture: two for each pixel of a wide screen. */
+const SHOWN = 4000;
+
+/** Frequencies up to which full spectra are shown [Hz]. */
+const RANGES = ["5", "20", "50", "100"];
+
+/**
+ * A table of a point, and what is asked of it.
+ * @typedef {[name: string, query: Record<string, any>]} Asked
+ */
+
+/**
+ * Equilibrium and the whole orbit of a node.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @returns {Asked[]}
+ */
+export function nodeTables(scenario, query) {
+  return [
+    ["statics", { fields: "node,measured_depth,low_side_angle,clearance" }],
+    ["orbit", { ...selectedNode(scenario, query), max_points: SHOWN }],
+  ];
+}
+
+/**
+ * Orbit, full spectrum and statistics of a window.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @param {{from: number, to: number}} window [s]
+ * @returns {Asked[]}
+ */
+export function windowTables(scenario, query, { from, to }) {
+  const node = selectedNode(scenario, query);
+  return [
+    ["orbit", { ...node, from, to, max_points: 2 * SHOWN }],
+    ["spectrum", { ...node, from, to, window: spectrumWeighting(query), range_hz: spectrumRange(query, scenario.recording.rate_hz), peaks: 10 }],
+    ["statistics", { ...node, from, to }],
+  ];
+}
+
+/**
+ * The history of rotation speed and torque of a node.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @param {number} node as the service numbers it
+ * @returns {Asked}
+ */
+export function rotationTable(scenario, query, node) {
+  return ["history", { ...selectedNode(scenario, query), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }];
+}
+
+/**
+ * The recorded node that a link names, or the first, as the service is asked for it.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ * @returns {{node: number} | {depth: number, nearest: true}}
+ */
+export function selectedNode({ recording: { nodes } }, query) {
+  const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
+  return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+}
+
+/**
+ * The window that a link names, or the one of the point's statistics.
+ * @param {any} point
+ * @param {URLSearchParams} query of the link
+ * @returns {{from: number, to: number}} [s]
+ */
+export function chosenWindow(point, query) {
+  const { scenario } = point;
+  const usual = verifiedWindow(point);
+  const from = Number(query.get("from") ?? usual.from);
+  const to = Number(query.get("to") ?? usual.to);
+  return from >= 0 && to > from ? { from, to: Math.min(to, scenario.duration) } : { from: usual.from, to: usual.to };
+}
+
+/** The longest window of which the histories of a run that settles are kept [s]. */
+const LONGEST_KEPT = 80;
+
+/**
+ * The window of a point's statistics, which verifying looks at: what its result reports, the scenario's own, or the last third of the run.
+ * @param {any} point
+ * @returns {{from: number, to: number}} [s]
+ */
+export function verifiedWindow({ scenario: { recording, duration }, summary }) {
+  if (recording.orbit_window === "settled" && summary?.statistics_to !== undefined) return { from: Math.max(summary.statistics_from, summary.statistics_to - LONGEST_KEPT), to: summary.statistics_to };
+  return recording.orbit_window?.to !== undefined ? recording.orbit_window : { from: (duration * 2) / 3, to: duration };
+}
+
+/**
+ * The part of a run of which histories are kept: all of it, or of a run that settles the window of its statistics.
+ * @param {any} point
+ * @returns {{from: number, to: number}} [s]
+ */
+export function keptWindow(point) {
+  return point.scenario.recording.orbit_window === "settled" ? verifiedWindow(point) : { from: 0, to: point.scenario.duration };
+}
+
+/** How the samples of a spectrum are weighted, as the link says. @param {URLSearchParams} query */
+export function spectrumWeighting(query) {
+  return query.get("window") === "rectangular" ? "rectangular" : "hann";
+}
+
+/**
+ * The frequencies up to which a spectrum can be shown: as far as samples at a rate have any.
+ * @param {number} rate [Hz]
+ */
+export function rangesOf(rate) {
+  return RANGES.filter((text) => Number(text) <= rate / 2);
+}
+
+/**
+ * How far a spectrum is shown, as the link says [Hz].
+ * @param {URLSearchParams} query
+ * @param {number} rate of the samples [Hz]
+ */
+export function spectrumRange(query, rate) {
+  const offered = rangesOf(rate);
+  return Number(offered.find((text) => text === query.get("range")) ?? (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)));
+}

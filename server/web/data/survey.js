@@ -1,0 +1,82 @@
+// A survey of the well, pasted from a spreadsheet or a report.
+
+import { choice, fill, h } from "../ui/dom.js";
+import { number, say as sayValue } from "./units.js";
+
+/** @typedef {{measured_depth: number, inclination_deg: number, azimuth_deg: number}} Station */
+
+/** Metres of each unit in which surveys give depths; the foot is the international one. @type {Record<string, number>} */
+const METRES = { m: 1, ft: 0.3048 };
+
+/** A text that is no survey. */
+export class NoSurvey extends Error {}
+
+/**
+ * The columns of a line, with points as decimal signs. Where tabs, semicolons or spaces part the columns, a comma within one is a decimal sign.
+ * @param {string} line
+ */
+function columns(line) {
+  const parting = ["\t", ";"].find((sign) => line.includes(sign));
+  const cells = line.trim().split(parting ?? /\s+/).map((cell) => cell.trim());
+  const isParted = parting || (cells.length >= 3 && !cells.some((cell) => cell.startsWith(",") || cell.endsWith(",")));
+  return isParted ? cells.map((cell) => cell.replace(",", ".")) : line.trim().split(/\s*,\s*/);
+}
+
+/**
+ * Reads stations: measured depth, inclination and azimuth in degrees, one station a line, the columns apart by tabs, semicolons, commas
+ * or spaces; further columns and lines above the first station are left out.
+ * @param {string} text
+ * @param {string} unit of the depths
+ * @returns {Station[]} in metres and degrees
+ */
+export function readSurvey(text, unit) {
+  /** @type {Station[]} */
+  const stations = [];
+  text.split(/\r?\n/).forEach((line, index) => {
+    if (!line.trim()) return;
+    const [depth, inclination, azimuth] = columns(line).map((cell) => (cell === "" ? NaN : Number(cell)));
+    if (![depth, inclination, azimuth].every(Number.isFinite)) {
+      if (!stations.length) return;
+      throw new NoSurvey(`Line ${index + 1} does not begin with three numbers: ${line.trim().slice(0, 60)}`);
+    }
+    // To a tenth of a millimetre: what a conversion adds beyond is no measurement.
+    stations.push({ measured_depth: Number((depth * METRES[unit]).toFixed(4)), inclination_deg: inclination, azimuth_deg: azimuth });
+  });
+  if (!stations.length) throw new NoSurvey("No line begins with measured depth, inclination and azimuth");
+  return stations;
+}
+
+/**
+ * A field for a survey.
+ * @param {Station[] | undefined} given in a request that the form begins with
+ * @param {() => void} changed
+ * @returns {{element: HTMLElement, read: () => Station[] | undefined, say: () => void}} `say` sums the survey up again, in the units that now hold
+ */
+export function surveyField(given, changed) {
+  let unit = "m";
+  const summary = h("p", { class: "small soft", "aria-live": "polite" });
+  const text = h("textarea", { class: "code", rows: 6, spellcheck: "false", "aria-label": "Survey: measured depth, inclination and azimuth of each station", placeholder: "0\t0\t0\n500\t12.5\t40", value: (given ?? []).map((station) => [station.measured_depth, station.inclination_deg, station.azimuth_deg].join("\t")).join("\n"), oninput: () => {
+    say();
+    changed();
+  } });
+  const read = () => (text.value.trim() ? readSurvey(text.value, unit) : undefined);
+  function say() {
+    try {
+      const stations = read();
+      const last = stations?.at(-1);
+      fill(summary, last ? `${stations?.length} stations down to ${sayValue("measured_depth", last.measured_depth)}, inclination up to ${number(Math.max(...(stations ?? []).map((station) => station.inclination_deg)))}°.` : "Nothing pasted: the well is the scenario's.");
+    } catch (error) {
+      if (!(error instanceof NoSurvey)) throw error;
+      // The form says what is wrong with it.
+      fill(summary);
+    }
+  }
+  say();
+  const units = choice("Depths in", [["m", "m"], ["ft", "ft"]], unit, (value) => {
+    unit = value;
+    say();
+    changed();
+  });
+  const element = h("details", { open: Boolean(given), "data-pointer": "/set/well.survey" }, h("summary", {}, "Survey from a spreadsheet"), h("p", { class: "small soft" }, "Paste the columns measured depth, inclination [°] and azimuth [°]: they take the place of the scenario's survey."), units, text, summary);
+  return { element, read, say };
+}

@@ -1,0 +1,105 @@
+// A sweep's table by columns, fetched as they are needed.
+
+import { get } from "./api.js";
+
+/** @typedef {(number | string | null)[]} Values */
+
+export class SweepTable {
+  /** @type {Map<string, Values>} */
+  #columns = new Map();
+  /** @type {string[]} */
+  names = [];
+  rows = 0;
+
+  /** @param {any} sweep @param {AbortSignal} signal */
+  constructor(sweep, signal) {
+    this.path = `/v1/sweeps/${encodeURIComponent(sweep.id)}/table`;
+    // Beyond, columns are fetched as views ask for them.
+    this.isWhole = sweep.counts.total <= preload.WHOLE;
+    this.signal = signal;
+  }
+
+  /** Reads the table anew, or those of its columns that views have asked for. */
+  async load() {
+    if (this.isWhole) {
+      const table = await get(this.path, { format: "json" }, this.signal);
+      this.#columns = new Map(Object.entries(table.columns));
+      this.names = [...this.#columns.keys()];
+    } else {
+      // At first nothing is wanted yet: the view asks for all that it needs at once.
+      const wanted = [...this.#columns.keys()];
+      const [columns, listed] = await Promise.all([wanted.length ? this.#fetch(wanted) : this.#columns, get(`${this.path}/columns`, {}, this.signal)]);
+      this.#columns = columns;
+      this.names = listed.columns.map((/** @type {any} */ column) => column.name);
+    }
+    this.#count();
+  }
+
+  #count() {
+    const [column] = this.#columns.values();
+    this.rows = column?.length ?? 0;
+  }
+
+  /**
+   * @param {string[]} names
+   * @returns {Promise<Map<string, Values>>}
+   */
+  async #fetch(names) {
+    const table = await get(this.path, { format: "json", fields: names.join(",") }, this.signal);
+    return new Map(Object.entries(table.columns));
+  }
+
+  /**
+   * Columns by name, in that order; one that the table does not have is all gaps.
+   * @param {string[]} names
+   * @returns {Promise<Values[]>}
+   */
+  async columns(...names) {
+    const missing = [...new Set(names)].filter((name) => !this.#columns.has(name));
+    if (missing.length && !this.isWhole) {
+      for (const [name, values] of await this.#fetch(missing)) this.#columns.set(name, values);
+      this.#count();
+    }
+    return names.map((name) => this.#columns.get(name) ?? Array(this.rows).fill(null));
+  }
+
+  /** Names of columns that hold words or numbers worth a colour or an axis. */
+  results() {
+    return this.names.filter((name) => name !== "ordinal" && name !== "error");
+  }
+}
+
+/** Paths of a scenario that the table calls by a shorter name. @type {Record<string, string>} */
+export const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density" };
+
+/**
+ * The swept parameters, as the table calls them: in the request's order, how it gives the values of each, and what it calls them.
+ * @param {any} sweep with its request
+ * @param {string[]} names of the table's columns
+ * @returns {{axes: string[], spans: Record<string, any>, paths: Record<string, string>}}
+ */
+export function sweptBy(sweep, names) {
+  const given = sweep.request?.axes ?? {};
+  const paths = Object.keys(given).length ? Object.keys(given) : Object.keys(sweep.request?.points?.[0] ?? {});
+  const known = paths.map((path) => ({ path, name: names.includes(path) ? path : (SHORT[path] ?? path) })).filter(({ name }) => names.includes(name));
+  return {
+    axes: known.map(({ name }) => name),
+    spans: Object.fromEntries(known.map(({ path, name }) => [name, given[path]])),
+    paths: Object.fromEntries(known.map(({ path, name }) => [name, path])),
+  };
+}
+
+/** @param {Values} values */
+export function isText(values) {
+  return values.some((value) => typeof value === "string");
+}
+
+/**
+ * The different values of a column in order.
+ * @param {Values} values
+ * @returns {(number | string)[]}
+ */
+export function distinct(values) {
+  const all = [...new Set(values)].filter((value) => value !== null);
+  return /** @type {(number | string)[]} */ (all).sort((a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b))));
+}

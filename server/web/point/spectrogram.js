@@ -1,0 +1,137 @@
+// The full spectrum of a recorded node over time, forward and backward.
+
+import { Problem } from "../data/api.js";
+import { choice, fill, h } from "../ui/dom.js";
+import { pythonNode } from "../ui/snippets.js";
+import { attend } from "../ui/notices.js";
+import { canvas, colourBar, draw, inks, logTicks, SCALE } from "../draw/plots.js";
+import { say, shown, title, unit } from "../data/units.js";
+
+/** Frequencies up to which spectrograms are shown [Hz]. */
+export const RANGES = ["5", "10", "20", "50", "100"];
+const LENGTHS = ["1", "2", "4", "8", "16"];
+/** Below this part of the highest amplitude a logarithmic scale ends. */
+const DEPTH = 1e-3;
+
+/**
+ * @param {import("./view.js").PointContext} context
+ * @returns {import("./view.js").PointPart}
+ */
+export function spectrogram(context) {
+  const { point, query } = context;
+  const { recording } = point.scenario;
+  /** @type {any[]} */
+  const nodes = recording.nodes;
+  const place = canvas("Spectrogram of the node", "spectrogram", "tall");
+  const caption = h("figcaption", {});
+  const controls = h("div", { class: "controls" });
+  const wrong = h("p", { class: "wrong", role: "alert" });
+  let generation = 0;
+
+  const of = (/** @type {string} */ name, /** @type {string[]} */ offered, /** @type {string} */ usual) => (offered.includes(query.get(name) ?? "") ? (query.get(name) ?? usual) : usual);
+  const range = () => of("range", RANGES, "20");
+  const length = () => of("length", ["", ...LENGTHS], "");
+  const isLog = () => query.get("amplitude") !== "linear";
+  const selector = () => {
+    const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
+    return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+  };
+  const asks = () => ({ ...selector(), range_hz: Number(range()), ...(length() ? { window_s: Number(length()) } : {}) });
+
+  function drawControls() {
+    const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
+      context.keep({ [name]: value || null });
+      attend(redraw(), context.signal);
+    };
+    fill(
+      controls,
+      choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? String(node.node) : say("measured_depth", node.depth)]), query.get("node") ?? "0", set("node")),
+      choice("Frequencies up to", RANGES.map((text) => [text, `${text} Hz`]), range(), set("range")),
+      choice("Length of a window", [["", "by the run"], ...LENGTHS.map((text) => /** @type {[string, string]} */ ([text, `${text} s`]))], length(), set("length")),
+      choice("Amplitude", [["log", "logarithmic"], ["linear", "linear"]], isLog() ? "log" : "linear", set("amplitude")),
+    );
+  }
+
+  async function redraw() {
+    drawControls();
+    const mine = ++generation;
+    wrong.textContent = "";
+    let table;
+    try {
+      table = await context.table("spectrogram", asks());
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+      wrong.textContent = error.errors[0]?.detail ?? error.message;
+      return;
+    }
+    if (mine !== generation) return;
+    const { node, measured_depth } = table.attributes;
+    place.setAttribute("aria-label", `Spectrogram of node ${node} at ${say("measured_depth", measured_depth)}`);
+    fill(caption, describe(table, Number(range())));
+    await drawSpectrogram(place, table, { isLog: isLog(), range: Number(range()), most: largestOf(table) }, context.signal);
+  }
+
+  return {
+    element: nodes.length ? h("div", { class: "panel" }, controls, wrong, h("figure", {}, place, caption)) : h("p", { class: "panel empty" }, "This point recorded no node."),
+    draw: nodes.length ? redraw : async () => {},
+    request: () => {
+      if (!nodes.length) return null;
+      const { range_hz, window_s, ...which } = /** @type {any} */ (asks());
+      return { asked: [{ table: "spectrogram", query: asks() }], python: `spectrogram = point.spectrogram(${pythonNode(which)}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()` };
+    },
+  };
+}
+
+/**
+ * The lines of a spectrogram that lie about zero, as wide as the line that the window makes of a mean, are the mean position.
+ * @param {number} frequency
+ * @param {any} table
+ */
+function isMeanAt(frequency, table) {
+  return Math.abs(frequency) < 2.5 * table.attributes.resolution;
+}
+
+/**
+ * The highest amplitude without the mean position [m].
+ * @param {any} table
+ */
+export function largestOf(table) {
+  const { amplitude, frequency } = table.columns;
+  return amplitude.reduce((/** @type {number} */ most, /** @type {number} */ value, /** @type {number} */ row) => (isMeanAt(frequency[row], table) ? most : Math.max(most, value)), 0) || 1;
+}
+
+/**
+ * What a spectrogram is of.
+ * @param {any} table
+ * @param {number} range [Hz]
+ */
+export function describe(table, range) {
+  const { windows, resolution, window_s, node, measured_depth, resolved_hz } = table.attributes;
+  return `Node ${node} at ${say("measured_depth", measured_depth)}: ${windows} windows of ${say("time", window_s)}, resolution ${say("frequency", resolution)}. Positive frequencies are forward whirl; the mean position about 0 is left out.${resolved_hz && resolved_hz < range ? ` Dotted: beyond it the time steps do not resolve, ${say("frequency", resolved_hz)}.` : ""}`;
+}
+
+/**
+ * @param {HTMLElement} place
+ * @param {any} table
+ * @param {{isLog: boolean, range: number, most: number}} how `range` [Hz] is that of the frequencies, `most` [m] the end of the colours
+ * @param {AbortSignal} signal
+ */
+export async function drawSpectrogram(place, table, { isLog, range, most }, signal) {
+  const { windows, resolved_hz } = table.attributes;
+  const bins = table.columns.time.length / windows;
+  const frequency = table.columns.frequency.slice(0, bins);
+  const time = Array.from({ length: windows }, (_, index) => table.columns.time[index * bins]);
+  const isMean = frequency.map((/** @type {number} */ value) => isMeanAt(value, table));
+  const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) => (isMean[bin] ? Array(windows).fill(null) : time.map((_, index) => table.columns.amplitude[index * bins + bin])));
+  const z = rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row).map((value) => (value === null || !isLog ? value : Math.log10(Math.max(value, 1e-12)))));
+  const top = Number(shown("amplitude", [most])[0]);
+  const [least, largest] = isLog ? [Math.log10(top * DEPTH), Math.log10(top)] : [0, top];
+  const { soft } = inks();
+  const limits = resolved_hz && resolved_hz < range ? [resolved_hz, -resolved_hz] : [];
+  await draw(
+    place,
+    [{ type: "heatmap", x: time, y: frequency, z, zmin: least, zmax: largest, colorscale: SCALE, customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)), colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) }, hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>` }],
+    { shows: range, xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
+    signal,
+  );
+}

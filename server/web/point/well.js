@@ -1,0 +1,123 @@
+// The well in space with the string in it at rest, coloured by a quantity.
+
+import { choice, fill, h } from "../ui/dom.js";
+import { generations } from "../ui/generations.js";
+import { attend } from "../ui/notices.js";
+import { canvas, colourBar, draw, inks, lineScale } from "../draw/plots.js";
+import { pythonColumns, QUANTITIES, tableOf } from "./profiles.js";
+import { label, say, shown, title, unit } from "../data/units.js";
+import { nodeFrames } from "../data/well-frames.js";
+
+/** How many times the string's distance from the axis of the hole is drawn. */
+const EXAGGERATIONS = ["1", "20", "100", "300"];
+const USUAL = 20;
+
+/**
+ * @param {import("./view.js").PointContext} context
+ * @returns {import("./view.js").PointPart}
+ */
+export function well(context) {
+  const { query } = context;
+  const place = canvas("The well and the string in it", "well", "tall", "whole");
+  const controls = h("div", { class: "controls" });
+  const caption = h("figcaption", {});
+  const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
+  const factor = () => exaggeration(query, USUAL);
+  const begin = generations();
+
+  async function redraw() {
+    const isNewest = begin();
+    const name = colour();
+    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+      context.keep({ [key]: value });
+      attend(redraw(), context.signal);
+    };
+    fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), exaggerationChoice(factor(), set("exaggerate")));
+    const statics = (await context.table("statics")).columns;
+    const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
+    if (!isNewest()) return;
+    const values = onNodes(table, name, statics.measured_depth.length);
+    const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
+    const string = displaced(statics, axis, factor());
+    const line = (/** @type {typeof axis} */ path) => ({ x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down) });
+    const { soft, line: faint } = inks();
+    const texts = values.map((value, index) => `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`);
+    const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: faint, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
+    fill(caption, `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`);
+    await draw(
+      place,
+      [
+        { type: "scatter3d", mode: "lines", ...line(axis), line: { color: soft, width: 2 }, hoverinfo: "skip", name: "axis of the hole" },
+        { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: lineScale(), width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
+      ],
+      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } },
+      context.signal,
+    );
+  }
+
+  return {
+    element: h("div", {}, controls, h("figure", {}, place, caption)),
+    draw: redraw,
+    request: () => {
+      const [name, table] = [colour(), tableOf(colour())];
+      const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
+      const statics = [...space, ...(table === "statics" ? [name] : [])];
+      const depth = table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
+      const asked = [{ table: "statics", query: { fields: [...new Set(statics)].join(",") } }, ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }])];
+      return { asked, python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n") };
+    },
+  };
+}
+
+/**
+ * How many times the distance from the axis is drawn, as the link says.
+ * @param {URLSearchParams} query
+ * @param {number} usual
+ */
+export function exaggeration(query, usual) {
+  return EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : usual;
+}
+
+/** @param {number} factor @param {(value: string) => void} onChange */
+export function exaggerationChoice(factor, onChange) {
+  return choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor), onChange);
+}
+
+/** @param {string} whose @param {number} factor */
+export function saysExaggeration(whose, factor) {
+  return `${whose} distance from the axis of the hole is drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.`;
+}
+
+/**
+ * A quantity at the nodes: of elements, the mean of both that a node joins.
+ * @param {any} columns
+ * @param {string} name
+ * @param {number} nodes
+ * @returns {(number | null)[]}
+ */
+export function onNodes(columns, name, nodes) {
+  const values = columns[name];
+  if (values.length === nodes) return values;
+  return Array.from({ length: nodes }, (_, node) => {
+    const [above, below] = [values[Math.max(0, node - 1)] ?? null, values[Math.min(values.length - 1, node)] ?? null];
+    return above === null || below === null ? (above ?? below) : (above + below) / 2;
+  });
+}
+
+/**
+ * Where the string lies, its distance from the axis multiplied.
+ * @param {any} statics
+ * @param {{north: number[], east: number[], down: number[]}} axis
+ * @param {number} factor
+ */
+export function displaced(statics, axis, factor) {
+  const frames = nodeFrames(statics);
+  const result = { north: [...axis.north], east: [...axis.east], down: [...axis.down] };
+  for (let node = 0; node < axis.north.length; node += 1) {
+    const [u, v] = [factor * statics.u[node], factor * statics.v[node]];
+    result.north[node] += u * frames.u[node][0] + v * frames.v[node][0];
+    result.east[node] += u * frames.u[node][1] + v * frames.v[node][1];
+    result.down[node] += u * frames.u[node][2] + v * frames.v[node][2];
+  }
+  return result;
+}

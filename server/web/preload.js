@@ -1,0 +1,183 @@
+// Preloads the first view while the page is still being read: its modules, which a browser would otherwise find one after the other, each
+// when the one before has arrived and run, and the service's answers. Modules run after the page's first picture at the earliest; this is a
+// plain script, which runs at once and which they use as `preload`.
+
+const preload = (() => {
+  /** Points up to which the whole table of a sweep is one answer. */
+  const WHOLE = 3000;
+  /** Sweeps on a page of the list. */
+  const PAGE = 100;
+  /** How long an answer waits for the view to ask for it; later it may not be true any more. */
+  const KEPT_MS = 3000;
+
+  /**
+   * Module of each part of a view, by the part's name in the link; the first is the default.
+   * @type {Record<string, Record<string, string>>}
+   */
+  const PARTS = {
+    sweep: {
+      map: "sweep/map.js",
+      scatter: "sweep/scatter.js",
+      parallel: "sweep/parallel.js",
+      effects: "sweep/sensitivities.js",
+      difference: "sweep/difference.js",
+      table: "sweep/table.js",
+      failures: "sweep/failures.js",
+    },
+    point: {
+      profiles: "point/profiles.js",
+      motion: "point/motion.js",
+      spectrogram: "point/spectrogram.js",
+      string: "point/string.js",
+      well: "point/well.js",
+      energy: "point/energy.js",
+      about: "point/about.js",
+    },
+  };
+
+  /** Imports of each module by paths from the page's folder, which the server writes into the page. @type {Record<string, string[]>} */
+  const imports = JSON.parse(document.getElementById("imports")?.textContent || "{}");
+  const folder = /** @type {HTMLScriptElement} */ (document.currentScript).src;
+  /** @type {Set<string>} */
+  const preloaded = new Set();
+  /** Answers that no view has asked for yet, by address. @type {Map<string, Promise<Response>>} */
+  const answers = new Map();
+  /** Addresses that a view has asked for while answers are kept. @type {Set<string>} */
+  const taken = new Set();
+  /** Nothing is sent for any more. */
+  let isOver = false;
+
+  /** @returns {import("./ui/router.js").Route} what the link asks for */
+  function route() {
+    const [path, query] = (location.hash.replace(/^#/, "") || "/sweeps").split("?", 2);
+    return { path: path.split("/").filter(Boolean).map(decode), query: new URLSearchParams(query ?? "") };
+  }
+
+  /** @param {string} segment */
+  function decode(segment) {
+    try {
+      return decodeURIComponent(segment);
+    } catch {
+      return segment;
+    }
+  }
+
+  /**
+   * @param {string} path
+   * @param {Record<string, string | number | boolean | null | undefined>} [query] what is absent or empty is left out
+   */
+  function address(path, query = {}) {
+    const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+    const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
+    return text ? `${path}?${text}` : path;
+  }
+
+  /**
+   * The query of the list's first page.
+   * @param {Record<string, string>} filters an empty one is none
+   */
+  function firstPage({ state, name, owner, tag }) {
+    return { state, name: name.trim(), owner: owner.trim(), tag: tag.trim(), limit: PAGE };
+  }
+
+  /**
+   * @param {string[]} path of the link
+   * @returns {string} the view's folder; empty if the link names no view
+   */
+  function viewOf(path) {
+    if (path[0] === "sweeps" && path.length === 1) return "list";
+    if (path[0] === "sweeps" && path.length === 2) return "sweep";
+    if (path[0] === "sweeps" && path[2] === "points" && path.length === 4) return "point";
+    if (path[0] === "compare" && path.length === 1) return "compare";
+    return path[0] === "new" && path.length === 1 ? "submit" : "";
+  }
+
+  /** Preloads the modules of the view that a link names. @param {import("./ui/router.js").Route} route */
+  function modules({ path, query }) {
+    const view = viewOf(path);
+    if (!view) return;
+    load(`${view}/view.js`);
+    const parts = PARTS[view];
+    if (parts) load(parts[query.get("view") ?? ""] ?? Object.values(parts)[0]);
+  }
+
+  /** Preloads a module with all that it imports. @param {string} name its path from the page's folder */
+  function load(name) {
+    if (preloaded.has(name)) return;
+    preloaded.add(name);
+    const link = document.createElement("link");
+    Object.assign(link, { rel: "modulepreload", href: new URL(name, folder).href });
+    document.head.append(link);
+    imports[name]?.forEach(load);
+  }
+
+  /**
+   * The answer to a request that has been sent already, once.
+   * @param {string} url
+   * @returns {Promise<Response> | undefined}
+   */
+  function sent(url) {
+    const answer = answers.get(url);
+    answers.delete(url);
+    if (!isOver) taken.add(url);
+    return answer;
+  }
+
+  /** @param {string} url */
+  function send(url) {
+    if (isOver || taken.has(url)) return;
+    const answer = fetch(url, { headers: { Accept: "application/json" } });
+    // Who asks for it hears of it.
+    answer.catch(() => {});
+    answers.set(url, answer);
+  }
+
+  /** What was sent for, once it has come; nothing where there is none. @param {string} url */
+  async function received(url) {
+    const answer = await answers.get(url);
+    return answer?.ok ? answer.clone().json() : null;
+  }
+
+  /** Sends for the table of a sweep that has been sent for, once it is known to be small. @param {string} sweep */
+  async function sendTable(sweep) {
+    const answer = await received(sweep);
+    if (answer?.counts.total <= WHOLE) send(`${sweep}/table?format=json`);
+  }
+
+  /**
+   * Sends for what the motion at a point that has been sent for is shown from.
+   * @param {string} point
+   * @param {URLSearchParams} query of the link
+   */
+  async function sendMotion(point, query) {
+    /** @type {[any, typeof import("./data/motion-requests.js")]} */
+    const [answer, requests] = await Promise.all([received(point), import(new URL("data/motion-requests.js", folder).href)]);
+    if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
+    const { scenario } = answer;
+    const tables = [...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)), ...requests.nodeTables(scenario, query)];
+    for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
+  }
+
+  const first = route();
+  const [id, ordinal] = [first.path[1], first.path[3]].map(encodeURIComponent);
+  const view = viewOf(first.path);
+  send("/v1/quantities");
+  send("/v1/session");
+  if (view === "list") {
+    const [state, name, owner, tag] = ["state", "name", "owner", "tag"].map((filter) => first.query.get(filter) ?? "");
+    send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
+  }
+  if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
+  if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
+  // What fails of these, the view finds out when it asks itself.
+  if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
+  if (view === "point" && first.query.get("view") === "motion") sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
+  load("main.js");
+  modules(first);
+  setTimeout(() => {
+    isOver = true;
+    answers.clear();
+    taken.clear();
+  }, KEPT_MS);
+  return { WHOLE, address, firstPage, route, viewOf, modules, sent };
+})();

@@ -8,12 +8,7 @@ import { loadSession, logIn, logOut, onLoginNeeded, session } from "./ui/session
 import { apply, choose, settings, theme, unitSystem } from "./data/settings.js";
 import { loadQuantities } from "./data/units.js";
 
-/**
- * A view fills `main` until `signal` is aborted, and gives its title.
- * @typedef {(main: HTMLElement, route: import("./ui/router.js").Route, signal: AbortSignal) => Promise<string>} View
- */
-
-/** The module of each view, by its name. @type {Record<string, () => Promise<{show: View}>>} */
+/** The module of each view, by its name. @type {Record<string, () => Promise<{show: import("./ui/router.js").View}>>} */
 const VIEWS = {
   list: () => import("./list/view.js"),
   sweep: () => import("./sweep/view.js"),

@@ -1,6 +1,6 @@
 // What points are compared by side by side, a picture each with one scale of colours, and rotation at the ends of the string.
 
-import { each, Lacking, noteNode } from "./views.js";
+import { each, Lacking, noteNode } from "./comparison.js";
 import { fill, h } from "../ui/dom.js";
 import { canvas, draw } from "../draw/plots.js";
 import { contactMap, largestShown } from "../point/contacts.js";
@@ -10,14 +10,14 @@ import { frames } from "../data/snapshots.js";
 import { stringPlayer } from "../point/string-player.js";
 import { shown } from "../data/units.js";
 
-/** @typedef {import("./views.js").Comparison} Comparison */
-/** @typedef {import("./views.js").Compared} Compared */
+/** @typedef {import("./comparison.js").Comparison} Comparison */
+/** @typedef {import("./comparison.js").Compared} Compared */
 
 /**
  * What the views of a point are made with, of one that is compared.
  * @param {Comparison} comparison
  * @param {Compared} point
- * @returns {import("../point/view.js").PointContext}
+ * @returns {import("../point/part.js").PointContext}
  */
 function contextOf({ query, keep, table, drawing }, point) {
   return { point: point.detail, path: point.path, query, keep, bias: () => "", table: (name, asks) => table(point, name, asks), drawn: () => {}, signal: drawing };

@@ -2,14 +2,14 @@
 
 import { get } from "../data/api.js";
 import { Biases } from "../data/biases.js";
-import { each, noteNode } from "./views.js";
+import { each, noteNode } from "./comparison.js";
 import { fill, h } from "../ui/dom.js";
 import { accuracyFacts, accuracyReasons, costFacts } from "../point/about.js";
 import { biasOver, recordedAs, STATISTICS } from "../data/statistics.js";
 import { say } from "../data/units.js";
 
-/** @typedef {import("./views.js").Comparison} Comparison */
-/** @typedef {import("./views.js").Compared} Compared */
+/** @typedef {import("./comparison.js").Comparison} Comparison */
+/** @typedef {import("./comparison.js").Compared} Compared */
 
 /** Modes are looked for up to this frequency [Hz]. */
 const MODES_HZ = 20;

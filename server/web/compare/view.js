@@ -29,9 +29,9 @@ const MOST_CHANGES = 3;
 /** Depths that differ by less are one [m]. */
 const SAME_DEPTH = 1e-3;
 
-/** @typedef {import("./views.js").Compared} Compared */
+/** @typedef {import("./comparison.js").Compared} Compared */
 
-/** @type {import("../main.js").View} */
+/** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const { query } = route;
   const keys = comparedIn(query);
@@ -166,7 +166,7 @@ export async function show(main, route, signal) {
   /** Tables that points are drawn from, by their numbers, where the view has a choice. @type {Map<number, string>} */
   let sources = new Map();
 
-  /** What the points' profiles are at a depth. @type {NonNullable<import("./views.js").Comparison["profiled"]>["read"]} */
+  /** What the points' profiles are at a depth. @type {NonNullable<import("./comparison.js").Comparison["profiled"]>["read"]} */
   let readAt = () => [];
   const cursor = depthCursor(place, { query, keep: remember }, (depth, told) => readAt(depth, told));
 
@@ -174,7 +174,7 @@ export async function show(main, route, signal) {
     latest.abort();
     latest = new AbortController();
     const drawing = AbortSignal.any([signal, latest.signal]);
-    /** @type {import("./views.js").Comparison} */
+    /** @type {import("./comparison.js").Comparison} */
     const comparison = {
       points,
       query,

@@ -6,7 +6,8 @@ import { lines, requestLines, shell } from "../ui/snippets.js";
 import { attend } from "../ui/notices.js";
 import { Pace } from "../data/pace.js";
 import { go, keep, link } from "../ui/router.js";
-import { duration, moment } from "../data/units.js";
+import { duration } from "../data/units.js";
+import { progressPart, when } from "../ui/progress.js";
 
 /** How often the list is asked for while no stream tells of changes. */
 const POLL_MS = 4000;
@@ -17,7 +18,7 @@ const QUIET_MS = 30_000;
 /** How long sweeps that are new to the page are collected before the list is asked which of them pass its filters. */
 const COLLECT_MS = 300;
 
-/** @type {import("../main.js").View} */
+/** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const firstPage = () => preload.firstPage({ state: state(), name: search.value, owner: owner.value, tag: tag.value });
   const filters = () => {
@@ -324,35 +325,6 @@ function drawRow(row, sweep, pace) {
     h("td", { class: "wide-only" }, sweep.owner),
     h("td", { class: "wide-only" }, when(sweep.created)),
   );
-}
-
-/**
- * State, bar and counts of a sweep.
- * @param {any} sweep
- * @param {Pace} pace
- */
-export function progressPart(sweep, pace) {
-  const { counts } = sweep;
-  const left = pace.left();
-  const words = [`${counts.succeeded} of ${counts.total} succeeded`];
-  if (counts.running) words.push(`${counts.running} running`);
-  const isMarked = sweep.state === "completed" && counts.failed > 0;
-  if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
-  if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
-  if (sweep.state === "running") words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
-  const percent = Math.floor(100 * sweep.progress);
-  return h(
-    "div",
-    {},
-    h("span", { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` }, isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state),
-    !isFinal(sweep) && [h("span", { class: "soft small" }, ` ${percent} %`), h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` })],
-    h("div", { class: "small soft" }, words.join(", ")),
-  );
-}
-
-/** @param {string} time RFC 3339 */
-export function when(time) {
-  return h("time", { datetime: time, title: moment(time, "second") }, moment(time));
 }
 
 /** @param {any} queue @param {any[]} workers */

@@ -5,8 +5,8 @@ import { fill, h } from "../ui/dom.js";
 import { bytes, duration, label, meaning, moment, number, say } from "../data/units.js";
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function about(context) {
   const { point, path, signal } = context;
@@ -83,7 +83,7 @@ export function accuracyReasons({ provenance = {} }) {
   return /** @type {[string, string][]} */ (reasons.filter(([, text]) => text));
 }
 
-/** @param {import("./view.js").PointContext} context */
+/** @param {import("./part.js").PointContext} context */
 function accuracyPart({ point, bias }) {
   const { summary } = point;
   const biased = Object.keys(summary).filter((name) => name.startsWith("orbit_radius_rms") && bias(name));
@@ -112,7 +112,7 @@ export function costFacts(point) {
   return facts;
 }
 
-/** @param {import("./view.js").PointContext} context */
+/** @param {import("./part.js").PointContext} context */
 function summaryPart({ point, bias }) {
   const rows = Object.entries(point.summary).filter(([, value]) => value !== null).map(([name, value]) => h("tr", { title: meaning(name) }, h("td", {}, label(name)), h("td", { class: "number" }, say(name, value), h("span", { class: "soft small" }, bias(name)))));
   return h("section", { class: "panel", "aria-label": "Summary" }, h("h2", {}, "Summary"), h("div", { class: "scroll", style: "max-height:26rem", tabindex: "0", role: "region", "aria-label": "Summary, scrollable" }, h("table", {}, h("tbody", {}, rows))));

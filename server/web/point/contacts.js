@@ -12,7 +12,7 @@ const COVERED = 0.9;
 const SAMPLED = 50_000;
 
 /**
- * @param {import("./view.js").PointContext} context
+ * @param {import("./part.js").PointContext} context
  * @param {((time: number) => void) | null} onTime where the reader points on the map
  * @param {{heading: string, key: string}} [named] where there are several
  */

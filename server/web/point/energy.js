@@ -29,8 +29,8 @@ export function ledger(columns) {
 }
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function energy(context) {
   const bars = canvas("Energy by account at the end of the run", "bars", "low");

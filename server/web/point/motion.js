@@ -18,8 +18,8 @@ const HIGHEST_MODE_HZ = 50;
 const REST_MS = 100;
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function motion(context) {
   const { point, query, signal } = context;

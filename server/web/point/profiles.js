@@ -114,8 +114,8 @@ export function quantityTicks(chosen, onChange) {
 }
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function profiles(context) {
   const place = canvas("Profiles over measured depth", "profiles", "tall");

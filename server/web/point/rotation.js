@@ -25,7 +25,7 @@ export const RECORD_ENDS = "Rotation speed and torque at the bit are not in this
 /**
  * Rotation speed and torque at bit and top, as far as they were recorded: of each end from the history where it is there, which has more
  * samples a second than the snapshots.
- * @param {import("./view.js").PointContext} context
+ * @param {import("./part.js").PointContext} context
  * @param {{from: number, to: number}} window [s]
  * @returns {Promise<EndLine[]>}
  */
@@ -37,7 +37,7 @@ async function endsOf(context, window) {
 }
 
 /**
- * @param {import("./view.js").PointContext} context
+ * @param {import("./part.js").PointContext} context
  * @param {{from: number, to: number}} window
  * @returns {Promise<EndLine[]>}
  */
@@ -52,7 +52,7 @@ export async function endsOfSnapshots(context, window) {
 }
 
 /**
- * @param {import("./view.js").PointContext} context
+ * @param {import("./part.js").PointContext} context
  * @param {{from: number, to: number}} window
  * @returns {Promise<EndLine[]>}
  */
@@ -83,7 +83,7 @@ export async function endsOfHistory(context, window) {
  * The requests behind those lines that are of the history.
  * @param {EndLine[]} lines
  * @param {{from: number, to: number} | null} [window] [s]
- * @returns {import("./view.js").PartRequest}
+ * @returns {import("./part.js").PartRequest}
  */
 export function endsRequest(lines, window = null) {
   const nodes = [...new Set(lines.filter(({ source }) => source === "history").map(({ node }) => node))];
@@ -115,7 +115,7 @@ function sayTorqueOnBit({ scenario }) {
   return `At the bit it differs from the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by what the friction of the wall and the inertia below the middle of that element take.`;
 }
 
-/** @param {import("./view.js").PointContext} context */
+/** @param {import("./part.js").PointContext} context */
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
   const caption = h("figcaption", {});

@@ -14,8 +14,8 @@ const LENGTHS = ["1", "2", "4", "8", "16"];
 const DEPTH = 1e-3;
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function spectrogram(context) {
   const { point, query } = context;

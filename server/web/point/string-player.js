@@ -38,7 +38,7 @@ const REST_MS = 200;
 const [SCALE_HEIGHT, CELLS] = [44, 120];
 
 /** @typedef {import("../data/snapshots.js").Frames} Frames */
-/** @typedef {import("./view.js").PointContext} PointContext */
+/** @typedef {import("./part.js").PointContext} PointContext */
 /** @typedef {NonNullable<Awaited<ReturnType<typeof import("../data/snapshots.js").snapshotsOf>>>} There */
 /** @typedef {{value: (node: number) => number, range: [number, number], isMarked?: (node: number) => boolean}} Colours */
 

@@ -4,12 +4,13 @@ import { fill, h } from "../ui/dom.js";
 import { python } from "../ui/snippets.js";
 import { contactMap } from "./contacts.js";
 import { endsRequest, RECORD_ENDS, rotation } from "./rotation.js";
-import { snapshotsOf, withoutSnapshots } from "../data/snapshots.js";
+import { snapshotsOf } from "../data/snapshots.js";
+import { withoutSnapshots } from "./no-snapshots.js";
 import { stringPlayer } from "./string-player.js";
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function string(context) {
   const { duration } = context.point.scenario;

@@ -8,31 +8,13 @@ import { lines, requestLines } from "../ui/snippets.js";
 import { keep, link } from "../ui/router.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
+import { askedOf } from "./part.js";
 
-/**
- * What a view of a point is made with.
- * @typedef {object} PointContext
- * @property {any} point
- * @property {string} path of the point, from `/v1`
- * @property {URLSearchParams} query
- * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
- * @property {(name: string) => string} bias what stands beside a number of the summary that verifying the sweep has touched
- * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
- * @property {() => void} drawn says that what is shown is of other requests than before
- * @property {AbortSignal} signal
- */
-
-/**
- * A view of a point, and the requests behind what it shows; none where it shows nothing of the service's.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, request: () => PartRequest | null}} PointPart
- *
- * A table is a path from that of the point; that of the point itself is empty.
- * @typedef {{asked: {table: string, query?: Record<string, any>, isDocument?: boolean, name?: string}[], python: string}} PartRequest
- */
+/** @typedef {import("./part.js").PointContext} PointContext */
 
 /**
  * The views: name in the link, what it is called, and what makes it.
- * @type {[string, string, () => Promise<(context: PointContext) => PointPart>][]}
+ * @type {[string, string, () => Promise<(context: PointContext) => import("./part.js").PointPart>][]}
  */
 const PARTS = [
   ["profiles", "Profiles", async () => (await import("./profiles.js")).profiles],
@@ -44,19 +26,10 @@ const PARTS = [
   ["about", "Effects, accuracy, downloads", async () => (await import("./about.js")).about],
 ];
 
-/**
- * The requests of a part with their paths from `/v1`.
- * @param {string} path of the point
- * @param {PartRequest} request
- */
-export function askedOf(path, { asked }) {
-  return asked.map(({ table, name, ...rest }) => ({ ...rest, path: table ? `${path}/${table}` : path, name: name ?? (table || "point") }));
-}
-
 /** How often a point that is not final yet is looked at. */
 const POLL_MS = 3000;
 
-/** @type {import("../main.js").View} */
+/** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const [, id, , ordinal] = route.path;
   const path = `/v1/sweeps/${encodeURIComponent(id)}/points/${encodeURIComponent(ordinal)}`;

@@ -13,8 +13,8 @@ const EXAGGERATIONS = ["1", "20", "100", "300"];
 const USUAL = 20;
 
 /**
- * @param {import("./view.js").PointContext} context
- * @returns {import("./view.js").PointPart}
+ * @param {import("./part.js").PointContext} context
+ * @returns {import("./part.js").PointPart}
  */
 export function well(context) {
   const { query } = context;

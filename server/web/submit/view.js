@@ -9,7 +9,8 @@ import { go, held, hold, keep, link } from "../ui/router.js";
 import { scenarioForm } from "./scenario-form.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { settings } from "../data/settings.js";
-import { NoSurvey, surveyField } from "../data/survey.js";
+import { NoSurvey } from "../data/survey.js";
+import { surveyField } from "./survey-field.js";
 import { bytes, duration, label, meaning, number, pathNames, servedUnit, shown, title } from "../data/units.js";
 
 /** Characters of a request that a link may hold; a longer one is held beside it. */
@@ -25,7 +26,7 @@ const FIELDS = ["name", "owner", "tags", "preset", "scenario", "set", "outputs",
 const PART = "part";
 const DRAWN = ["latin_hypercube", "sobol"];
 
-/** @type {import("../main.js").View} */
+/** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const { scenarios } = await get("/v1/scenarios", {}, signal);
   const { start, isGoneOn } = await begun(route.query, signal);

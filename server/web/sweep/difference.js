@@ -7,7 +7,7 @@ import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { canvas, colourBar, DASHES, draw, LINES } from "../draw/plots.js";
 import { go, link } from "../ui/router.js";
-import { preferred, undelayed } from "./map.js";
+import { preferred, undelayed } from "./part.js";
 import { distinct, SHORT, SweepTable, sweptBy } from "../data/sweep-table.js";
 import { label, number, say, title, unit } from "../data/units.js";
 
@@ -23,8 +23,8 @@ const SAME = 1e-9;
 /** @typedef {{sweep: any, table: SweepTable, axes: string[], biases: Biases}} Other */
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function difference(context) {
   const { query, signal } = context;

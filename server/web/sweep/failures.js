@@ -18,8 +18,8 @@ const MEANING = {
 };
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function failures(context) {
   const { sweep, signal } = context;

@@ -23,7 +23,7 @@ const COUNT = 5;
 const OF_THE_SWEEP = new Set(["axes", "design", "points", "samples", "seed", "skip", "name", "tags", "verify", "owner", "priority"]);
 
 /**
- * @param {import("./view.js").Context} context
+ * @param {import("./part.js").Context} context
  * @returns {{element: HTMLElement, choose: (sides: Side[], held: Held[]) => void, close: () => void, kept: (names: string[]) => Side[] | null}}
  *   `kept` is the region that the link has of these parameters
  */

@@ -8,20 +8,19 @@ import { link } from "../ui/router.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { keyboard } from "../draw/point-cursor.js";
 import { finer } from "./finer-grid.js";
+import { MANY, preferred, undelayed } from "./part.js";
 import { ends, layered } from "../data/grid-layers.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
 
-/** Points beyond which marks are drawn by WebGL. */
-export const MANY = 3000;
 /** Designs that draw their points: these have no slices. */
 const DRAWN = ["latin_hypercube", "sobol"];
 /** Colours of words, such as states. */
 const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function map(context) {
   const { axes, table, query } = context;
@@ -241,24 +240,4 @@ function once(of) {
 function middle(values, span) {
   const [from, to] = [span?.from ?? values[0], span?.to ?? values[values.length - 1]];
   return Number((span?.scale === "log" ? Math.sqrt(from * to) : (from + to) / 2).toPrecision(4));
-}
-
-/**
- * The first drawing waits for its place in the page, which the view takes when it is complete; so it is not waited for.
- * @param {() => Promise<void>} redraw
- * @param {import("./view.js").Context} context
- */
-export function undelayed(redraw, context) {
-  let isFirst = true;
-  return async () => {
-    const work = redraw();
-    if (!isFirst) return work;
-    isFirst = false;
-    attend(work, context.signal);
-  };
-}
-
-/** The result that an engineer asks for first. @param {string[]} results */
-export function preferred(results) {
-  return results.find((name) => name.startsWith("orbit_radius_rms")) ?? results.find((name) => name === "friction_coefficient_max") ?? results.find((name) => !["state", "error_time", "error_node"].includes(name)) ?? "state";
 }

@@ -7,15 +7,15 @@ import { axisControls } from "./parallel-controls.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
 import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
 import { link, rounded } from "../ui/router.js";
-import { preferred, undelayed } from "./map.js";
+import { preferred, undelayed } from "./part.js";
 import { label, say, shown, title, unit } from "../data/units.js";
 
 const HOW = "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
 /**
  * Dragging along an axis keeps what passes there.
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function parallel(context) {
   const { table, axes, query } = context;

@@ -4,13 +4,13 @@ import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
-import { MANY, preferred, undelayed } from "./map.js";
+import { MANY, preferred, undelayed } from "./part.js";
 import { isText } from "../data/sweep-table.js";
 import { label, say, shown, title, unit } from "../data/units.js";
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function scatter(context) {
   const { table, query } = context;

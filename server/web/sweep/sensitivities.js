@@ -5,12 +5,12 @@ import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
 import { LEAST_POINTS, shares } from "../data/sensitivity.js";
-import { preferred, undelayed } from "./map.js";
+import { preferred, undelayed } from "./part.js";
 import { label, title, unit } from "../data/units.js";
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function effects(context) {
   const { table, axes, query } = context;

@@ -5,15 +5,15 @@ import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
-import { preferred } from "./map.js";
+import { preferred } from "./part.js";
 import { label, meaning, number, title, unit } from "../data/units.js";
 
 const ROW_PX = 30;
 const SPARE_ROWS = 12;
 
 /**
- * @param {import("./view.js").Context} context
- * @returns {import("./view.js").Part}
+ * @param {import("./part.js").Context} context
+ * @returns {import("./part.js").Part}
  */
 export function table(context) {
   const { table: data, axes, query, signal } = context;

@@ -9,38 +9,16 @@ import { attend, reported, notice } from "../ui/notices.js";
 import { Pace } from "../data/pace.js";
 import { go, keep, link } from "../ui/router.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
-import { progressPart, when } from "../list/view.js";
+import { progressPart, when } from "../ui/progress.js";
 import { sweepLines } from "./snippets.js";
 import { SweepTable, sweptBy } from "../data/sweep-table.js";
 import { label, say } from "../data/units.js";
 
-/**
- * What a view of a sweep's points is made with.
- * @typedef {object} Context
- * @property {any} sweep
- * @property {string[]} axes the swept parameters, as the table calls them
- * @property {Record<string, any>} spans how the request gives the values of each
- * @property {Record<string, string>} paths what the request calls each
- * @property {SweepTable} table
- * @property {Biases} biases what verifying a sample of the points has found
- * @property {Depths} depths of the nodes that columns are of
- * @property {URLSearchParams} query
- * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
- * @property {() => void} drawn says that what is shown is other columns than before
- * @property {(ordinal: number) => void} open
- * @property {(changed: any) => void} changed takes the sweep as an answer shows it
- * @property {AbortSignal} signal
- */
-
-/**
- * A view of a sweep's points: its element, how it is drawn anew when there are further results, the columns that it shows, and those
- * of other sweeps.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[]}} Part
- */
+/** @typedef {import("./part.js").Context} Context */
 
 /**
  * The views: name in the link, what it is called, and what makes it.
- * @type {[string, string, () => Promise<(context: Context) => Part>][]}
+ * @type {[string, string, () => Promise<(context: Context) => import("./part.js").Part>][]}
  */
 const PARTS = [
   ["map", "Map", async () => (await import("./map.js")).map],
@@ -58,7 +36,7 @@ const TABLE = PARTS.findIndex(([name]) => name === "table");
 /** The least time between two readings of a table that is still growing. */
 const REDRAW_MS = 4000;
 
-/** @type {import("../main.js").View} */
+/** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const id = route.path[1];
   const asked = PARTS.find(([name]) => name === route.query.get("view"));

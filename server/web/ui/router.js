@@ -6,6 +6,11 @@
  * @property {URLSearchParams} query
  */
 
+/**
+ * A view fills `main` until `signal` is aborted, and returns its title.
+ * @typedef {(main: HTMLElement, route: Route, signal: AbortSignal) => Promise<string>} View
+ */
+
 /** @returns {Route} */
 export const route = preload.route;
 

@@ -1,0 +1,36 @@
+// Progress of a sweep, and moments in time, as elements.
+
+import { isFinal } from "../data/api.js";
+import { duration, moment } from "../data/units.js";
+import { h } from "./dom.js";
+
+/** @typedef {import("../data/pace.js").Pace} Pace */
+
+/**
+ * State, bar and counts of a sweep.
+ * @param {any} sweep
+ * @param {Pace} pace
+ */
+export function progressPart(sweep, pace) {
+  const { counts } = sweep;
+  const left = pace.left();
+  const words = [`${counts.succeeded} of ${counts.total} succeeded`];
+  if (counts.running) words.push(`${counts.running} running`);
+  const isMarked = sweep.state === "completed" && counts.failed > 0;
+  if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
+  if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
+  if (sweep.state === "running") words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
+  const percent = Math.floor(100 * sweep.progress);
+  return h(
+    "div",
+    {},
+    h("span", { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` }, isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state),
+    !isFinal(sweep) && [h("span", { class: "soft small" }, ` ${percent} %`), h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` })],
+    h("div", { class: "small soft" }, words.join(", ")),
+  );
+}
+
+/** @param {string} time RFC 3339 */
+export function when(time) {
+  return h("time", { datetime: time, title: moment(time, "second") }, moment(time));
+}

@@ -4,7 +4,9 @@
  * @typedef {((settings: Record<string, unknown>) => void) & { presets: { apis: unknown }, plugins: { DownloadUrl: unknown } }} SwaggerUi
  */
 
-const { SwaggerUIBundle } = /** @type {Window & { SwaggerUIBundle: SwaggerUi }} */ (/** @type {unknown} */ (window));
+const { SwaggerUIBundle } = /** @type {Window & { SwaggerUIBundle: SwaggerUi }} */ (
+  /** @type {unknown} */ (window)
+);
 
 SwaggerUIBundle({
   dom_id: "#swagger-ui",

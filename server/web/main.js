@@ -47,11 +47,22 @@ async function show() {
     else entry.removeAttribute("aria-current");
   }
   if (!view) {
-    fill(main, h("div", { class: "empty" }, h("h1", {}, "There is no such page"), h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps"))));
+    fill(
+      main,
+      h(
+        "div",
+        { class: "empty" },
+        h("h1", {}, "There is no such page"),
+        h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps")),
+      ),
+    );
     return;
   }
   // What comes at once needs no such word, which would hold it up.
-  const waits = setTimeout(() => isElsewhere && fill(main, h("p", { class: "empty", role: "status" }, "Loading…")), SLOW_MS);
+  const waits = setTimeout(
+    () => isElsewhere && fill(main, h("p", { class: "empty", role: "status" }, "Loading…")),
+    SLOW_MS,
+  );
   // A view is built aside and takes its place complete, so that one that is shown anew does not flicker.
   const next = h("div", {});
   preload.modules(asked);
@@ -80,14 +91,27 @@ function isTyped() {
 
 /** @param {unknown} error */
 function failure(error) {
-  if (error instanceof Problem && error.status === 401) return h("div", { class: "empty" }, h("h1", {}, "Log in to see this"));
+  if (error instanceof Problem && error.status === 401)
+    return h("div", { class: "empty" }, h("h1", {}, "Log in to see this"));
   if (error instanceof Problem && error.status === 404) {
-    return h("div", { class: "empty" }, h("h1", {}, "Not found"), h("p", {}, error.message), h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps")));
+    return h(
+      "div",
+      { class: "empty" },
+      h("h1", {}, "Not found"),
+      h("p", {}, error.message),
+      h("p", {}, h("a", { href: "#/sweeps" }, "To the sweeps")),
+    );
   }
   if (!(error instanceof Problem || error instanceof Unreachable)) console.error(error);
   const text = error instanceof Error ? error.message : String(error);
   const again = h("button", { onclick: () => void show() }, "Try again");
-  return h("div", { class: "empty", role: "alert" }, h("h1", {}, "This could not be shown"), h("p", {}, text), again);
+  return h(
+    "div",
+    { class: "empty", role: "alert" },
+    h("h1", {}, "This could not be shown"),
+    h("p", {}, text),
+    again,
+  );
 }
 
 function drawSwitches() {
@@ -97,9 +121,33 @@ function drawSwitches() {
   const { owner, name, scope, tokens_required } = session();
   fill(
     switches,
-    h("button", { onclick: () => choose("units", other), title: "Units of all numbers and axes", "aria-label": `Units: ${units === "si" ? "SI" : "field"}. Switch` }, units === "si" ? "SI units" : "Field units"),
-    h("button", { onclick: () => choose("theme", isDark ? "light" : "dark"), "aria-label": isDark ? "Light theme" : "Dark theme" }, isDark ? "Light" : "Dark"),
-    owner ? h("button", { onclick: leave, title: `Logged in as ${owner}${name ? `, by the token ${name}` : ""}; may ${scope}` }, "Log out") : tokens_required && h("button", { onclick: enter }, "Log in"),
+    h(
+      "button",
+      {
+        onclick: () => choose("units", other),
+        title: "Units of all numbers and axes",
+        "aria-label": `Units: ${units === "si" ? "SI" : "field"}. Switch`,
+      },
+      units === "si" ? "SI units" : "Field units",
+    ),
+    h(
+      "button",
+      {
+        onclick: () => choose("theme", isDark ? "light" : "dark"),
+        "aria-label": isDark ? "Light theme" : "Dark theme",
+      },
+      isDark ? "Light" : "Dark",
+    ),
+    owner
+      ? h(
+          "button",
+          {
+            onclick: leave,
+            title: `Logged in as ${owner}${name ? `, by the token ${name}` : ""}; may ${scope}`,
+          },
+          "Log out",
+        )
+      : tokens_required && h("button", { onclick: enter }, "Log in"),
   );
 }
 

@@ -67,7 +67,9 @@ const preload = (() => {
    * @param {Record<string, string | number | boolean | null | undefined>} [query] what is absent or empty is left out
    */
   function address(path, query = {}) {
-    const pairs = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+    const pairs = Object.entries(query).filter(
+      ([, value]) => value !== null && value !== undefined && value !== "",
+    );
     const text = new URLSearchParams(pairs.map(([name, value]) => [name, String(value)])).toString();
     return text ? `${path}?${text}` : path;
   }
@@ -151,10 +153,16 @@ const preload = (() => {
    */
   async function sendMotion(point, query) {
     /** @type {[any, typeof import("./data/motion-requests.js")]} */
-    const [answer, requests] = await Promise.all([received(point), import(new URL("data/motion-requests.js", folder).href)]);
+    const [answer, requests] = await Promise.all([
+      received(point),
+      import(new URL("data/motion-requests.js", folder).href),
+    ]);
     if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
     const { scenario } = answer;
-    const tables = [...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)), ...requests.nodeTables(scenario, query)];
+    const tables = [
+      ...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)),
+      ...requests.nodeTables(scenario, query),
+    ];
     for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
   }
 
@@ -164,14 +172,17 @@ const preload = (() => {
   send("/v1/quantities");
   send("/v1/session");
   if (view === "list") {
-    const [state, name, owner, tag] = ["state", "name", "owner", "tag"].map((filter) => first.query.get(filter) ?? "");
+    const [state, name, owner, tag] = ["state", "name", "owner", "tag"].map(
+      (filter) => first.query.get(filter) ?? "",
+    );
     send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
   }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
   // What fails of these, the view finds out when it asks itself.
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
-  if (view === "point" && first.query.get("view") === "motion") sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
+  if (view === "point" && first.query.get("view") === "motion")
+    sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
   load("main.js");
   modules(first);
   setTimeout(() => {

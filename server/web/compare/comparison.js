@@ -54,15 +54,21 @@ export async function each({ points, lacking, drawing }, read, part = "") {
       try {
         return { point, value: await read(point) };
       } catch (error) {
-        if (error instanceof Lacking) return { point, lacks: `Point ${point.number} is missing: ${error.message}.` };
+        if (error instanceof Lacking)
+          return { point, lacks: `Point ${point.number} is missing: ${error.message}.` };
         if (drawing.aborted || !(error instanceof Problem) || error.status === 401) throw error;
-        return { point, lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.` };
+        return {
+          point,
+          lacks: `Point ${point.number} is missing${part && ` from ${part}`}: ${error.errors[0]?.detail ?? error.message}.`,
+        };
       }
     }),
   );
   const sentences = found.flatMap(({ lacks }) => lacks ?? []);
   lacking.push(...sentences.filter((sentence) => !lacking.includes(sentence)));
-  return found.flatMap(({ point, value, lacks }) => (lacks ? [] : [/** @type {[Compared, T]} */ ([point, value])]));
+  return found.flatMap(({ point, value, lacks }) =>
+    lacks ? [] : [/** @type {[Compared, T]} */ ([point, value])],
+  );
 }
 
 /** @param {Comparison} comparison @param {Compared} point @param {number} node @param {number} depth [m] */

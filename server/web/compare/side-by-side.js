@@ -20,7 +20,16 @@ import { shown } from "../data/units.js";
  * @returns {import("../point/part.js").PointContext}
  */
 function contextOf({ query, keep, table, drawing }, point) {
-  return { point: point.detail, path: point.path, query, keep, bias: () => "", table: (name, asks) => table(point, name, asks), drawn: () => {}, signal: drawing };
+  return {
+    point: point.detail,
+    path: point.path,
+    query,
+    keep,
+    bias: () => "",
+    table: (name, asks) => table(point, name, asks),
+    drawn: () => {},
+    signal: drawing,
+  };
 }
 
 /** @param {{query: URLSearchParams}} comparison @returns {number} highest frequency of spectrograms [Hz] */
@@ -38,9 +47,32 @@ export async function drawSpectrograms(place, comparison) {
     return table;
   });
   const most = Math.max(...found.map(([, table]) => largestOf(table)));
-  const pictures = found.map(([point, table]) => ({ table, heading: point.name, picture: canvas(`Spectrogram, point ${point.name}`, `spectrogram${point.number}`) }));
-  fill(place, pictures.map(({ table, heading, picture }) => h("div", { class: "panel" }, h("h2", {}, heading), h("figure", {}, picture, h("figcaption", {}, describe(table, range))))));
-  await Promise.all(pictures.map(({ table, picture }) => drawSpectrogram(picture, table, { isLog: comparison.query.get("amplitude") !== "linear", range, most }, drawing)));
+  const pictures = found.map(([point, table]) => ({
+    table,
+    heading: point.name,
+    picture: canvas(`Spectrogram, point ${point.name}`, `spectrogram${point.number}`),
+  }));
+  fill(
+    place,
+    pictures.map(({ table, heading, picture }) =>
+      h(
+        "div",
+        { class: "panel" },
+        h("h2", {}, heading),
+        h("figure", {}, picture, h("figcaption", {}, describe(table, range))),
+      ),
+    ),
+  );
+  await Promise.all(
+    pictures.map(({ table, picture }) =>
+      drawSpectrogram(
+        picture,
+        table,
+        { isLog: comparison.query.get("amplitude") !== "linear", range, most },
+        drawing,
+      ),
+    ),
+  );
 }
 
 /**
@@ -49,11 +81,24 @@ export async function drawSpectrograms(place, comparison) {
  */
 async function snapshotsThere(comparison, point) {
   // The service would refuse, which the browser writes of.
-  if (!point.detail.scenario.recording.snapshots) throw new Lacking("it recorded no snapshots of the whole string (recording.snapshots)");
-  const [snapshots, statics] = await Promise.all([comparison.table(point, "snapshots", { max_frames: 1 }), comparison.table(point, "statics")]);
+  if (!point.detail.scenario.recording.snapshots)
+    throw new Lacking("it recorded no snapshots of the whole string (recording.snapshots)");
+  const [snapshots, statics] = await Promise.all([
+    comparison.table(point, "snapshots", { max_frames: 1 }),
+    comparison.table(point, "statics"),
+  ]);
   const { snapshots: count, nodes, first, interval } = snapshots.attributes;
   // One was served, so that the interval is that of all.
-  return { there: { names: Object.keys(snapshots.columns), count, nodes, first, interval: interval / Math.max(1, count) }, statics: statics.columns };
+  return {
+    there: {
+      names: Object.keys(snapshots.columns),
+      count,
+      nodes,
+      first,
+      interval: interval / Math.max(1, count),
+    },
+    statics: statics.columns,
+  };
 }
 
 /** Contacts over depth and time. @param {HTMLElement} place @param {Comparison} comparison */
@@ -62,11 +107,26 @@ export async function drawContactMaps(place, comparison) {
     const { there, statics } = await snapshotsThere(comparison, point);
     const { recording, duration } = point.detail.scenario;
     const context = contextOf(comparison, point);
-    return { context, statics, motion: await frames(context, ["normal_force"], recording.snapshots.window ?? { from: 0, to: duration }, there.nodes) };
+    return {
+      context,
+      statics,
+      motion: await frames(
+        context,
+        ["normal_force"],
+        recording.snapshots.window ?? { from: 0, to: duration },
+        there.nodes,
+      ),
+    };
   });
   const most = Math.max(...found.map(([, { motion }]) => largestShown(motion.columns.normal_force)));
-  const maps = found.map(([point, one]) => ({ ...one, map: contactMap(one.context, null, { heading: point.name, key: `contacts${point.number}` }) }));
-  fill(place, maps.map(({ map }) => map.element));
+  const maps = found.map(([point, one]) => ({
+    ...one,
+    map: contactMap(one.context, null, { heading: point.name, key: `contacts${point.number}` }),
+  }));
+  fill(
+    place,
+    maps.map(({ map }) => map.element),
+  );
   await Promise.all(maps.map(({ map, motion, statics }) => map.draw(motion, statics, most)));
 }
 
@@ -74,7 +134,10 @@ export async function drawContactMaps(place, comparison) {
 export async function drawStrings(place, comparison) {
   const found = await each(comparison, (point) => snapshotsThere(comparison, point));
   if (!found.length) return fill(place);
-  const player = stringPlayer(found.map(([point, one]) => ({ ...one, context: contextOf(comparison, point), heading: point.name })), async () => {});
+  const player = stringPlayer(
+    found.map(([point, one]) => ({ ...one, context: contextOf(comparison, point), heading: point.name })),
+    async () => {},
+  );
   fill(place, player.element);
   await player.load();
 }
@@ -92,21 +155,51 @@ export function endOf({ query }) {
 export async function drawEnds(place, comparison) {
   const { window, sources } = comparison;
   const end = endOf(comparison);
-  const at = (/** @type {import("../point/rotation.js").EndLine[]} */ lines) => lines.filter((line) => line.end === end);
-  const found = await each(comparison, async (point) => ({ history: at(await endsOfHistory(contextOf(comparison, point), window)) }));
+  const at = (/** @type {import("../point/rotation.js").EndLine[]} */ lines) =>
+    lines.filter((line) => line.end === end);
+  const found = await each(comparison, async (point) => ({
+    history: at(await endsOfHistory(contextOf(comparison, point), window)),
+  }));
   const isInHistories = found.every(([, { history }]) => history.length);
-  const snapshots = await Promise.all(found.map(async ([point]) => (isInHistories ? [] : at(await endsOfSnapshots(contextOf(comparison, point), window)))));
+  const snapshots = await Promise.all(
+    found.map(async ([point]) =>
+      isInHistories ? [] : at(await endsOfSnapshots(contextOf(comparison, point), window)),
+    ),
+  );
   const isInSnapshots = !isInHistories && snapshots.every((lines) => lines.length);
   const traces = found.flatMap(([point, { history }], order) => {
     const isOfHistory = history.length > 0 && !isInSnapshots;
     const lines = isOfHistory ? history : snapshots[order];
-    if (!lines.length) comparison.lacking.push(`Point ${point.number} is missing: ${end === "bit" ? RECORD_ENDS : "Rotation speed and torque at the top are in snapshots, or in the history of the first node where it is recorded; this point has neither."}`);
+    if (!lines.length)
+      comparison.lacking.push(
+        `Point ${point.number} is missing: ${end === "bit" ? RECORD_ENDS : "Rotation speed and torque at the top are in snapshots, or in the history of the first node where it is recorded; this point has neither."}`,
+      );
     else sources.set(point.number, isOfHistory ? "history" : "snapshots");
-    return lines.map(({ quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: point.name, legendgroup: String(point.number), showlegend: quantity !== "torque", line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" }));
+    return lines.map(({ quantity, time, values }) => ({
+      type: "scattergl",
+      mode: "lines",
+      x: time,
+      y: shown(quantity, values),
+      yaxis: quantity === "torque" ? "y2" : "y",
+      name: point.name,
+      legendgroup: String(point.number),
+      showlegend: quantity !== "torque",
+      line: { color: point.colour, dash: point.dash, width: 1 },
+      hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+    }));
   });
   const names = [...new Set(sources.values())];
-  if (names.length === 1) comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
-  if (names.length > 1) comparison.says.push(`${[...sources].map(([number, source], order) => `${order ? "point" : "Point"} ${number} is from its ${source}`).join(", ")}: sampled differently.`);
+  if (names.length === 1)
+    comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
+  if (names.length > 1)
+    comparison.says.push(
+      `${[...sources].map(([number, source], order) => `${order ? "point" : "Point"} ${number} is from its ${source}`).join(", ")}: sampled differently.`,
+    );
   if (names.length) comparison.says.push(TORQUE);
-  return draw(place, traces, { shows: [window, end], dragmode: "select", selectdirection: "h", ...twoPanels() }, comparison.signal);
+  return draw(
+    place,
+    traces,
+    { shows: [window, end], dragmode: "select", selectdirection: "h", ...twoPanels() },
+    comparison.signal,
+  );
 }

@@ -21,9 +21,32 @@ const MODES_HZ = 20;
  * @param {[string, (string | HTMLElement | null)[]][]} rows what each is of, and its cells
  */
 function drawTable(place, name, points, rows) {
-  const heads = points.map((point) => h("th", { scope: "col" }, h("span", { style: `color:${point.colour}`, "aria-hidden": "true" }, "━ "), point.name));
-  const body = rows.map(([text, cells]) => h("tr", {}, h("th", { scope: "row" }, text), cells.map((cell) => h("td", {}, cell ?? "–"))));
-  fill(place, points.length > 0 && h("table", { "aria-label": name }, h("thead", {}, h("tr", {}, h("td", {}), heads)), h("tbody", {}, body)));
+  const heads = points.map((point) =>
+    h(
+      "th",
+      { scope: "col" },
+      h("span", { style: `color:${point.colour}`, "aria-hidden": "true" }, "━ "),
+      point.name,
+    ),
+  );
+  const body = rows.map(([text, cells]) =>
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, text),
+      cells.map((cell) => h("td", {}, cell ?? "–")),
+    ),
+  );
+  fill(
+    place,
+    points.length > 0 &&
+      h(
+        "table",
+        { "aria-label": name },
+        h("thead", {}, h("tr", {}, h("td", {}), heads)),
+        h("tbody", {}, body),
+      ),
+  );
 }
 
 /**
@@ -49,7 +72,10 @@ export async function drawStatistics(place, comparison) {
     return known;
   };
   const found = await each(comparison, async (point) => {
-    const [{ columns, attributes }, bias] = await Promise.all([comparison.table(point, "statistics", { ...comparison.node, ...window }), biasesOf(point.id)]);
+    const [{ columns, attributes }, bias] = await Promise.all([
+      comparison.table(point, "statistics", { ...comparison.node, ...window }),
+      biasesOf(point.id),
+    ]);
     const [node] = columns.node;
     noteNode(comparison, point, node, columns.measured_depth[0]);
     const as = recordedAs(point.detail.scenario, node, columns.measured_depth[0]);
@@ -58,7 +84,12 @@ export async function drawStatistics(place, comparison) {
     const facts = STATISTICS.map(([name, text]) => [text, say(name, columns[name][0]) + beside(name)]);
     return /** @type {[string, string][]} */ ([...facts, ["Samples", String(attributes.samples)]]);
   });
-  drawTable(place, "Statistics", found.map(([point]) => point), rowsOf(found));
+  drawTable(
+    place,
+    "Statistics",
+    found.map(([point]) => point),
+    rowsOf(found),
+  );
 }
 
 /**
@@ -75,9 +106,26 @@ async function loadBiases(id, signal) {
 export async function drawEffects(place, comparison) {
   const found = await each(comparison, async (point) => {
     const plan = await get(`${point.path}/plan`, {}, comparison.drawing);
-    return plan.effects.map((/** @type {any} */ effect) => [effect.effect.replaceAll("_", " "), h("span", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off"), h("span", { class: "small soft" }, ` ${effect.reason}`))]);
+    return plan.effects.map((/** @type {any} */ effect) => [
+      effect.effect.replaceAll("_", " "),
+      h(
+        "span",
+        {},
+        h(
+          "span",
+          { class: `state ${effect.active ? "succeeded" : "cancelled"}` },
+          effect.active ? "on" : "off",
+        ),
+        h("span", { class: "small soft" }, ` ${effect.reason}`),
+      ),
+    ]);
   });
-  drawTable(place, "Effects", found.map(([point]) => point), rowsOf(found));
+  drawTable(
+    place,
+    "Effects",
+    found.map(([point]) => point),
+    rowsOf(found),
+  );
 }
 
 /** Modes about the equilibrium, from the lowest. @param {HTMLElement} place @param {Comparison} comparison */
@@ -86,19 +134,44 @@ export async function drawModes(place, comparison) {
     const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.drawing);
     return modes
       .toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.frequency_hz - b.frequency_hz)
-      .map((/** @type {any} */ mode, /** @type {number} */ index) => [String(index + 1), `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`]);
+      .map((/** @type {any} */ mode, /** @type {number} */ index) => [
+        String(index + 1),
+        `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`,
+      ]);
   });
-  drawTable(place, "Modes", found.map(([point]) => point), rowsOf(found));
+  drawTable(
+    place,
+    "Modes",
+    found.map(([point]) => point),
+    rowsOf(found),
+  );
 }
 
 /** How far the numbers can be trusted. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawAccuracy(place, comparison) {
-  const found = await each(comparison, async ({ detail }) => /** @type {[string, string][]} */ ([...accuracyFacts(detail), ...accuracyReasons(detail).map(([of, text]) => [`${of}: condition or reason`, text])]));
-  drawTable(place, "Accuracy", found.map(([point]) => point), rowsOf(found));
+  const found = await each(
+    comparison,
+    async ({ detail }) =>
+      /** @type {[string, string][]} */ ([
+        ...accuracyFacts(detail),
+        ...accuracyReasons(detail).map(([of, text]) => [`${of}: condition or reason`, text]),
+      ]),
+  );
+  drawTable(
+    place,
+    "Accuracy",
+    found.map(([point]) => point),
+    rowsOf(found),
+  );
 }
 
 /** What the runs cost. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawCost(place, comparison) {
   const found = await each(comparison, async (point) => costFacts(point.detail));
-  drawTable(place, "Cost", found.map(([point]) => point), rowsOf(found));
+  drawTable(
+    place,
+    "Cost",
+    found.map(([point]) => point),
+    rowsOf(found),
+  );
 }

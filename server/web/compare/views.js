@@ -5,7 +5,14 @@ import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { h } from "../ui/dom.js";
 import { spectrumRange } from "../data/motion-requests.js";
-import { holeTrace, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "../draw/orbit.js";
+import {
+  holeTrace,
+  orbitLayout,
+  orbitTrace,
+  seenDownhole,
+  spectrumLayout,
+  spectrumTrace,
+} from "../draw/orbit.js";
 import { colourBar, draw, inks, lineScale } from "../draw/plots.js";
 import { ACCOUNTS, ledger } from "../point/energy.js";
 import { drawProfiles, nodeDepths, QUANTITIES, reading, tableOf } from "../point/profiles.js";
@@ -43,12 +50,49 @@ const APART = 0.12;
 export const VIEWS = {
   profiles: { name: "Profiles", table: "profile", draw: drawQuantities },
   orbit: { name: "Orbits", table: "orbit", isWindowed: true, isOfNode: true, draw: drawOrbits },
-  history: { name: "Histories", table: "orbit", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawHistories },
-  rotation: { name: "Rotation and torque", table: "history", build: "whole", isWindowed: true, isOfNode: true, hasTime: true, draw: drawRotation },
+  history: {
+    name: "Histories",
+    table: "orbit",
+    build: "whole",
+    isWindowed: true,
+    isOfNode: true,
+    hasTime: true,
+    draw: drawHistories,
+  },
+  rotation: {
+    name: "Rotation and torque",
+    table: "history",
+    build: "whole",
+    isWindowed: true,
+    isOfNode: true,
+    hasTime: true,
+    draw: drawRotation,
+  },
   spectrum: { name: "Full spectra", table: "spectrum", isWindowed: true, isOfNode: true, draw: drawSpectra },
-  statistics: { name: "Statistics", table: "statistics", isWindowed: true, isOfNode: true, kind: "table", draw: drawStatistics },
-  spectrogram: { name: "Spectrograms", table: "spectrogram", isWindowed: true, isOfNode: true, kind: "several", draw: drawSpectrograms },
-  bit: { name: "Rotation at bit and top", table: "history", build: "whole", isWindowed: true, hasTime: true, draw: drawEnds },
+  statistics: {
+    name: "Statistics",
+    table: "statistics",
+    isWindowed: true,
+    isOfNode: true,
+    kind: "table",
+    draw: drawStatistics,
+  },
+  spectrogram: {
+    name: "Spectrograms",
+    table: "spectrogram",
+    isWindowed: true,
+    isOfNode: true,
+    kind: "several",
+    draw: drawSpectrograms,
+  },
+  bit: {
+    name: "Rotation at bit and top",
+    table: "history",
+    build: "whole",
+    isWindowed: true,
+    hasTime: true,
+    draw: drawEnds,
+  },
   string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
   contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
   well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
@@ -61,7 +105,16 @@ export const VIEWS = {
 
 /** @param {Compared} point @param {number[]} time @param {(number | null)[]} values */
 function overTime(point, time, values) {
-  return { type: "scattergl", mode: "lines", name: point.name, showlegend: true, x: time, y: values, line: { color: point.colour, dash: point.dash, width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" };
+  return {
+    type: "scattergl",
+    mode: "lines",
+    name: point.name,
+    showlegend: true,
+    x: time,
+    y: values,
+    line: { color: point.colour, dash: point.dash, width: 1 },
+    hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+  };
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
@@ -70,17 +123,45 @@ async function drawQuantities(place, comparison) {
   /** @type {Map<number, Record<string, any>>} */
   const tables = new Map();
   for (const name of new Set(profiles.map(tableOf))) {
-    const parts = profiles.filter((entry) => tableOf(entry) === name).map(label).join(", ");
+    const parts = profiles
+      .filter((entry) => tableOf(entry) === name)
+      .map(label)
+      .join(", ");
     const found = await each(comparison, (point) => comparison.table(point, name), parts);
-    for (const [point, table] of found) tables.set(point.number, { ...tables.get(point.number), [name]: table });
+    for (const [point, table] of found)
+      tables.set(point.number, { ...tables.get(point.number), [name]: table });
   }
-  const drawable = comparison.points.filter((point) => tables.has(point.number)).map((point) => ({ ...point, table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)] }));
+  const drawable = comparison.points
+    .filter((point) => tables.has(point.number))
+    .map((point) => ({
+      ...point,
+      table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)],
+    }));
   const nodes = new Map(drawable.map((point) => [point.number, nodeDepths(profiles, point.table)]));
   const endOfString = (/** @type {number} */ number) => nodes.get(number)?.at(-1) ?? -Infinity;
-  const deepest = drawable.reduce((/** @type {number} */ best, { number }) => (endOfString(number) > endOfString(best) ? number : best), drawable[0]?.number);
+  const deepest = drawable.reduce(
+    (/** @type {number} */ best, { number }) => (endOfString(number) > endOfString(best) ? number : best),
+    drawable[0]?.number,
+  );
   comparison.profiled = {
     depths: nodes.get(deepest) ?? [],
-    read: (depth, told) => drawable.map((point) => h("p", {}, `${point.name}: ${depth > endOfString(point.number) * (1 + SAME_END) ? "its string ends above" : reading(profiles, point.table, depth, told.filter(({ data }) => data.name === point.name))}`)),
+    read: (depth, told) =>
+      drawable.map((point) =>
+        h(
+          "p",
+          {},
+          `${point.name}: ${
+            depth > endOfString(point.number) * (1 + SAME_END)
+              ? "its string ends above"
+              : reading(
+                  profiles,
+                  point.table,
+                  depth,
+                  told.filter(({ data }) => data.name === point.name),
+                )
+          }`,
+        ),
+      ),
   };
   return drawProfiles(place, profiles, drawable, comparison.signal);
 }
@@ -106,15 +187,42 @@ async function drawOrbits(place, comparison) {
   const found = await orbits(comparison);
   const holes = holesOf(found);
   const clearance = Math.max(...holes.map((hole) => hole.clearance));
-  const traces = found.map(([point, { orbit, lowSide }]) => orbitTrace(orbit, lowSide, { color: point.colour }, point.name));
+  const traces = found.map(([point, { orbit, lowSide }]) =>
+    orbitTrace(orbit, lowSide, { color: point.colour }, point.name),
+  );
   const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
   if (!found.length) return draw(place, [], {}, comparison.signal);
   const isOne = holes.length === 1;
-  const which = (/** @type {Compared[]} */ points) => `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
-  const colourOf = (/** @type {Compared[]} */ points) => (isOne || points.length > 1 ? inks().soft : points[0].colour);
-  comparison.says.push(isOne ? "On the grey circle the node touches the wall." : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`);
-  const annotations = isOne ? [] : holes.map((hole) => ({ x: 0, y: shown("radius", [hole.clearance])[0], text: `wall of ${which(hole.points)}`, showarrow: false, yanchor: "bottom", font: { size: 11 } }));
-  return draw(place, [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces], { ...orbitLayout(isZoomed, traces, clearance), shows: [comparison.node, isZoomed], annotations, legend: { orientation: "v" } }, comparison.signal);
+  const which = (/** @type {Compared[]} */ points) =>
+    `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
+  const colourOf = (/** @type {Compared[]} */ points) =>
+    isOne || points.length > 1 ? inks().soft : points[0].colour;
+  comparison.says.push(
+    isOne
+      ? "On the grey circle the node touches the wall."
+      : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`,
+  );
+  const annotations = isOne
+    ? []
+    : holes.map((hole) => ({
+        x: 0,
+        y: shown("radius", [hole.clearance])[0],
+        text: `wall of ${which(hole.points)}`,
+        showarrow: false,
+        yanchor: "bottom",
+        font: { size: 11 },
+      }));
+  return draw(
+    place,
+    [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces],
+    {
+      ...orbitLayout(isZoomed, traces, clearance),
+      shows: [comparison.node, isZoomed],
+      annotations,
+      legend: { orientation: "v" },
+    },
+    comparison.signal,
+  );
 }
 
 /**
@@ -139,9 +247,22 @@ async function drawHistories(place, comparison) {
   const traces = found.map(([point, { orbit, lowSide }]) => {
     const { time, u, v, radius } = orbit.columns;
     const seen = seenDownhole(u, v, lowSide);
-    return overTime(point, time, shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up));
+    return overTime(
+      point,
+      time,
+      shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up),
+    );
   });
-  return draw(place, traces, { ...timeLayout(comparison), shows: [comparison.window, direction], yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" } }, comparison.signal);
+  return draw(
+    place,
+    traces,
+    {
+      ...timeLayout(comparison),
+      shows: [comparison.window, direction],
+      yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" },
+    },
+    comparison.signal,
+  );
 }
 
 /**
@@ -156,29 +277,62 @@ function timeLayout({ window }) {
 async function drawRotation(place, comparison) {
   const quantity = comparison.query.get("quantity") === "torque" ? "torque" : "rotation_speed";
   const found = await each(comparison, async (point) => {
-    const { columns } = await comparison.table(point, "statistics", { ...comparison.node, fields: "node,measured_depth" });
+    const { columns } = await comparison.table(point, "statistics", {
+      ...comparison.node,
+      fields: "node,measured_depth",
+    });
     const [node] = columns.node;
     const name = `${quantity}_${node}`;
-    const history = await comparison.table(point, "history", { node, ...comparison.window, fields: `time,${name}`, max_points: SHOWN, decimation: "minmax" });
+    const history = await comparison.table(point, "history", {
+      node,
+      ...comparison.window,
+      fields: `time,${name}`,
+      max_points: SHOWN,
+      decimation: "minmax",
+    });
     noteNode(comparison, point, node, columns.measured_depth[0]);
     return overTime(point, history.columns.time, shown(name, history.columns[name]));
   });
-  return draw(place, found.map(([, trace]) => trace), { ...timeLayout(comparison), yaxis: { title: title(quantity), quantity } }, comparison.signal);
+  return draw(
+    place,
+    found.map(([, trace]) => trace),
+    { ...timeLayout(comparison), yaxis: { title: title(quantity), quantity } },
+    comparison.signal,
+  );
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawSpectra(place, comparison) {
   const range = comparedRange(comparison);
   const found = await each(comparison, async (point) => {
-    const spectrum = await comparison.table(point, "spectrum", { ...comparison.node, ...comparison.window, window: "hann", range_hz: range });
+    const spectrum = await comparison.table(point, "spectrum", {
+      ...comparison.node,
+      ...comparison.window,
+      window: "hann",
+      range_hz: range,
+    });
     noteNode(comparison, point, spectrum.attributes.node, spectrum.attributes.measured_depth);
     return spectrum;
   });
-  const least = found.reduce((/** @type {[Compared, any] | null} */ best, one) => (one[1].attributes.resolved_hz < (best?.[1].attributes.resolved_hz ?? range) ? one : best), null);
-  const isAlike = found.every(([, table]) => table.attributes.resolved_hz === least?.[1].attributes.resolved_hz);
-  if (least) comparison.says.push(`Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`);
-  const traces = found.map(([point, spectrum]) => spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name));
-  const layout = spectrumLayout(found.map(([point, table]) => ({ table, name: String(point.number) })), comparison.query.get("amplitude") === "log");
+  const least = found.reduce(
+    (/** @type {[Compared, any] | null} */ best, one) =>
+      one[1].attributes.resolved_hz < (best?.[1].attributes.resolved_hz ?? range) ? one : best,
+    null,
+  );
+  const isAlike = found.every(
+    ([, table]) => table.attributes.resolved_hz === least?.[1].attributes.resolved_hz,
+  );
+  if (least)
+    comparison.says.push(
+      `Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`,
+    );
+  const traces = found.map(([point, spectrum]) =>
+    spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name),
+  );
+  const layout = spectrumLayout(
+    found.map(([point, table]) => ({ table, name: String(point.number) })),
+    comparison.query.get("amplitude") === "log",
+  );
   return draw(place, traces, { ...layout, shows: range }, comparison.signal);
 }
 
@@ -205,7 +359,9 @@ function asideOf({ north, east, measured_depth }) {
   const last = north.length - 1;
   const [along, across] = [north[last] - north[0], east[last] - east[0]];
   const apart = (APART * (measured_depth[last] - measured_depth[0])) / (Math.hypot(along, across) || 1);
-  return Math.hypot(along, across) ? { north: -across * apart, east: along * apart } : { north: 0, east: APART * measured_depth[last] };
+  return Math.hypot(along, across)
+    ? { north: -across * apart, east: along * apart }
+    : { north: 0, east: APART * measured_depth[last] };
 }
 
 /** How many times the distance from the axis of the hole is drawn. @param {URLSearchParams} query */
@@ -219,30 +375,98 @@ async function drawWells(place, comparison) {
   const factor = wellFactor(comparison.query);
   comparison.says.push(saysExaggeration("The strings at rest; their", factor));
   const found = await each(comparison, async (point) => {
-    const [{ columns: statics }, table] = await Promise.all(["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) => comparison.table(point, name)));
+    const [{ columns: statics }, table] = await Promise.all(
+      ["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) =>
+        comparison.table(point, name),
+      ),
+    );
     const { columns } = table ?? { columns: statics };
     if (colour && !columns[colour]) comparison.lacking.push(`Point ${point.number} has no ${label(colour)}.`);
-    return { statics, values: colour && columns[colour] ? onNodes(columns, colour, statics.measured_depth.length) : null };
+    return {
+      statics,
+      values: colour && columns[colour] ? onNodes(columns, colour, statics.measured_depth.length) : null,
+    };
   });
   // One scale for all.
-  const finite = colour ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null)) : [];
-  const [cmin, cmax] = [finite.reduce((a, b) => Math.min(a, b), Infinity), finite.reduce((a, b) => Math.max(a, b), -Infinity)];
+  const finite = colour
+    ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null))
+    : [];
+  const [cmin, cmax] = [
+    finite.reduce((a, b) => Math.min(a, b), Infinity),
+    finite.reduce((a, b) => Math.max(a, b), -Infinity),
+  ];
   const barOf = found.find(([, { values }]) => values)?.[0];
   const aside = colour && found.length > 1 ? asideOf(found[0][1].statics) : null;
   if (aside) comparison.says.push("Wells are drawn aside of each other, so that each is seen.");
   const traces = found.map(([point, { statics, values }], order) => {
-    const beside = (/** @type {number[]} */ path, /** @type {number} */ step) => path.map((value) => value + order * step);
-    const axis = { north: beside(statics.north, aside?.north ?? 0), east: beside(statics.east, aside?.east ?? 0), down: statics.true_vertical_depth };
+    const beside = (/** @type {number[]} */ path, /** @type {number} */ step) =>
+      path.map((value) => value + order * step);
+    const axis = {
+      north: beside(statics.north, aside?.north ?? 0),
+      east: beside(statics.east, aside?.east ?? 0),
+      down: statics.true_vertical_depth,
+    };
     const path = displaced(statics, axis, factor);
-    const line = colour && values ? { color: shown(colour, values), colorscale: lineScale(), cmin, cmax, width: 9, ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}) } : { color: point.colour, width: 5 };
+    const line =
+      colour && values
+        ? {
+            color: shown(colour, values),
+            colorscale: lineScale(),
+            cmin,
+            cmax,
+            width: 9,
+            ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}),
+          }
+        : { color: point.colour, width: 5 };
     const last = statics.measured_depth.length - 1;
     // Where colours tell values, numbers tell the wells apart.
-    const told = colour ? { mode: "lines+text", text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) => (index === last ? `point ${point.number}` : "")), hovertext: values?.map((value, index) => `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`), hoverinfo: "text", showlegend: false } : { mode: "lines", hoverinfo: "name", showlegend: true };
-    return { type: "scatter3d", ...told, name: point.name, x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down), line };
+    const told = colour
+      ? {
+          mode: "lines+text",
+          text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) =>
+            index === last ? `point ${point.number}` : "",
+          ),
+          hovertext: values?.map(
+            (value, index) =>
+              `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`,
+          ),
+          hoverinfo: "text",
+          showlegend: false,
+        }
+      : { mode: "lines", hoverinfo: "name", showlegend: true };
+    return {
+      type: "scatter3d",
+      ...told,
+      name: point.name,
+      x: shown("east", path.east),
+      y: shown("north", path.north),
+      z: shown("true_vertical_depth", path.down),
+      line,
+    };
   });
   const { soft, line } = inks();
-  const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: line, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
-  return draw(place, traces, { margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } }, comparison.signal);
+  const space = (/** @type {string} */ text) => ({
+    title: { text: `${text} [${unit("north").symbol}]` },
+    gridcolor: line,
+    zeroline: false,
+    color: soft,
+    backgroundcolor: "rgba(0,0,0,0)",
+  });
+  return draw(
+    place,
+    traces,
+    {
+      margin: { l: 0, r: 0, t: 0, b: 0 },
+      scene: {
+        xaxis: space("east"),
+        yaxis: space("north"),
+        zaxis: { ...space("true vertical depth"), autorange: "reversed" },
+        aspectmode: "data",
+        camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
+      },
+    },
+    comparison.signal,
+  );
 }
 
 /** The account whose energy is compared over time; empty where all are by what they changed. @param {URLSearchParams} query */
@@ -254,11 +478,31 @@ export function energyAccount(query) {
 async function drawEnergy(place, comparison) {
   const account = energyAccount(comparison.query);
   if (account) return drawAccount(place, comparison, account);
-  const found = await each(comparison, async (point) => ledger((await comparison.table(point, "energy")).columns));
+  const found = await each(comparison, async (point) =>
+    ledger((await comparison.table(point, "energy")).columns),
+  );
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
   const { symbol } = unit("kinetic");
-  const traces = found.map(([point, one]) => ({ type: "bar", name: point.name, showlegend: true, x: accounts.map(label), y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)), marker: { color: point.colour }, hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>` }));
-  return draw(place, traces, { shows: "", barmode: "group", xaxis: { title: "" }, yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" } }, comparison.signal);
+  const traces = found.map(([point, one]) => ({
+    type: "bar",
+    name: point.name,
+    showlegend: true,
+    x: accounts.map(label),
+    y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)),
+    marker: { color: point.colour },
+    hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>`,
+  }));
+  return draw(
+    place,
+    traces,
+    {
+      shows: "",
+      barmode: "group",
+      xaxis: { title: "" },
+      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" },
+    },
+    comparison.signal,
+  );
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison @param {string} account of the ledger */
@@ -268,5 +512,14 @@ async function drawAccount(place, comparison, account) {
     if (!columns[account]) throw new Lacking(`its ledger has no account of ${label(account)}`);
     return { ...overTime(point, columns.time, shown(account, columns[account])), type: "scatter" };
   });
-  return draw(place, found.map(([, trace]) => trace), { shows: account, xaxis: { title: "time [s]" }, yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account } }, comparison.signal);
+  return draw(
+    place,
+    found.map(([, trace]) => trace),
+    {
+      shows: account,
+      xaxis: { title: "time [s]" },
+      yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account },
+    },
+    comparison.signal,
+  );
 }

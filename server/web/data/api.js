@@ -111,7 +111,8 @@ async function ask(method, url, body, signal, read = (answer) => answer.json()) 
   if (body !== undefined) headers["Content-Type"] = "application/json";
   let answer;
   try {
-    answer = await ((method === "GET" && preload.sent(url)) || fetch(url, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
+    answer = await ((method === "GET" && preload.sent(url)) ||
+      fetch(url, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
   } catch (error) {
     if (signal?.aborted) throw error;
     lose();

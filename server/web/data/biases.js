@@ -18,7 +18,12 @@ export function sayBias(name, value) {
   const sign = value > 0 ? "+" : value < 0 ? "−" : "";
   const size = Math.abs(value);
   if (!FREQUENCIES.test(name) && size < LEAST) return `below ${number(100 * LEAST)} %`;
-  return sign + (FREQUENCIES.test(name) ? say("frequency", size, 2) : `${number(Number((100 * size).toPrecision(2)), 2)} %`);
+  return (
+    sign +
+    (FREQUENCIES.test(name)
+      ? say("frequency", size, 2)
+      : `${number(Number((100 * size).toPrecision(2)), 2)} %`)
+  );
 }
 
 /** The findings of a sweep that verifies points; none of one that does not. */
@@ -31,10 +36,19 @@ export class Biases {
   /** @param {any} sweep @param {AbortSignal} signal */
   async load(sweep, signal) {
     if (!sweep.verification) return;
-    const table = await get(`/v1/sweeps/${encodeURIComponent(sweep.id)}/verification`, { format: "json" }, signal);
+    const table = await get(
+      `/v1/sweeps/${encodeURIComponent(sweep.id)}/verification`,
+      { format: "json" },
+      signal,
+    );
     this.#statistics = table.attributes?.statistics ?? {};
     const names = Object.keys(table.columns).filter((name) => name.startsWith("bias_"));
-    this.#points = new Map(table.columns.ordinal.map((/** @type {number} */ ordinal, /** @type {number} */ row) => [ordinal, Object.fromEntries(names.map((name) => [name.slice("bias_".length), table.columns[name][row]]))]));
+    this.#points = new Map(
+      table.columns.ordinal.map((/** @type {number} */ ordinal, /** @type {number} */ row) => [
+        ordinal,
+        Object.fromEntries(names.map((name) => [name.slice("bias_".length), table.columns[name][row]])),
+      ]),
+    );
   }
 
   /**
@@ -44,8 +58,13 @@ export class Biases {
   say(name) {
     const found = this.#statistics[name];
     if (!found) return "";
-    const interval = found.interval ? ` (95 % interval ${sayBias(name, found.interval[0])} to ${sayBias(name, found.interval[1])})` : "";
-    const promised = found.promised !== undefined && found.promised !== null ? `; ${sayBias(name, found.promised).replace("+", "")} promised${found.exceeding ? `, exceeded at ${found.exceeding}` : ""}` : "";
+    const interval = found.interval
+      ? ` (95 % interval ${sayBias(name, found.interval[0])} to ${sayBias(name, found.interval[1])})`
+      : "";
+    const promised =
+      found.promised !== undefined && found.promised !== null
+        ? `; ${sayBias(name, found.promised).replace("+", "")} promised${found.exceeding ? `, exceeded at ${found.exceeding}` : ""}`
+        : "";
     return `Bias against reference runs at ${found.verified} ${found.verified === 1 ? "point" : "points"}: mean ${sayBias(name, found.mean)}${interval}, largest ${sayBias(name, found.largest)} at point ${found.largest_at}${promised}.`;
   }
 

@@ -34,8 +34,17 @@ export class Depths {
     if (!points[0]) return;
     const { tables } = await get(`${path}/${points[0].ordinal}`, {}, signal);
     if (!JSON.stringify(tables ?? []).includes("statics")) return;
-    const { columns } = await get(`${path}/${points[0].ordinal}/statics`, { format: "json", fields: "node,measured_depth" }, signal);
-    this.#depths = new Map(columns.node.map((/** @type {number} */ node, /** @type {number} */ row) => [node, columns.measured_depth[row]]));
+    const { columns } = await get(
+      `${path}/${points[0].ordinal}/statics`,
+      { format: "json", fields: "node,measured_depth" },
+      signal,
+    );
+    this.#depths = new Map(
+      columns.node.map((/** @type {number} */ node, /** @type {number} */ row) => [
+        node,
+        columns.measured_depth[row],
+      ]),
+    );
   }
 
   /** The label of a column, with the depth of its node. @param {string} name */

@@ -39,7 +39,9 @@ export function layered(xs, ys, requests) {
 export function ends(values, all) {
   if (values.length !== 1 || all.length < 2) return values;
   const index = all.indexOf(values[0]);
-  const [below, above] = [all[index - 1], all[index + 1]].map((next) => (next === undefined ? undefined : Math.abs(next - values[0]) / 2));
+  const [below, above] = [all[index - 1], all[index + 1]].map((next) =>
+    next === undefined ? undefined : Math.abs(next - values[0]) / 2,
+  );
   return [values[0] - (below ?? above ?? 0), values[0] + (above ?? below ?? 0)];
 }
 
@@ -60,7 +62,9 @@ function valuesOf(span) {
   if (!span?.count) return [];
   const { from, to, count, scale } = span;
   const part = (/** @type {number} */ index) => (count > 1 ? index / (count - 1) : 0);
-  return Array.from({ length: count }, (_, index) => (scale === "log" ? from * (to / from) ** part(index) : from + (to - from) * part(index)));
+  return Array.from({ length: count }, (_, index) =>
+    scale === "log" ? from * (to / from) ** part(index) : from + (to - from) * part(index),
+  );
 }
 
 /** @param {number[]} values @returns {(value: number) => boolean} whether a value is one of them */

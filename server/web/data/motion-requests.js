@@ -35,7 +35,17 @@ export function windowTables(scenario, query, { from, to }) {
   const node = selectedNode(scenario, query);
   return [
     ["orbit", { ...node, from, to, max_points: 2 * SHOWN }],
-    ["spectrum", { ...node, from, to, window: spectrumWeighting(query), range_hz: spectrumRange(query, scenario.recording.rate_hz), peaks: 10 }],
+    [
+      "spectrum",
+      {
+        ...node,
+        from,
+        to,
+        window: spectrumWeighting(query),
+        range_hz: spectrumRange(query, scenario.recording.rate_hz),
+        peaks: 10,
+      },
+    ],
     ["statistics", { ...node, from, to }],
   ];
 }
@@ -48,7 +58,15 @@ export function windowTables(scenario, query, { from, to }) {
  * @returns {Asked}
  */
 export function rotationTable(scenario, query, node) {
-  return ["history", { ...selectedNode(scenario, query), fields: `time,rotation_speed_${node},torque_${node}`, max_points: SHOWN, decimation: "minmax" }];
+  return [
+    "history",
+    {
+      ...selectedNode(scenario, query),
+      fields: `time,rotation_speed_${node},torque_${node}`,
+      max_points: SHOWN,
+      decimation: "minmax",
+    },
+  ];
 }
 
 /**
@@ -73,7 +91,9 @@ export function chosenWindow(point, query) {
   const usual = verifiedWindow(point);
   const from = Number(query.get("from") ?? usual.from);
   const to = Number(query.get("to") ?? usual.to);
-  return from >= 0 && to > from ? { from, to: Math.min(to, scenario.duration) } : { from: usual.from, to: usual.to };
+  return from >= 0 && to > from
+    ? { from, to: Math.min(to, scenario.duration) }
+    : { from: usual.from, to: usual.to };
 }
 
 /** The longest window of which the histories of a run that settles are kept [s]. */
@@ -85,8 +105,14 @@ const LONGEST_KEPT = 80;
  * @returns {{from: number, to: number}} [s]
  */
 export function verifiedWindow({ scenario: { recording, duration }, summary }) {
-  if (recording.orbit_window === "settled" && summary?.statistics_to !== undefined) return { from: Math.max(summary.statistics_from, summary.statistics_to - LONGEST_KEPT), to: summary.statistics_to };
-  return recording.orbit_window?.to !== undefined ? recording.orbit_window : { from: (duration * 2) / 3, to: duration };
+  if (recording.orbit_window === "settled" && summary?.statistics_to !== undefined)
+    return {
+      from: Math.max(summary.statistics_from, summary.statistics_to - LONGEST_KEPT),
+      to: summary.statistics_to,
+    };
+  return recording.orbit_window?.to !== undefined
+    ? recording.orbit_window
+    : { from: (duration * 2) / 3, to: duration };
 }
 
 /**
@@ -95,7 +121,9 @@ export function verifiedWindow({ scenario: { recording, duration }, summary }) {
  * @returns {{from: number, to: number}} [s]
  */
 export function keptWindow(point) {
-  return point.scenario.recording.orbit_window === "settled" ? verifiedWindow(point) : { from: 0, to: point.scenario.duration };
+  return point.scenario.recording.orbit_window === "settled"
+    ? verifiedWindow(point)
+    : { from: 0, to: point.scenario.duration };
 }
 
 /** How the samples of a spectrum are weighted, as the link says. @param {URLSearchParams} query */
@@ -118,5 +146,8 @@ export function rangesOf(rate) {
  */
 export function spectrumRange(query, rate) {
   const offered = rangesOf(rate);
-  return Number(offered.find((text) => text === query.get("range")) ?? (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)));
+  return Number(
+    offered.find((text) => text === query.get("range")) ??
+      (offered.includes("20") ? "20" : (offered.at(-1) ?? rate / 2)),
+  );
 }

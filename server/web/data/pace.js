@@ -19,9 +19,19 @@ export class Pace {
     const before = this.#last;
     this.#last = now;
     // Points that are added, or tried again, take progress back.
-    if (!before || !runs(before.sweep) || sweep.progress < before.sweep.progress || sweep.counts.total !== before.sweep.counts.total) return;
+    if (
+      !before ||
+      !runs(before.sweep) ||
+      sweep.progress < before.sweep.progress ||
+      sweep.counts.total !== before.sweep.counts.total
+    )
+      return;
     this.#stretches.push({ lasted: now.at - before.at, grown: sweep.progress - before.sweep.progress });
-    while (this.#stretches.length > 1 && total(this.#stretches, "lasted") - this.#stretches[0].lasted > RECENT_MS) this.#stretches.shift();
+    while (
+      this.#stretches.length > 1 &&
+      total(this.#stretches, "lasted") - this.#stretches[0].lasted > RECENT_MS
+    )
+      this.#stretches.shift();
   }
 
   /** Seconds left; null where that is not known. @returns {number | null} */

@@ -38,7 +38,18 @@ export function shares(parameters, result) {
     return {
       first: spread > 0 ? first : 0,
       interval: isGrid || spread === 0 ? null : interval(group.of, result),
-      total: isGrid && spread > 0 ? 1 - between(combined(groups.filter((_, other) => other !== order).map((other) => other.of), result.length), result) / spread : null,
+      total:
+        isGrid && spread > 0
+          ? 1 -
+            between(
+              combined(
+                groups.filter((_, other) => other !== order).map((other) => other.of),
+                result.length,
+              ),
+              result,
+            ) /
+              spread
+          : null,
       levels: levels(group, result),
     };
   });
@@ -55,13 +66,24 @@ function grouped(column) {
   const order = column.map((_, index) => index).sort((a, b) => column[a] - column[b]);
   const of = Array(column.length).fill(0);
   order.forEach((index, rank) => (of[index] = Math.floor((rank * bins) / column.length)));
-  return { of, middles: Array.from({ length: bins }, (_, bin) => mean(column.filter((__, index) => of[index] === bin))) };
+  return {
+    of,
+    middles: Array.from({ length: bins }, (_, bin) => mean(column.filter((__, index) => of[index] === bin))),
+  };
 }
 
 /** @param {{of: number[], middles: number[]}[]} groups @param {number} rows */
 function isFullGrid(groups, rows) {
   const cells = groups.reduce((product, group) => product * group.middles.length, 1);
-  return cells === rows && new Set(combined(groups.map((group) => group.of), rows)).size === rows;
+  return (
+    cells === rows &&
+    new Set(
+      combined(
+        groups.map((group) => group.of),
+        rows,
+      ),
+    ).size === rows
+  );
 }
 
 /** @param {number[][]} parts @param {number} rows */
@@ -97,7 +119,10 @@ function between(of, values) {
     sums.set(group, entry);
   });
   const middle = mean(values);
-  return [...sums.values()].reduce((sum, entry) => sum + entry.count * (entry.sum / entry.count - middle) ** 2, 0);
+  return [...sums.values()].reduce(
+    (sum, entry) => sum + entry.count * (entry.sum / entry.count - middle) ** 2,
+    0,
+  );
 }
 
 /** @param {number[]} of @param {number[]} values */
@@ -125,7 +150,10 @@ function interval(of, values) {
   }
   const found = Array.from({ length: parts }, (_, part) => {
     const rows = order.filter((__, rank) => rank % parts !== part);
-    return adjusted(rows.map((row) => of[row]), rows.map((row) => values[row]));
+    return adjusted(
+      rows.map((row) => of[row]),
+      rows.map((row) => values[row]),
+    );
   });
   const error = Math.sqrt(((parts - 1) / parts) * squares(found));
   const whole = adjusted(of, values);
@@ -150,6 +178,11 @@ function levels(group, result) {
   group.of.forEach((level, row) => members[level].push(result[row]));
   return group.middles.map((value, level) => {
     const values = members[level];
-    return { value, mean: mean(values), error: values.length > 1 ? Math.sqrt(squares(values) / (values.length - 1) / values.length) : 0, count: values.length };
+    return {
+      value,
+      mean: mean(values),
+      error: values.length > 1 ? Math.sqrt(squares(values) / (values.length - 1) / values.length) : 0,
+      count: values.length,
+    };
   });
 }

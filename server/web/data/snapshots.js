@@ -47,7 +47,18 @@ export async function snapshotsOf(source) {
  * @returns {Promise<Frames>}
  */
 export async function frames(source, names, window, nodes, taken = TAKEN) {
-  const query = { from: window.from, to: window.to, fields: names.join(","), max_frames: Math.max(2, Math.floor(taken / nodes)) };
+  const query = {
+    from: window.from,
+    to: window.to,
+    fields: names.join(","),
+    max_frames: Math.max(2, Math.floor(taken / nodes)),
+  };
   const { columns, attributes } = await getArrays(`${source.path}/snapshots`, query, source.signal);
-  return { nodes, count: columns[names[0]].length / nodes, first: attributes.first, interval: attributes.interval, columns };
+  return {
+    nodes,
+    count: columns[names[0]].length / nodes,
+    first: attributes.first,
+    interval: attributes.interval,
+    columns,
+  };
 }

@@ -38,10 +38,16 @@ export const FEWEST = 8;
  */
 export function spectrumWindow(point, window) {
   const { recording, duration } = point.scenario;
-  if (recording.orbit_window === "settled" && !recording.spectrum_windows) return isSame(window, verifiedWindow(point), duration) ? 1 : 0;
+  if (recording.orbit_window === "settled" && !recording.spectrum_windows)
+    return isSame(window, verifiedWindow(point), duration) ? 1 : 0;
   const first = Math.round(((duration * 5) / 6) * recording.rate_hz) / recording.rate_hz;
   const usual = (duration - first) * recording.rate_hz >= FEWEST ? [{ from: first, to: duration }] : [];
-  return 1 + (recording.spectrum_windows ?? usual).findIndex((/** @type {{from: number, to: number}} */ known) => isSame(window, known, duration));
+  return (
+    1 +
+    (recording.spectrum_windows ?? usual).findIndex((/** @type {{from: number, to: number}} */ known) =>
+      isSame(window, known, duration),
+    )
+  );
 }
 
 /**
@@ -54,7 +60,9 @@ export function spectrumWindow(point, window) {
 export function recordedAs({ recording: { nodes } }, node, depth) {
   const depths = nodes.flatMap((/** @type {any} */ one) => (one.depth === undefined ? [] : [one.depth]));
   if (!depths.length || nodes.some((/** @type {any} */ one) => one.node === node)) return String(node);
-  const nearest = depths.reduce((/** @type {number} */ a, /** @type {number} */ b) => (Math.abs(b - depth) < Math.abs(a - depth) ? b : a));
+  const nearest = depths.reduce((/** @type {number} */ a, /** @type {number} */ b) =>
+    Math.abs(b - depth) < Math.abs(a - depth) ? b : a,
+  );
   return `${nearest}m`.replace(".", "_");
 }
 

@@ -14,8 +14,12 @@ export class NoSurvey extends Error {}
  */
 function columns(line) {
   const parting = ["\t", ";"].find((sign) => line.includes(sign));
-  const cells = line.trim().split(parting ?? /\s+/).map((cell) => cell.trim());
-  const isParted = parting || (cells.length >= 3 && !cells.some((cell) => cell.startsWith(",") || cell.endsWith(",")));
+  const cells = line
+    .trim()
+    .split(parting ?? /\s+/)
+    .map((cell) => cell.trim());
+  const isParted =
+    parting || (cells.length >= 3 && !cells.some((cell) => cell.startsWith(",") || cell.endsWith(",")));
   return isParted ? cells.map((cell) => cell.replace(",", ".")) : line.trim().split(/\s*,\s*/);
 }
 
@@ -37,7 +41,11 @@ export function readSurvey(text, unit) {
       throw new NoSurvey(`Line ${index + 1} does not begin with three numbers: ${line.trim().slice(0, 60)}`);
     }
     // To a tenth of a millimetre: what a conversion adds beyond is no measurement.
-    stations.push({ measured_depth: Number((depth * METRES[unit]).toFixed(4)), inclination_deg: inclination, azimuth_deg: azimuth });
+    stations.push({
+      measured_depth: Number((depth * METRES[unit]).toFixed(4)),
+      inclination_deg: inclination,
+      azimuth_deg: azimuth,
+    });
   });
   if (!stations.length) throw new NoSurvey("No line begins with measured depth, inclination and azimuth");
   return stations;

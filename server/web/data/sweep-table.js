@@ -28,7 +28,10 @@ export class SweepTable {
     } else {
       // At first nothing is wanted yet: the view asks for all that it needs at once.
       const wanted = [...this.#columns.keys()];
-      const [columns, listed] = await Promise.all([wanted.length ? this.#fetch(wanted) : this.#columns, get(`${this.path}/columns`, {}, this.signal)]);
+      const [columns, listed] = await Promise.all([
+        wanted.length ? this.#fetch(wanted) : this.#columns,
+        get(`${this.path}/columns`, {}, this.signal),
+      ]);
       this.#columns = columns;
       this.names = listed.columns.map((/** @type {any} */ column) => column.name);
     }
@@ -80,8 +83,12 @@ export const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density
  */
 export function sweptBy(sweep, names) {
   const given = sweep.request?.axes ?? {};
-  const paths = Object.keys(given).length ? Object.keys(given) : Object.keys(sweep.request?.points?.[0] ?? {});
-  const known = paths.map((path) => ({ path, name: names.includes(path) ? path : (SHORT[path] ?? path) })).filter(({ name }) => names.includes(name));
+  const paths = Object.keys(given).length
+    ? Object.keys(given)
+    : Object.keys(sweep.request?.points?.[0] ?? {});
+  const known = paths
+    .map((path) => ({ path, name: names.includes(path) ? path : (SHORT[path] ?? path) }))
+    .filter(({ name }) => names.includes(name));
   return {
     axes: known.map(({ name }) => name),
     spans: Object.fromEntries(known.map(({ path, name }) => [name, given[path]])),
@@ -101,5 +108,7 @@ export function isText(values) {
  */
 export function distinct(values) {
   const all = [...new Set(values)].filter((value) => value !== null);
-  return /** @type {(number | string)[]} */ (all).sort((a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b))));
+  return /** @type {(number | string)[]} */ (all).sort((a, b) =>
+    typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)),
+  );
 }

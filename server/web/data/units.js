@@ -36,7 +36,13 @@ function parse(name) {
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
   const place = PLACE.exec(rest);
-  return { entry: registry[rest.replace(PLACE, "")], variant: variant?.[1], depth: place?.[1]?.slice(0, -1).replace("_", "."), node: place?.[2], window: place?.[3] };
+  return {
+    entry: registry[rest.replace(PLACE, "")],
+    variant: variant?.[1],
+    depth: place?.[1]?.slice(0, -1).replace("_", "."),
+    node: place?.[2],
+    window: place?.[3],
+  };
 }
 
 /**
@@ -122,7 +128,9 @@ export function sayer(name, digits = 4) {
  * @returns {string} such as `flow rate 0.01 m³/s, mud density 1200 kg/m³`
  */
 export function sayParameters(values) {
-  return Object.entries(values).map(([name, value]) => `${label(name)} ${say(name, value)}`).join(", ");
+  return Object.entries(values)
+    .map(([name, value]) => `${label(name)} ${say(name, value)}`)
+    .join(", ");
 }
 
 /**
@@ -157,7 +165,9 @@ export function moment(time, to = "minute") {
   const date = new Date(time);
   const two = (/** @type {number} */ part) => String(part).padStart(2, "0");
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map(two).join("-");
-  const clock = [date.getHours(), date.getMinutes(), ...(to === "second" ? [date.getSeconds()] : [])].map(two).join(":");
+  const clock = [date.getHours(), date.getMinutes(), ...(to === "second" ? [date.getSeconds()] : [])]
+    .map(two)
+    .join(":");
   return `${day} ${clock}`;
 }
 

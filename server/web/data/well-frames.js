@@ -11,7 +11,11 @@ export function nodeFrames(statics) {
   const { north, east, true_vertical_depth: down, low_side_angle: angle } = statics;
   const count = north.length;
   /** @type {Vector[]} */
-  const axis = north.map((/** @type {number} */ value, /** @type {number} */ node) => [value, east[node], down[node]]);
+  const axis = north.map((/** @type {number} */ value, /** @type {number} */ node) => [
+    value,
+    east[node],
+    down[node],
+  ]);
   /** @type {{axis: Vector[], u: Vector[], v: Vector[], tangent: Vector[]}} */
   const frames = { axis, u: [], v: [], tangent: [] };
   for (let node = 0; node < count; node += 1) {

@@ -31,7 +31,10 @@ export function dragWindow(place, moved, ended, signal) {
     const [from, to] = [start ?? end, end].sort((a, b) => a - b).map((pixel) => layout().xaxis.p2l(pixel));
     return [from, to];
   };
-  const isMine = (/** @type {Event} */ event) => layout()?.dragmode === "select" && event.target instanceof Element && event.target.classList.contains("nsewdrag");
+  const isMine = (/** @type {Event} */ event) =>
+    layout()?.dragmode === "select" &&
+    event.target instanceof Element &&
+    event.target.classList.contains("nsewdrag");
   const frame = () => {
     isAsked = false;
     if (start === null) return;
@@ -47,27 +50,40 @@ export function dragWindow(place, moved, ended, signal) {
   };
   // Before plotly hears of it.
   const keepOut = (/** @type {Event} */ event) => isMine(event) && event.stopPropagation();
-  for (const kind of ["mousedown", "touchstart"]) place.addEventListener(kind, keepOut, { capture: true, signal });
-  place.addEventListener("pointerdown", (event) => {
-    if (!isMine(event) || event.button !== 0) return;
-    const { yaxis } = layout();
-    start = end = across(event);
-    // Plotly, which would look for what is below the mouse, hears nothing while this place has the pointer.
-    place.setPointerCapture(event.pointerId);
-    Object.assign(shade.style, { top: `${yaxis._offset}px`, height: `${yaxis._length}px`, width: "0" });
-    shade.hidden = false;
-  }, { signal });
-  place.addEventListener("pointermove", (event) => {
-    if (start === null) return;
-    end = across(event);
-    if (!isAsked) requestAnimationFrame(frame);
-    isAsked = true;
-  }, { signal });
-  place.addEventListener("pointerup", (event) => {
-    if (start === null) return;
-    end = across(event);
-    finish(range());
-  }, { signal });
+  for (const kind of ["mousedown", "touchstart"])
+    place.addEventListener(kind, keepOut, { capture: true, signal });
+  place.addEventListener(
+    "pointerdown",
+    (event) => {
+      if (!isMine(event) || event.button !== 0) return;
+      const { yaxis } = layout();
+      start = end = across(event);
+      // Plotly, which would look for what is below the mouse, hears nothing while this place has the pointer.
+      place.setPointerCapture(event.pointerId);
+      Object.assign(shade.style, { top: `${yaxis._offset}px`, height: `${yaxis._length}px`, width: "0" });
+      shade.hidden = false;
+    },
+    { signal },
+  );
+  place.addEventListener(
+    "pointermove",
+    (event) => {
+      if (start === null) return;
+      end = across(event);
+      if (!isAsked) requestAnimationFrame(frame);
+      isAsked = true;
+    },
+    { signal },
+  );
+  place.addEventListener(
+    "pointerup",
+    (event) => {
+      if (start === null) return;
+      end = across(event);
+      finish(range());
+    },
+    { signal },
+  );
   place.addEventListener("pointercancel", () => start !== null && finish(null), { signal });
 }
 
@@ -100,7 +116,10 @@ export class Brush {
 
   /** What shows the whole motion, so that nothing that is brushed lies outside: changes of the layout. */
   layout() {
-    const ends = (/** @type {Float64Array} */ values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+    const ends = (/** @type {Float64Array} */ values) => [
+      values.reduce((a, b) => Math.min(a, b), Infinity),
+      values.reduce((a, b) => Math.max(a, b), -Infinity),
+    ];
     const [x, y] = [ends(this.#x), ends(this.#y)];
     const half = Math.max(x[1] - x[0], y[1] - y[0]) / (2 * FILLED) || 1;
     const about = (/** @type {number[]} */ [low, high]) => [(low + high) / 2 - half, (low + high) / 2 + half];
@@ -136,7 +155,8 @@ export class Brush {
     const [width, height] = [this.#place.clientWidth * scale, this.#place.clientHeight * scale];
     const pen = this.#canvas.getContext("2d");
     if (!pen) return;
-    if (this.#canvas.width !== width || this.#canvas.height !== height) [this.#canvas.width, this.#canvas.height] = [width, height];
+    if (this.#canvas.width !== width || this.#canvas.height !== height)
+      [this.#canvas.width, this.#canvas.height] = [width, height];
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.save();

@@ -6,7 +6,16 @@ import { rounded } from "../ui/router.js";
 import { say, unit } from "../data/units.js";
 
 /** Keys that move the cursor, and by how many nodes; what is deeper is below, as in the picture. @type {Record<string, number>} */
-const STEPS = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -Infinity, End: Infinity };
+const STEPS = {
+  ArrowUp: -1,
+  ArrowLeft: -1,
+  ArrowDown: 1,
+  ArrowRight: 1,
+  PageUp: -10,
+  PageDown: 10,
+  Home: -Infinity,
+  End: Infinity,
+};
 
 /**
  * @param {HTMLElement} place the picture
@@ -17,9 +26,32 @@ const STEPS = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1, PageUp:
  *   drawn, and moves by its nodes' depths
  */
 export function depthCursor(place, link, read) {
-  const reading = h("div", { class: "small soft", role: "status" }, "Point at a depth, or move the cursor, to read all profiles there.");
-  const slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: "0", disabled: true, "aria-label": "Depth cursor", onkeydown: stepped, oninput: () => move(slider.valueAsNumber) });
-  const cursor = h("label", { class: "field wide" }, h("span", {}, "Depth cursor: arrow keys move it by a node, Page Up and Page Down by ten, Home and End to the ends"), slider);
+  const reading = h(
+    "div",
+    { class: "small soft", role: "status" },
+    "Point at a depth, or move the cursor, to read all profiles there.",
+  );
+  const slider = h("input", {
+    type: "range",
+    min: 0,
+    max: 0,
+    step: 1,
+    value: "0",
+    disabled: true,
+    "aria-label": "Depth cursor",
+    onkeydown: stepped,
+    oninput: () => move(slider.valueAsNumber),
+  });
+  const cursor = h(
+    "label",
+    { class: "field wide" },
+    h(
+      "span",
+      {},
+      "Depth cursor: arrow keys move it by a node, Page Up and Page Down by ten, Home and End to the ends",
+    ),
+    slider,
+  );
   /** @type {number[]} */
   let depths = [];
   /** Whether the picture has a line where the cursor was moved to. */
@@ -73,7 +105,21 @@ export function depthCursor(place, link, read) {
   /** Draws a line at a depth, or none. @param {number | null} depth */
   function mark(depth) {
     isMarked = depth !== null;
-    void adjust(place, { shapes: isMarked ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: depth, y1: depth, line: { color: inks().text, width: 1 } }] : [] });
+    void adjust(place, {
+      shapes: isMarked
+        ? [
+            {
+              type: "line",
+              xref: "paper",
+              x0: 0,
+              x1: 1,
+              y0: depth,
+              y1: depth,
+              line: { color: inks().text, width: 1 },
+            },
+          ]
+        : [],
+    });
   }
 
   /** @param {number} depth in the unit in which it is shown @param {any[]} told */
@@ -91,5 +137,9 @@ function depthOf(depth) {
 
 /** Where in a list the depth is that is nearest to another; the first of equals. @param {(number | null)[]} depths @param {number} depth */
 export function nearest(depths, depth) {
-  return depths.reduce((/** @type {number} */ best, entry, index) => (Math.abs(Number(entry) - depth) < Math.abs(Number(depths[best]) - depth) ? index : best), 0);
+  return depths.reduce(
+    (/** @type {number} */ best, entry, index) =>
+      Math.abs(Number(entry) - depth) < Math.abs(Number(depths[best]) - depth) ? index : best,
+    0,
+  );
 }

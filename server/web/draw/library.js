@@ -32,7 +32,10 @@ export function fetchAhead(build, place) {
   if (loaded.has("whole") || loading.has(build)) return;
   // A preload that is not used, since its view was left or another build is there, would be complained of.
   // It is read to its end: the browser keeps no more of a file than was read of it.
-  if (!fetched.has(build)) void fetch(addressOf(build)).then((answer) => answer.blob()).catch(() => {});
+  if (!fetched.has(build))
+    void fetch(addressOf(build))
+      .then((answer) => answer.blob())
+      .catch(() => {});
   fetched.add(build);
   setTimeout(() => place.isConnected && !loaded.has("whole") && load(build).catch(() => {}), LONG_MS);
 }

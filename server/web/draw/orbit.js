@@ -15,7 +15,10 @@ const NAMED = 6;
  */
 export function seenDownhole(u, v, lowSide) {
   const [cosine, sine] = [Math.cos(lowSide), Math.sin(lowSide)];
-  return { across: u.map((value, index) => -(v[index] * cosine - value * sine)), up: u.map((value, index) => -(value * cosine + v[index] * sine)) };
+  return {
+    across: u.map((value, index) => -(v[index] * cosine - value * sine)),
+    up: u.map((value, index) => -(value * cosine + v[index] * sine)),
+  };
 }
 
 /**
@@ -28,7 +31,16 @@ export function seenDownhole(u, v, lowSide) {
 export function orbitTrace(table, lowSide, line, name) {
   const { across, up } = seenDownhole(table.columns.u, table.columns.v, lowSide);
   const isLong = across.length > 20_000;
-  return { type: isLong ? "scattergl" : "scatter", mode: "lines", x: shown("radius", across), y: shown("radius", up), line: { width: 0.9, ...line }, name, showlegend: name !== undefined, hovertemplate: "%{x:.4~g}, %{y:.4~g}<extra></extra>" };
+  return {
+    type: isLong ? "scattergl" : "scatter",
+    mode: "lines",
+    x: shown("radius", across),
+    y: shown("radius", up),
+    line: { width: 0.9, ...line },
+    name,
+    showlegend: name !== undefined,
+    hovertemplate: "%{x:.4~g}, %{y:.4~g}<extra></extra>",
+  };
 }
 
 /**
@@ -39,7 +51,15 @@ export function orbitTrace(table, lowSide, line, name) {
 export function holeTrace(clearance, colour = inks().soft) {
   const radius = Number(shown("radius", [clearance])[0]);
   const angles = Array.from({ length: 361 }, (_, degree) => (degree * Math.PI) / 180);
-  return { type: "scatter", mode: "lines", x: angles.map((angle) => radius * Math.cos(angle)), y: angles.map((angle) => radius * Math.sin(angle)), line: { color: colour, width: 1.6 }, hoverinfo: "skip", showlegend: false };
+  return {
+    type: "scatter",
+    mode: "lines",
+    x: angles.map((angle) => radius * Math.cos(angle)),
+    y: angles.map((angle) => radius * Math.sin(angle)),
+    line: { color: colour, width: 1.6 },
+    hoverinfo: "skip",
+    showlegend: false,
+  };
 }
 
 /**
@@ -50,10 +70,16 @@ export function holeTrace(clearance, colour = inks().soft) {
 export function orbitLayout(isZoomed, traces, clearance) {
   const { symbol } = unit("radius");
   const radius = 1.08 * Number(shown("radius", [clearance])[0]);
-  let [x, y] = [[-radius, radius], [-radius, radius]];
+  let [x, y] = [
+    [-radius, radius],
+    [-radius, radius],
+  ];
   if (isZoomed) {
     const range = (/** @type {"x" | "y"} */ name) => {
-      const values = traces.flatMap((trace) => [least(trace[name]), -least(trace[name].map((/** @type {number} */ value) => -value))]);
+      const values = traces.flatMap((trace) => [
+        least(trace[name]),
+        -least(trace[name].map((/** @type {number} */ value) => -value)),
+      ]);
       return [Math.min(...values), Math.max(...values)];
     };
     const [across, up] = [range("x"), range("y")];
@@ -62,8 +88,21 @@ export function orbitLayout(isZoomed, traces, clearance) {
     y = [(up[0] + up[1]) / 2 - half, (up[0] + up[1]) / 2 + half];
   }
   return {
-    xaxis: { title: `across the hole [${symbol}]`, quantity: "radius", range: x, scaleanchor: "y", constrain: "domain", zeroline: !isZoomed },
-    yaxis: { title: `from the low side up [${symbol}]`, quantity: "radius", range: y, constrain: "domain", zeroline: !isZoomed },
+    xaxis: {
+      title: `across the hole [${symbol}]`,
+      quantity: "radius",
+      range: x,
+      scaleanchor: "y",
+      constrain: "domain",
+      zeroline: !isZoomed,
+    },
+    yaxis: {
+      title: `from the low side up [${symbol}]`,
+      quantity: "radius",
+      range: y,
+      constrain: "domain",
+      zeroline: !isZoomed,
+    },
   };
 }
 
@@ -81,8 +120,19 @@ function least(values) {
 export function spectrumTrace(table, line, name) {
   // As wide as the line that any window makes of a mean.
   const mean = 2.5 * table.attributes.resolution;
-  const amplitude = shown("amplitude", table.columns.amplitude).map((value, index) => (Math.abs(table.columns.frequency[index]) < mean ? null : value));
-  return { type: "scatter", mode: "lines", x: table.columns.frequency, y: amplitude, line: { width: 1, ...line }, name, showlegend: name !== undefined, hovertemplate: "%{x:.3~f} Hz: %{y:.4~g}<extra></extra>" };
+  const amplitude = shown("amplitude", table.columns.amplitude).map((value, index) =>
+    Math.abs(table.columns.frequency[index]) < mean ? null : value,
+  );
+  return {
+    type: "scatter",
+    mode: "lines",
+    x: table.columns.frequency,
+    y: amplitude,
+    line: { width: 1, ...line },
+    name,
+    showlegend: name !== undefined,
+    hovertemplate: "%{x:.3~f} Hz: %{y:.4~g}<extra></extra>",
+  };
 }
 
 /**
@@ -91,7 +141,9 @@ export function spectrumTrace(table, line, name) {
  * @returns {{frequency: number, amplitude: number, whirl: string}[]}
  */
 export function namedLines(table) {
-  return (table.attributes.peaks ?? []).filter((/** @type {any} */ peak) => peak.whirl !== "offset" && peak.is_resolved !== false).slice(0, NAMED);
+  return (table.attributes.peaks ?? [])
+    .filter((/** @type {any} */ peak) => peak.whirl !== "offset" && peak.is_resolved !== false)
+    .slice(0, NAMED);
 }
 
 /**
@@ -103,16 +155,57 @@ export function namedLines(table) {
 export function spectrumLayout(spectra, isLog) {
   const { soft } = inks();
   const resolved = Math.min(...spectra.map(({ table }) => table.attributes.resolved_hz ?? Infinity));
-  const last = spectra.reduce((most, { table }) => table.columns.frequency.reduce((/** @type {number} */ far, /** @type {number} */ value) => Math.max(far, Math.abs(value)), most), 0);
-  const beyond = resolved < last ? [[resolved, last], [-last, -resolved]] : [];
-  const lines = spectra.flatMap(({ table, name = "" }) => namedLines(table).map((line) => ({ ...line, of: name && `${name}: ` }))).sort((a, b) => b.amplitude - a.amplitude);
+  const last = spectra.reduce(
+    (most, { table }) =>
+      table.columns.frequency.reduce(
+        (/** @type {number} */ far, /** @type {number} */ value) => Math.max(far, Math.abs(value)),
+        most,
+      ),
+    0,
+  );
+  const beyond =
+    resolved < last
+      ? [
+          [resolved, last],
+          [-last, -resolved],
+        ]
+      : [];
+  const lines = spectra
+    .flatMap(({ table, name = "" }) =>
+      namedLines(table).map((line) => ({ ...line, of: name && `${name}: ` })),
+    )
+    .sort((a, b) => b.amplitude - a.amplitude);
   return {
     xaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
-    yaxis: { title: title("amplitude"), quantity: "amplitude", type: isLog ? "log" : "linear", rangemode: isLog ? "normal" : "tozero" },
-    shapes: beyond.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "#e69f00", opacity: 0.15, line: { width: 0 } })),
+    yaxis: {
+      title: title("amplitude"),
+      quantity: "amplitude",
+      type: isLog ? "log" : "linear",
+      rangemode: isLog ? "normal" : "tozero",
+    },
+    shapes: beyond.map(([x0, x1]) => ({
+      type: "rect",
+      xref: "x",
+      yref: "paper",
+      x0,
+      x1,
+      y0: 0,
+      y1: 1,
+      fillcolor: "#e69f00",
+      opacity: 0.15,
+      line: { width: 0 },
+    })),
     annotations: readable(lines, last).map((peak) => {
       const height = Number(shown("amplitude", [peak.amplitude])[0]);
-      return { x: peak.frequency, y: isLog ? Math.log10(height) : height, text: `${peak.of}${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`, showarrow: false, yanchor: "bottom", xanchor: peak.frequency < 0 ? "right" : "left", font: { size: 11 } };
+      return {
+        x: peak.frequency,
+        y: isLog ? Math.log10(height) : height,
+        text: `${peak.of}${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`,
+        showarrow: false,
+        yanchor: "bottom",
+        xanchor: peak.frequency < 0 ? "right" : "left",
+        font: { size: 11 },
+      };
     }),
   };
 }
@@ -127,7 +220,12 @@ function readable(peaks, last) {
   /** @type {Line[]} */
   const kept = [];
   for (const peak of peaks) {
-    const isCovered = kept.some((other) => Math.sign(other.frequency) === Math.sign(peak.frequency) && Math.abs(other.frequency - peak.frequency) < 0.25 * last && other.amplitude - peak.amplitude < 0.06 * peaks[0].amplitude);
+    const isCovered = kept.some(
+      (other) =>
+        Math.sign(other.frequency) === Math.sign(peak.frequency) &&
+        Math.abs(other.frequency - peak.frequency) < 0.25 * last &&
+        other.amplitude - peak.amplitude < 0.06 * peaks[0].amplitude,
+    );
     if (!isCovered) kept.push(peak);
   }
   return kept;
@@ -143,7 +241,9 @@ function readable(peaks, last) {
 export function multiple(frequency, base, resolution, name) {
   if (base <= 0) return "";
   const order = Math.round(Math.abs(frequency) / base);
-  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * base) <= resolution / 2 ? `${order} × ${name}` : "";
+  return order >= 1 && order <= 12 && Math.abs(Math.abs(frequency) - order * base) <= resolution / 2
+    ? `${order} × ${name}`
+    : "";
 }
 
 /** Part of a frequency within which a mode counts as that of a line, beside half the resolution: contacts that lift off shift lines. */

@@ -30,7 +30,10 @@ export function lineScale() {
   return theme() === "dark" ? BRIGHT : SCALE;
 }
 /** @type {[number, string][]} */
-const BRIGHT = Array.from({ length: 11 }, (_, step) => [step / 10, colourOf(DARK_END + (1 - DARK_END) * (step / 10), [0, 1])]);
+const BRIGHT = Array.from({ length: 11 }, (_, step) => [
+  step / 10,
+  colourOf(DARK_END + (1 - DARK_END) * (step / 10), [0, 1]),
+]);
 
 /** @returns {{text: string, soft: string, line: string, panel: string}} colours of the theme */
 export function inks() {
@@ -54,7 +57,9 @@ export function canvas(name, key, size = "", build = "flat") {
 }
 
 /** How long no picture of a view has been sketched and nothing is awaited when the first is drawn, and how long that waits at most. */
-const REST_MS = 10, LONGEST_MS = 500, STEP_MS = 10;
+const REST_MS = 10,
+  LONGEST_MS = 500,
+  STEP_MS = 10;
 
 /**
  * What is known of a picture that is drawn: its layout, what its axes are, and how it is when it is not zoomed.
@@ -84,7 +89,8 @@ export async function draw(place, traces, layout, signal) {
   if (signal.aborted) return place;
   const complete = merged(common(), layout);
   // Of what WebGL draws, a sketch takes as long.
-  if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces))) await sketched(place, traces, complete, signal);
+  if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces)))
+    await sketched(place, traces, complete, signal);
   const Plotly = await library(traces);
   // What has been asked for since is drawn in the place of this.
   if (signal.aborted || asked.get(place) !== mine) return place;
@@ -110,7 +116,9 @@ export async function draw(place, traces, layout, signal) {
 async function sketched(place, traces, layout, signal) {
   const ranges = Object.entries(zoomed(keyOf(place), layout)).filter(([path]) => path.endsWith(".range"));
   const zoomedAxes = ranges.map(([path, range]) => [path.split(".")[0], range]);
-  const axes = Object.fromEntries(zoomedAxes.map(([name, range]) => [name, { ...layout[name], range, autorange: undefined }]));
+  const axes = Object.fromEntries(
+    zoomedAxes.map(([name, range]) => [name, { ...layout[name], range, autorange: undefined }]),
+  );
   const older = place.querySelectorAll(".sketch");
   const isSketched = sketch(place, traces, { ...layout, ...axes }, inks()) !== null;
   for (const rough of older) rough.remove();
@@ -121,7 +129,10 @@ async function sketched(place, traces, layout, signal) {
   sketches.set(signal, times);
   times.last = now;
   // What else the view shows is sketched before.
-  while (performance.now() < Math.min(times.first + LONGEST_MS, isWaiting() ? Infinity : times.last + REST_MS)) await new Promise((resolve) => setTimeout(resolve, STEP_MS));
+  while (
+    performance.now() < Math.min(times.first + LONGEST_MS, isWaiting() ? Infinity : times.last + REST_MS)
+  )
+    await new Promise((resolve) => setTimeout(resolve, STEP_MS));
 }
 /** When pictures of a view were sketched first and last [ms]. @type {WeakMap<AbortSignal, {first: number, last: number}>} */
 const sketches = new WeakMap();
@@ -134,7 +145,8 @@ function painted() {
 /** Keeps in the link how the reader zooms a picture. @param {HTMLElement} place */
 function followZoom(place) {
   /** @type {any} */ (place).on("plotly_relayout", async (/** @type {any} */ event) => {
-    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene\.camera)/.test(name))) return;
+    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene\.camera)/.test(name)))
+      return;
     await rested(place);
     const known = drawn.get(place);
     if (known && place.isConnected) keepZoom(keyOf(place), place, known.layout, known.whole);
@@ -147,13 +159,19 @@ function followZoom(place) {
  * @param {AbortSignal} signal
  */
 function attach(place, signal) {
-  const observer = new ResizeObserver(() => place.isConnected && place.clientWidth > 0 && drawers.get(place).Plots.resize(place));
+  const observer = new ResizeObserver(
+    () => place.isConnected && place.clientWidth > 0 && drawers.get(place).Plots.resize(place),
+  );
   observer.observe(place);
-  signal.addEventListener("abort", () => {
-    observer.disconnect();
-    // After the next view has taken the place of this one.
-    setTimeout(() => drawers.get(place).purge(place), 1000);
-  }, { once: true });
+  signal.addEventListener(
+    "abort",
+    () => {
+      observer.disconnect();
+      // After the next view has taken the place of this one.
+      setTimeout(() => drawers.get(place).purge(place), 1000);
+    },
+    { once: true },
+  );
 }
 
 /**
@@ -163,7 +181,12 @@ function attach(place, signal) {
  * @param {any} layout
  */
 async function zoom(Plotly, place, layout) {
-  const axes = JSON.stringify([layout.shows, ...Object.keys(layout).filter((name) => /^[xy]axis/.test(name)).map((name) => layout[name].quantity ?? layout[name].title)]);
+  const axes = JSON.stringify([
+    layout.shows,
+    ...Object.keys(layout)
+      .filter((name) => /^[xy]axis/.test(name))
+      .map((name) => layout[name].quantity ?? layout[name].title),
+  ]);
   const before = drawn.get(place);
   drawn.set(place, { layout, axes, whole: wholeOf(place, layout) });
   if (before && before.axes !== axes) return forgetZoom(keyOf(place));
@@ -184,7 +207,10 @@ function keyOf(place) {
  */
 function laidOut(place, signal) {
   return new Promise((resolve) => {
-    const look = () => (signal.aborted || (place.isConnected && place.clientWidth > 0) ? resolve() : void requestAnimationFrame(look));
+    const look = () =>
+      signal.aborted || (place.isConnected && place.clientWidth > 0)
+        ? resolve()
+        : void requestAnimationFrame(look);
     look();
   });
 }
@@ -204,7 +230,16 @@ export async function adjust(place, changes) {
 
 function common() {
   const { text, soft, line } = inks();
-  const axis = { gridcolor: line, zerolinecolor: line, linecolor: soft, ticks: "outside", tickcolor: line, automargin: true, title: { standoff: 8, font: { size: 13 } }, exponentformat: "power" };
+  const axis = {
+    gridcolor: line,
+    zerolinecolor: line,
+    linecolor: soft,
+    ticks: "outside",
+    tickcolor: line,
+    automargin: true,
+    title: { standoff: 8, font: { size: 13 } },
+    exponentformat: "power",
+  };
   return {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
@@ -227,7 +262,11 @@ function common() {
 function merged(base, own) {
   const { shows, ...layout } = own;
   const result = { ...base, ...layout };
-  for (const name of new Set(["xaxis", "yaxis", ...Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key))])) {
+  for (const name of new Set([
+    "xaxis",
+    "yaxis",
+    ...Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)),
+  ])) {
     const { quantity, ...given } = layout[name] ?? {};
     const title = typeof given.title === "string" ? { text: given.title } : given.title;
     result[name] = { ...base.xaxis, ...given, title: { ...base.xaxis.title, ...title } };
@@ -237,25 +276,47 @@ function merged(base, own) {
 
 /** @param {any} Plotly @param {HTMLElement} place @param {any} layout */
 function config(Plotly, place, layout) {
-  const filename = (place.getAttribute("aria-label") ?? "picture").replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase();
+  const filename = (place.getAttribute("aria-label") ?? "picture")
+    .replace(/[^\p{L}\p{N}]+/gu, "-")
+    .toLowerCase();
   const save = (/** @type {string} */ format) => ({
     name: `save-${format}`,
     title: `Save as ${format.toUpperCase()}`,
     icon: ICONS[format],
-    click: () => Plotly.downloadImage(place, { format, filename, width: place.clientWidth, height: place.clientHeight, scale: format === "png" ? 2 : 1 }),
+    click: () =>
+      Plotly.downloadImage(place, {
+        format,
+        filename,
+        width: place.clientWidth,
+        height: place.clientHeight,
+        scale: format === "png" ? 2 : 1,
+      }),
   });
   // plotly would offer to send what is shown to a service of its own.
   const nowhereElse = { showSendToCloud: false, plotlyServerURL: "" };
   // Who has zoomed in to a picture in which a window is chosen can choose one again.
   const unused = ["toImage", "lasso2d", "autoScale2d", ...(layout.dragmode === "select" ? [] : ["select2d"])];
-  return { ...nowhereElse, displaylogo: false, modeBarButtonsToRemove: unused, modeBarButtonsToAdd: [save("png"), save("svg")] };
+  return {
+    ...nowhereElse,
+    displaylogo: false,
+    modeBarButtonsToRemove: unused,
+    modeBarButtonsToAdd: [save("png"), save("svg")],
+  };
 }
 
 /** Letters in a frame: `P` for PNG, `S` for SVG. */
 /** @type {Record<string, any>} */
 const ICONS = {
-  png: { width: 24, height: 24, path: "M2 2h20v20H2zM4 4v16h16V4zM8 6h5a4 4 0 0 1 0 8h-3v4H8zm2 2v4h3a2 2 0 0 0 0-4z" },
-  svg: { width: 24, height: 24, path: "M2 2h20v20H2zM4 4v16h16V4zM15 9V7H9.500a1.500 1.500 0 0 0-1.500 1.500v3A1.500 1.500 0 0 0 9.500 13H14v3H8v2h6.500a1.500 1.500 0 0 0 1.500-1.500v-4a1.500 1.500 0 0 0-1.500-1.500H10V9z" },
+  png: {
+    width: 24,
+    height: 24,
+    path: "M2 2h20v20H2zM4 4v16h16V4zM8 6h5a4 4 0 0 1 0 8h-3v4H8zm2 2v4h3a2 2 0 0 0 0-4z",
+  },
+  svg: {
+    width: 24,
+    height: 24,
+    path: "M2 2h20v20H2zM4 4v16h16V4zM15 9V7H9.500a1.500 1.500 0 0 0-1.500 1.500v3A1.500 1.500 0 0 0 9.500 13H14v3H8v2h6.500a1.500 1.500 0 0 0 1.500-1.500v-4a1.500 1.500 0 0 0-1.500-1.500H10V9z",
+  },
 };
 
 /**
@@ -264,7 +325,13 @@ const ICONS = {
  */
 export function colourBar(title) {
   const { text } = inks();
-  return { title: { text: title, side: "right", font: { size: 12 } }, thickness: 14, outlinewidth: 0, tickfont: { color: text }, exponentformat: "power" };
+  return {
+    title: { text: title, side: "right", font: { size: 12 } },
+    thickness: 14,
+    outlinewidth: 0,
+    tickfont: { color: text },
+    exponentformat: "power",
+  };
 }
 
 /** Parts that ticks leave a range in, about: of steps of 1, 2 and 5 at least two fall in any range. */
@@ -288,7 +355,13 @@ function evenTicks(from, to) {
   const size = 10 ** Math.floor(Math.log10((to - from) / PARTS));
   const step = size * ([1, 2, 5].find((digit) => digit * size * PARTS >= to - from) ?? 10);
   const first = Math.ceil(from / step);
-  const values = Array.from({ length: Math.floor(to / step) - first + 1 }, (_, index) => (first + index) * step);
+  const values = Array.from(
+    { length: Math.floor(to / step) - first + 1 },
+    (_, index) => (first + index) * step,
+  );
   const digits = Math.ceil(Math.log10(to / step)) + 1;
-  return { tickvals: values.map(Math.log10), ticktext: values.map((value) => String(Number(value.toPrecision(Math.min(15, digits))))) };
+  return {
+    tickvals: values.map(Math.log10),
+    ticktext: values.map((value) => String(Number(value.toPrecision(Math.min(15, digits))))),
+  };
 }

@@ -33,7 +33,14 @@ export function keyboard(picture, open) {
 
   /** @param {[number, number]} step */
   function next([across, up]) {
-    if (!now) return places.reduce((/** @type {Place | undefined} */ first, place) => (first && (first.row < place.row || (first.row === place.row && first.column <= place.column)) ? first : place), undefined);
+    if (!now)
+      return places.reduce(
+        (/** @type {Place | undefined} */ first, place) =>
+          first && (first.row < place.row || (first.row === place.row && first.column <= place.column))
+            ? first
+            : place,
+        undefined,
+      );
     const { column, row } = now;
     let [best, least] = [now, Infinity];
     for (const place of places) {
@@ -54,8 +61,24 @@ export function keyboard(picture, open) {
     if (!now) return;
     element.textContent = now.text.replaceAll("<br>", ", ");
     const { text, soft, panel } = inks();
-    const on = (/** @type {string} */ axis, /** @type {number} */ value) => (/** @type {any} */ (picture)._fullLayout?.[axis].type === "log" ? Math.log10(value) : value);
-    void adjust(picture, { annotations: [{ x: on("xaxis", now.x), y: on("yaxis", now.y), text: now.text, align: "left", showarrow: true, arrowhead: 6, arrowcolor: text, bgcolor: panel, bordercolor: soft, font: { color: text } }] });
+    const on = (/** @type {string} */ axis, /** @type {number} */ value) =>
+      /** @type {any} */ (picture)._fullLayout?.[axis].type === "log" ? Math.log10(value) : value;
+    void adjust(picture, {
+      annotations: [
+        {
+          x: on("xaxis", now.x),
+          y: on("yaxis", now.y),
+          text: now.text,
+          align: "left",
+          showarrow: true,
+          arrowhead: 6,
+          arrowcolor: text,
+          bgcolor: panel,
+          bordercolor: soft,
+          font: { color: text },
+        },
+      ],
+    });
   });
 
   return {

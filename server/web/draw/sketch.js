@@ -14,7 +14,8 @@ const FILLED = 0.8;
 /** Height of a line of text [pixels]. */
 const LINE = 15;
 /** Width of a bar of colours, with what stands beside it [pixels]. */
-const BAR = 14, BESIDE = 70;
+const BAR = 14,
+  BESIDE = 70;
 
 /**
  * An axis: the values at its ends (of a logarithmic one, their decimal logarithms), the pixels there, and its words where it has them.
@@ -47,14 +48,29 @@ export function sketch(place, traces, layout, inks) {
       if (!axes.has(name)) axes.set(name, axisOf(name, layout, traces));
     }
   }
-  const bar = traces.map((trace) => ({ trace, bar: trace.marker?.colorbar ?? (trace.showscale === false ? undefined : trace.colorbar) })).find((entry) => entry.bar);
+  const bar = traces
+    .map((trace) => ({
+      trace,
+      bar: trace.marker?.colorbar ?? (trace.showscale === false ? undefined : trace.colorbar),
+    }))
+    .find((entry) => entry.bar);
   const names = traces.filter((trace) => trace.showlegend);
-  const frame = frameOf(pen, [...axes.values()], layout, width, height, { hasBar: bar !== undefined, hasNames: names.length > 0 });
+  const frame = frameOf(pen, [...axes.values()], layout, width, height, {
+    hasBar: bar !== undefined,
+    hasNames: names.length > 0,
+  });
   for (const axis of axes.values()) axis.pixels = pixelsOf(axis, layout, frame);
   for (const axis of axes.values()) anchor(axis, axes.get(axis.own.scaleanchor));
   for (const axis of axes.values()) drawAxis(pen, axis, crossing(axis, axes), frame, inks);
   const bars = traces.filter((trace) => trace.type === "bar");
-  for (const trace of traces) drawTrace(pen, trace, /** @type {Axis} */ (axes.get(trace.xaxis ?? "x")), /** @type {Axis} */ (axes.get(trace.yaxis ?? "y")), bars);
+  for (const trace of traces)
+    drawTrace(
+      pen,
+      trace,
+      /** @type {Axis} */ (axes.get(trace.xaxis ?? "x")),
+      /** @type {Axis} */ (axes.get(trace.yaxis ?? "y")),
+      bars,
+    );
   if (bar) drawBar(pen, bar.trace, bar.bar, frame, inks);
   drawNames(pen, names, frame, inks);
   place.append(canvas);
@@ -67,8 +83,11 @@ function axisOf(name, layout, traces) {
   const [isAcross, isLog] = [name[0] === "x", own.type === "log"];
   const mine = traces.filter((trace) => (trace[`${name[0]}axis`] ?? name[0]) === name);
   const all = mine.map((trace) => [...trace[name[0]]]);
-  const words = all.flat().some((value) => typeof value === "string") ? [...new Set([...(own.categoryarray ?? []), ...all.flat()])].map(String) : null;
-  const placed = (/** @type {any} */ value) => (words ? words.indexOf(String(value)) : isLog ? Math.log10(value) : value);
+  const words = all.flat().some((value) => typeof value === "string")
+    ? [...new Set([...(own.categoryarray ?? []), ...all.flat()])].map(String)
+    : null;
+  const placed = (/** @type {any} */ value) =>
+    words ? words.indexOf(String(value)) : isLog ? Math.log10(value) : value;
   let [least, largest] = [Infinity, -Infinity];
   const reach = (/** @type {number} */ value) => {
     if (!Number.isFinite(value)) return;
@@ -88,9 +107,17 @@ function axisOf(name, layout, traces) {
   });
   if (own.rangemode === "tozero" && !isLog) reach(0);
   if (!(least <= largest)) [least, largest] = [0, 1];
-  const spare = (largest - least || Math.abs(least) || 1) * (isSpared ? SPARE : 0) + (largest === least ? 0.5 : 0);
+  const spare =
+    (largest - least || Math.abs(least) || 1) * (isSpared ? SPARE : 0) + (largest === least ? 0.5 : 0);
   const range = own.range ?? (words ? [-0.5, words.length - 0.5] : [least - spare, largest + spare]);
-  return { own, isAcross, isLog, words, range: own.autorange === "reversed" ? [...range].reverse() : range, pixels: [0, 1] };
+  return {
+    own,
+    isAcross,
+    isLog,
+    words,
+    range: own.autorange === "reversed" ? [...range].reverse() : range,
+    pixels: [0, 1],
+  };
 }
 
 /**
@@ -113,28 +140,43 @@ function edges(values, cells) {
  */
 function frameOf(pen, axes, layout, width, height, { hasBar, hasNames }) {
   const { l, r, t, b } = layout.margin;
-  const side = (/** @type {Axis} */ axis) => 14 + Math.max(0, ...ticksOf(axis, height).map(({ text }) => pen.measureText(text).width)) + (linesOf(axis).length && LINE + 6);
+  const side = (/** @type {Axis} */ axis) =>
+    14 +
+    Math.max(0, ...ticksOf(axis, height).map(({ text }) => pen.measureText(text).width)) +
+    (linesOf(axis).length && LINE + 6);
   const of = (/** @type {(axis: Axis) => boolean} */ holds) => axes.filter(holds);
   const left = Math.max(l, ...of((axis) => !axis.isAcross && axis.own.side !== "right").map(side));
-  const right = Math.max(r, ...of((axis) => axis.own.side === "right").map(side)) + (hasBar ? BAR + BESIDE : 0);
+  const right =
+    Math.max(r, ...of((axis) => axis.own.side === "right").map(side)) + (hasBar ? BAR + BESIDE : 0);
   const bottom = Math.max(b, ...of((axis) => axis.isAcross).map((axis) => 28 + LINE * linesOf(axis).length));
-  return { left, top: hasNames ? Math.max(t, 2 * LINE) : t, right: width - right, bottom: height - bottom, width };
+  return {
+    left,
+    top: hasNames ? Math.max(t, 2 * LINE) : t,
+    right: width - right,
+    bottom: height - bottom,
+    width,
+  };
 }
 
 /** @typedef {ReturnType<typeof frameOf>} Frame */
 
 /** @param {Axis} axis @param {any} layout @param {Frame} frame */
 function pixelsOf(axis, layout, frame) {
-  const base = axis.own.overlaying ? (layout[axis.own.overlaying.replace(/^([xy])/, "$1axis")] ?? {}) : axis.own;
+  const base = axis.own.overlaying
+    ? (layout[axis.own.overlaying.replace(/^([xy])/, "$1axis")] ?? {})
+    : axis.own;
   const [from, to] = base.domain ?? [0, 1];
-  const [start, length] = axis.isAcross ? [frame.left, frame.right - frame.left] : [frame.bottom, frame.top - frame.bottom];
+  const [start, length] = axis.isAcross
+    ? [frame.left, frame.right - frame.left]
+    : [frame.bottom, frame.top - frame.bottom];
   return [start + from * length, start + to * length];
 }
 
 /** Gives two axes one scale, where one is anchored to the other. @param {Axis} axis @param {Axis | undefined} other */
 function anchor(axis, other) {
   if (!other) return;
-  const per = (/** @type {Axis} */ { pixels, range }) => Math.abs((pixels[1] - pixels[0]) / (range[1] - range[0]));
+  const per = (/** @type {Axis} */ { pixels, range }) =>
+    Math.abs((pixels[1] - pixels[0]) / (range[1] - range[0]));
   const least = Math.min(per(axis), per(other));
   for (const one of [axis, other]) {
     const middle = (one.pixels[0] + one.pixels[1]) / 2;
@@ -145,7 +187,8 @@ function anchor(axis, other) {
 
 /** Pixels of the axis that another one crosses. @param {Axis} axis @param {Map<string, Axis>} axes */
 function crossing(axis, axes) {
-  const crossed = axes.get(axis.own.anchor) ?? [...axes.values()].find((other) => other.isAcross !== axis.isAcross);
+  const crossed =
+    axes.get(axis.own.anchor) ?? [...axes.values()].find((other) => other.isAcross !== axis.isAcross);
   return crossed ? crossed.pixels : [0, 0];
 }
 
@@ -160,11 +203,20 @@ function ticksOf(axis, length = Math.abs(axis.pixels[1] - axis.pixels[0])) {
   if (axis.words) return axis.words.map((text) => ({ value: /** @type {any} */ (text), text }));
   const [low, high] = [Math.min(...axis.range), Math.max(...axis.range)];
   if (axis.isLog) {
-    const powers = Array.from({ length: Math.ceil(high) - Math.floor(low) + 1 }, (_, index) => Math.floor(low) + index);
-    const values = powers.flatMap((power) => (high - low > 2.5 ? [1] : [1, 2, 5]).map((digit) => digit * 10 ** power));
-    return values.filter((value) => Math.log10(value) >= low && Math.log10(value) <= high).map((value) => ({ value, text: written(value) }));
+    const powers = Array.from(
+      { length: Math.ceil(high) - Math.floor(low) + 1 },
+      (_, index) => Math.floor(low) + index,
+    );
+    const values = powers.flatMap((power) =>
+      (high - low > 2.5 ? [1] : [1, 2, 5]).map((digit) => digit * 10 ** power),
+    );
+    return values
+      .filter((value) => Math.log10(value) >= low && Math.log10(value) <= high)
+      .map((value) => ({ value, text: written(value) }));
   }
-  return round(low, high, axis.own.nticks ?? Math.max(2, length / APART[axis.isAcross ? "x" : "y"])).map((value) => ({ value, text: written(value) }));
+  return round(low, high, axis.own.nticks ?? Math.max(2, length / APART[axis.isAcross ? "x" : "y"])).map(
+    (value) => ({ value, text: written(value) }),
+  );
 }
 
 /** Round values between two. @param {number} low @param {number} high @param {number} count at most, about */
@@ -173,7 +225,10 @@ function round(low, high, count) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * ([1, 2, 5].find((digit) => digit * power >= rough) ?? 10);
   const first = Math.ceil(low / step - 1e-9);
-  return Array.from({ length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) }, (_, index) => (first + index) * step);
+  return Array.from(
+    { length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) },
+    (_, index) => (first + index) * step,
+  );
 }
 
 /** @param {number} value */
@@ -183,7 +238,9 @@ function written(value) {
 
 /** The lines of a title. @param {Axis} axis @returns {string[]} */
 function linesOf({ own }) {
-  return String(own.title?.text ?? "").split("<br>").filter(Boolean);
+  return String(own.title?.text ?? "")
+    .split("<br>")
+    .filter(Boolean);
 }
 
 /** @param {CanvasRenderingContext2D} pen @param {Axis} axis @param {number[]} crossed @param {Frame} frame @param {{text: string, line: string}} inks */
@@ -208,7 +265,10 @@ function drawAxis(pen, axis, crossed, frame, { text: ink, line }) {
     // A long word gives way to the one before.
     if (isAcross && place - width / 2 < last) continue;
     last = place + width / 2;
-    pen.fillText(text, ...point(isAcross, place, isAcross ? start + 8 : isRight ? frame.right + 8 : start - 8));
+    pen.fillText(
+      text,
+      ...point(isAcross, place, isAcross ? start + 8 : isRight ? frame.right + 8 : start - 8),
+    );
   }
   pen.textAlign = "center";
   const middle = (pixels[0] + pixels[1]) / 2;
@@ -231,7 +291,12 @@ function point(isAcross, along, aside) {
 function drawTrace(pen, trace, x, y, bars) {
   pen.save();
   pen.beginPath();
-  pen.rect(Math.min(...x.pixels), Math.min(...y.pixels), Math.abs(x.pixels[1] - x.pixels[0]), Math.abs(y.pixels[1] - y.pixels[0]));
+  pen.rect(
+    Math.min(...x.pixels),
+    Math.min(...y.pixels),
+    Math.abs(x.pixels[1] - x.pixels[0]),
+    Math.abs(y.pixels[1] - y.pixels[0]),
+  );
   pen.clip();
   if (trace.z) drawCells(pen, trace, x, y);
   else if (trace.type === "bar") drawBars(pen, trace, x, y, bars);
@@ -242,14 +307,23 @@ function drawTrace(pen, trace, x, y, bars) {
 /** @param {CanvasRenderingContext2D} pen @param {any} trace @param {Axis} x @param {Axis} y */
 function drawCells(pen, trace, x, y) {
   const colour = colours(trace.colorscale, trace.zmin, trace.zmax);
-  const ends = (/** @type {Axis} */ axis, /** @type {any[]} */ values, /** @type {number} */ cells) => edges([...values].map((value) => at(axis, value)), cells);
+  const ends = (/** @type {Axis} */ axis, /** @type {any[]} */ values, /** @type {number} */ cells) =>
+    edges(
+      [...values].map((value) => at(axis, value)),
+      cells,
+    );
   const [across, up] = [ends(x, trace.x, trace.z[0]?.length ?? 0), ends(y, trace.y, trace.z.length)];
   const gap = trace.xgap ?? 0;
   trace.z.forEach((/** @type {(number | null)[]} */ row, /** @type {number} */ index) => {
     row.forEach((value, column) => {
       if (value === null || value === undefined) return;
       pen.fillStyle = colour(value);
-      pen.fillRect(across[column] + gap / 2, up[index] - gap / 2, across[column + 1] - across[column] - gap, up[index + 1] - up[index] + gap);
+      pen.fillRect(
+        across[column] + gap / 2,
+        up[index] - gap / 2,
+        across[column + 1] - across[column] - gap,
+        up[index + 1] - up[index] + gap,
+      );
     });
   });
 }
@@ -259,7 +333,8 @@ function drawBars(pen, trace, x, y, bars) {
   const isLying = trace.orientation === "h";
   const [words, lengths] = isLying ? [y, x] : [x, y];
   const [named, measured] = isLying ? ["y", "x"] : ["x", "y"];
-  const step = (Math.abs(words.pixels[1] - words.pixels[0]) / Math.abs(words.range[1] - words.range[0])) * FILLED;
+  const step =
+    (Math.abs(words.pixels[1] - words.pixels[0]) / Math.abs(words.range[1] - words.range[0])) * FILLED;
   pen.fillStyle = trace.marker.color;
   trace[named].forEach((/** @type {any} */ word, /** @type {number} */ index) => {
     const value = trace[measured][index];
@@ -267,7 +342,8 @@ function drawBars(pen, trace, x, y, bars) {
     // Bars of one word stand beside each other.
     const group = bars.filter((other) => other[named].includes(word));
     const thick = step / group.length;
-    const middle = at(words, word) + (isLying ? -1 : 1) * (group.indexOf(trace) - (group.length - 1) / 2) * thick;
+    const middle =
+      at(words, word) + (isLying ? -1 : 1) * (group.indexOf(trace) - (group.length - 1) / 2) * thick;
     const [zero, end] = [at(lengths, 0), at(lengths, value)];
     if (isLying) pen.fillRect(zero, middle - thick / 2, end - zero, thick);
     else pen.fillRect(middle - thick / 2, zero, thick, end - zero);
@@ -284,7 +360,10 @@ function drawLine(pen, trace, x, y) {
     pen.setLineDash(dashes(trace.line.dash));
     pen.beginPath();
     for (let index = 0, isDown = false; index < count; index += 1) {
-      if (has(index)) isDown ? pen.lineTo(at(x, trace.x[index]), at(y, trace.y[index])) : pen.moveTo(at(x, trace.x[index]), at(y, trace.y[index]));
+      if (has(index))
+        isDown
+          ? pen.lineTo(at(x, trace.x[index]), at(y, trace.y[index]))
+          : pen.moveTo(at(x, trace.x[index]), at(y, trace.y[index]));
       isDown = has(index);
     }
     pen.stroke();
@@ -294,7 +373,8 @@ function drawLine(pen, trace, x, y) {
   const { color, size = 6, colorscale, cmin, cmax } = trace.marker ?? {};
   const values = Array.isArray(color) ? color : null;
   const finite = values?.filter((value) => typeof value === "number") ?? [];
-  const ends = (/** @type {(a: number, b: number) => number} */ of) => finite.reduce((a, b) => of(a, b), finite[0]);
+  const ends = (/** @type {(a: number, b: number) => number} */ of) =>
+    finite.reduce((a, b) => of(a, b), finite[0]);
   const colour = colours(colorscale, cmin ?? ends(Math.min), cmax ?? ends(Math.max));
   for (let index = 0; index < count; index += 1) {
     if (!has(index) || (values && values[index] === null)) continue;
@@ -307,7 +387,11 @@ function drawLine(pen, trace, x, y) {
 
 /** @param {string | undefined} dash @returns {number[]} */
 function dashes(dash) {
-  return { dash: [9, 9], dot: [3, 3], dashdot: [9, 3, 3, 3], longdash: [15, 15], longdashdot: [15, 3, 3, 3] }[dash ?? ""] ?? [];
+  return (
+    { dash: [9, 9], dot: [3, 3], dashdot: [9, 3, 3, 3], longdash: [15, 15], longdashdot: [15, 3, 3, 3] }[
+      dash ?? ""
+    ] ?? []
+  );
 }
 
 /**
@@ -327,13 +411,20 @@ function colours(scale, least, largest) {
 function drawBar(pen, trace, bar, frame, { text: ink }) {
   const values = trace.z ? trace.z.flat() : trace.marker.color;
   const finite = values.filter((/** @type {any} */ value) => typeof value === "number");
-  const least = trace.zmin ?? trace.marker?.cmin ?? finite.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.min(a, b), Infinity);
-  const largest = trace.zmax ?? trace.marker?.cmax ?? finite.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.max(a, b), -Infinity);
+  const least =
+    trace.zmin ??
+    trace.marker?.cmin ??
+    finite.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.min(a, b), Infinity);
+  const largest =
+    trace.zmax ??
+    trace.marker?.cmax ??
+    finite.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.max(a, b), -Infinity);
   if (!(least <= largest)) return;
   const colour = colours(trace.colorscale ?? trace.marker?.colorscale, least, largest);
   const left = frame.right + 16;
   const height = frame.bottom - frame.top;
-  const up = (/** @type {number} */ value) => frame.bottom - ((value - least) / (largest - least || 1)) * height;
+  const up = (/** @type {number} */ value) =>
+    frame.bottom - ((value - least) / (largest - least || 1)) * height;
   for (let row = 0; row < height; row += 1) {
     pen.fillStyle = colour(least + ((row + 0.5) / height) * (largest - least));
     pen.fillRect(left, frame.bottom - row - 1, BAR, 1.5);
@@ -343,7 +434,9 @@ function drawBar(pen, trace, bar, frame, { text: ink }) {
   pen.textBaseline = "middle";
   const ticks = bar.tickvals ?? round(least, largest, Math.max(2, height / APART.y));
   const texts = bar.ticktext ?? ticks.map(written);
-  ticks.forEach((/** @type {number} */ value, /** @type {number} */ index) => pen.fillText(texts[index], left + BAR + 5, up(value)));
+  ticks.forEach((/** @type {number} */ value, /** @type {number} */ index) =>
+    pen.fillText(texts[index], left + BAR + 5, up(value)),
+  );
   pen.save();
   pen.translate(frame.width - 10, (frame.top + frame.bottom) / 2);
   pen.rotate(Math.PI / 2);

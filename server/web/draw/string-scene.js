@@ -41,7 +41,8 @@ const DIGITS = 4;
  */
 export function readView(text) {
   const numbers = text.split(":").map(Number);
-  if (!text || numbers.length !== 5 || !numbers.every(Number.isFinite) || !(numbers[2] > 0)) return { ...USUAL };
+  if (!text || numbers.length !== 5 || !numbers.every(Number.isFinite) || !(numbers[2] > 0))
+    return { ...USUAL };
   const [azimuth, elevation, size, right, down] = numbers;
   return { azimuth, elevation: Math.max(-Math.PI / 2, Math.min(Math.PI / 2, elevation)), size, right, down };
 }
@@ -51,7 +52,9 @@ export function readView(text) {
  * @param {typeof USUAL} view
  */
 export function sayView(view) {
-  const text = [view.azimuth, view.elevation, view.size, view.right, view.down].map((value) => Number(value.toFixed(DIGITS))).join(":");
+  const text = [view.azimuth, view.elevation, view.size, view.right, view.down]
+    .map((value) => Number(value.toFixed(DIGITS)))
+    .join(":");
   return text === Object.values(USUAL).join(":") ? "" : text;
 }
 
@@ -63,7 +66,13 @@ export function sayView(view) {
  * @param {AbortSignal} signal
  */
 export function stringScene(name, view, onView, signal) {
-  const canvas = h("canvas", { class: "scene", role: "application", tabindex: "0", "aria-label": name, "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home" });
+  const canvas = h("canvas", {
+    class: "scene",
+    role: "application",
+    tabindex: "0",
+    "aria-label": name,
+    "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home",
+  });
   const screen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   /** What draws at present. @type {import("./svg-pen.js").Pen} */
   let pen = screen;
@@ -102,11 +111,15 @@ export function stringScene(name, view, onView, signal) {
     changed();
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = null));
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    view.size *= event.deltaY < 0 ? NEARER : 1 / NEARER;
-    changed();
-  }, { passive: false });
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      view.size *= event.deltaY < 0 ? NEARER : 1 / NEARER;
+      changed();
+    },
+    { passive: false },
+  );
   canvas.addEventListener("keydown", (event) => {
     /** @type {Record<string, () => void>} */
     const keys = {
@@ -180,7 +193,10 @@ export function stringScene(name, view, onView, signal) {
       bounds[2] = Math.min(bounds[2], y - room);
       bounds[3] = Math.max(bounds[3], y + room);
     }
-    const size = 0.92 * view.size * Math.min(width / (bounds[1] - bounds[0] || 1), height / (bounds[3] - bounds[2] || 1));
+    const size =
+      0.92 *
+      view.size *
+      Math.min(width / (bounds[1] - bounds[0] || 1), height / (bounds[3] - bounds[2] || 1));
     const [x0, y0] = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
     return (/** @type {Vector} */ place) => {
       const [x, y] = seen(place);
@@ -221,7 +237,11 @@ export function stringScene(name, view, onView, signal) {
     /** @type {number[] | undefined} */
     let before;
     let node = first;
-    for (let mark = Math.ceil(depth.values[first] / step - 1e-9); mark * step <= depth.values[last] * (1 + 1e-9); mark += 1) {
+    for (
+      let mark = Math.ceil(depth.values[first] / step - 1e-9);
+      mark * step <= depth.values[last] * (1 + 1e-9);
+      mark += 1
+    ) {
       while (node < last - 1 && depth.values[node + 1] < mark * step) node += 1;
       const part = (mark * step - depth.values[node]) / (depth.values[node + 1] - depth.values[node] || 1);
       const [from, to] = [project(frames.axis[node]), project(frames.axis[node + 1])];
@@ -231,12 +251,19 @@ export function stringScene(name, view, onView, signal) {
       const side = length > 0.5 ? Math.sign(-along[1] || 1) : 1;
       const [x, y] = length > 0.5 ? [(-side * along[1]) / length, (side * along[0]) / length] : [1, 0];
       const radius = factor * clearance[node];
-      const room = Math.max(...Array.from({ length: CORNERS }, (_, corner) => {
-        const angle = (2 * Math.PI * corner) / CORNERS;
-        const [right, down] = project(offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle)));
-        return (right - from[0]) * x + (down - from[1]) * y;
-      }));
-      const at = (/** @type {number} */ beyond) => [from[0] + part * along[0] + x * (room + beyond), from[1] + part * along[1] + y * (room + beyond)];
+      const room = Math.max(
+        ...Array.from({ length: CORNERS }, (_, corner) => {
+          const angle = (2 * Math.PI * corner) / CORNERS;
+          const [right, down] = project(
+            offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle)),
+          );
+          return (right - from[0]) * x + (down - from[1]) * y;
+        }),
+      );
+      const at = (/** @type {number} */ beyond) => [
+        from[0] + part * along[0] + x * (room + beyond),
+        from[1] + part * along[1] + y * (room + beyond),
+      ];
       const [start, end, words] = [at(1), at(8), at(12)];
       if (before && Math.hypot(words[0] - before[0], words[1] - before[1]) < BETWEEN) continue;
       before = words;
@@ -247,7 +274,11 @@ export function stringScene(name, view, onView, signal) {
       pen.stroke();
       pen.fillStyle = text;
       pen.textAlign = x > 0.4 ? "left" : "center";
-      pen.fillText(`${Number((mark * step).toPrecision(6))} ${depth.symbol}`, words[0], words[1] + (x > 0.4 ? 0 : 6 * Math.sign(y)));
+      pen.fillText(
+        `${Number((mark * step).toPrecision(6))} ${depth.symbol}`,
+        words[0],
+        words[1] + (x > 0.4 ? 0 : 6 * Math.sign(y)),
+      );
     }
   }
 
@@ -317,13 +348,22 @@ export function stringScene(name, view, onView, signal) {
   /** North, east and down in a corner. @param {number} height */
   function drawCompass(height) {
     const { text, soft } = inks();
-    const [cosine, sine, up, flat] = [Math.cos(view.azimuth), Math.sin(view.azimuth), Math.cos(view.elevation), Math.sin(view.elevation)];
+    const [cosine, sine, up, flat] = [
+      Math.cos(view.azimuth),
+      Math.sin(view.azimuth),
+      Math.cos(view.elevation),
+      Math.sin(view.elevation),
+    ];
     const [x, y, length] = [46, height - 46, 26];
     pen.lineWidth = 1.5;
     pen.font = "12px system-ui, sans-serif";
     pen.textAlign = "center";
     pen.textBaseline = "middle";
-    for (const [name, right, lower] of /** @type {[string, number, number][]} */ ([["N", -sine, -cosine * flat], ["E", cosine, -sine * flat], ["down", 0, up]])) {
+    for (const [name, right, lower] of /** @type {[string, number, number][]} */ ([
+      ["N", -sine, -cosine * flat],
+      ["E", cosine, -sine * flat],
+      ["down", 0, up],
+    ])) {
       pen.strokeStyle = soft;
       pen.fillStyle = text;
       pen.beginPath();
@@ -364,7 +404,7 @@ export function stringScene(name, view, onView, signal) {
  */
 function niceStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
-  return power * (/** @type {number} */ ([1, 2, 5, 10].find((digit) => digit * power >= least * (1 - 1e-9))));
+  return power * /** @type {number} */ ([1, 2, 5, 10].find((digit) => digit * power >= least * (1 - 1e-9)));
 }
 
 /**
@@ -374,5 +414,9 @@ function niceStep(least) {
  */
 function offset(frames, node, u, v) {
   const [axis, along, across] = [frames.axis[node], frames.u[node], frames.v[node]];
-  return [axis[0] + u * along[0] + v * across[0], axis[1] + u * along[1] + v * across[1], axis[2] + u * along[2] + v * across[2]];
+  return [
+    axis[0] + u * along[0] + v * across[0],
+    axis[1] + u * along[1] + v * across[1],
+    axis[2] + u * along[2] + v * across[2],
+  ];
 }

@@ -33,7 +33,8 @@ export class SvgPen {
 
   /** @param {number} width @param {number} height */
   constructor(width, height) {
-    for (const [name, value] of Object.entries({ width, height, viewBox: `0 0 ${width} ${height}` })) this.#root.setAttribute(name, String(value));
+    for (const [name, value] of Object.entries({ width, height, viewBox: `0 0 ${width} ${height}` }))
+      this.#root.setAttribute(name, String(value));
   }
 
   /** @param {number} x @param {number} y */
@@ -66,7 +67,16 @@ export class SvgPen {
   }
 
   stroke() {
-    this.#add("path", { d: this.#path, fill: "none", stroke: this.strokeStyle, "stroke-width": this.lineWidth, "stroke-linecap": this.lineCap, "stroke-linejoin": "round", "stroke-dasharray": this.#dashes, opacity: this.globalAlpha });
+    this.#add("path", {
+      d: this.#path,
+      fill: "none",
+      stroke: this.strokeStyle,
+      "stroke-width": this.lineWidth,
+      "stroke-linecap": this.lineCap,
+      "stroke-linejoin": "round",
+      "stroke-dasharray": this.#dashes,
+      opacity: this.globalAlpha,
+    });
   }
 
   fill() {
@@ -75,14 +85,28 @@ export class SvgPen {
 
   /** @param {number} x @param {number} y @param {number} width @param {number} height */
   fillRect(x, y, width, height) {
-    this.#add("rect", { x: x + this.#origin[0], y: y + this.#origin[1], width, height, fill: this.fillStyle });
+    this.#add("rect", {
+      x: x + this.#origin[0],
+      y: y + this.#origin[1],
+      width,
+      height,
+      fill: this.fillStyle,
+    });
   }
 
   /** @param {string} text @param {number} x @param {number} y */
   fillText(text, x, y) {
     const size = /([\d.]+)px (.+)$/.exec(this.font);
     const middle = this.textBaseline === "middle" ? "central" : "alphabetic";
-    this.#add("text", { x: x + this.#origin[0], y: y + this.#origin[1], fill: this.fillStyle, "font-size": size?.[1] ?? 12, "font-family": size?.[2] ?? "sans-serif", "text-anchor": ANCHORS[this.textAlign], "dominant-baseline": middle }).textContent = text;
+    this.#add("text", {
+      x: x + this.#origin[0],
+      y: y + this.#origin[1],
+      fill: this.fillStyle,
+      "font-size": size?.[1] ?? 12,
+      "font-family": size?.[2] ?? "sans-serif",
+      "text-anchor": ANCHORS[this.textAlign],
+      "dominant-baseline": middle,
+    }).textContent = text;
   }
 
   /** The file. */
@@ -98,7 +122,8 @@ export class SvgPen {
   /** @param {string} tag @param {Record<string, any>} attributes those that are empty are left out */
   #add(tag, attributes) {
     const element = document.createElementNS(SPACE, tag);
-    for (const [name, value] of Object.entries(attributes)) if (value !== "") element.setAttribute(name, String(value));
+    for (const [name, value] of Object.entries(attributes))
+      if (value !== "") element.setAttribute(name, String(value));
     this.#root.append(element);
     return element;
   }

@@ -25,7 +25,11 @@ export function zoomed(key, layout) {
     const ends = texts.map(Number);
     if (!name || ends.some((end) => !Number.isFinite(end))) continue;
     if (name === "camera" && (ends.length === 6 || ends.length === 9) && layout.scene) {
-      const [eye, center, up] = [0, 3, 6].map((first) => ({ x: ends[first], y: ends[first + 1], z: ends[first + 2] }));
+      const [eye, center, up] = [0, 3, 6].map((first) => ({
+        x: ends[first],
+        y: ends[first + 1],
+        z: ends[first + 2],
+      }));
       Object.assign(changes, { "scene.camera.eye": eye, "scene.camera.center": center });
       // A picture that is turned about its vertical would put that upright again.
       if (ends.length === 9) Object.assign(changes, { "scene.camera.up": up, "scene.dragmode": "orbit" });
@@ -48,7 +52,10 @@ export function zoomed(key, layout) {
 export function wholeOf(place, layout) {
   const full = place._fullLayout;
   const axes = Object.keys(layout).filter((name) => /^[xy]axis\d*$/.test(name) && full[name]?.range);
-  return { ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])), ...(full.scene?._scene ? { camera: cameraOf(place) } : {}) };
+  return {
+    ...Object.fromEntries(axes.map((name) => [name, [...full[name].range]])),
+    ...(full.scene?._scene ? { camera: cameraOf(place) } : {}),
+  };
 }
 
 /**
@@ -62,8 +69,22 @@ export function keepZoom(key, place, layout, whole) {
   const parts = Object.entries(wholeOf(place, layout)).flatMap(([name, now]) => {
     const drawn = whole[name];
     const width = Math.abs(drawn[1] - drawn[0]) || 1;
-    if (now.every((/** @type {number} */ end, /** @type {number} */ index) => Math.abs(end - drawn[index]) <= SAME * width)) return [];
-    const served = name === "camera" ? (now.slice(6).join() === UPRIGHT.join() ? now.slice(0, 6) : now) : now.map((/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end));
+    if (
+      now.every(
+        (/** @type {number} */ end, /** @type {number} */ index) =>
+          Math.abs(end - drawn[index]) <= SAME * width,
+      )
+    )
+      return [];
+    const served =
+      name === "camera"
+        ? now.slice(6).join() === UPRIGHT.join()
+          ? now.slice(0, 6)
+          : now
+        : now.map(
+            (/** @type {number} */ end) =>
+              sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end),
+          );
     return [[name.replace("axis", ""), ...served.map(rounded)].join(":")];
   });
   keep({ [`zoom.${key}`]: parts.join(",") });
@@ -83,7 +104,8 @@ export async function rested(place) {
   const view = viewOf(place);
   const released = view?.lastT();
   // The next state of the view, which has no speed any more, is the last.
-  while (view && place.isConnected && viewOf(place) === view && view.lastT() <= released) await new Promise(requestAnimationFrame);
+  while (view && place.isConnected && viewOf(place) === view && view.lastT() <= released)
+    await new Promise(requestAnimationFrame);
 }
 
 /** How a picture in space is seen, as plotly moves it; nothing of a flat one. @param {any} place that plotly draws in */

@@ -20,7 +20,8 @@ const COLLECT_MS = 300;
 
 /** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
-  const firstPage = () => preload.firstPage({ state: state(), name: search.value, owner: owner.value, tag: tag.value });
+  const firstPage = () =>
+    preload.firstPage({ state: state(), name: search.value, owner: owner.value, tag: tag.value });
   const filters = () => {
     const { limit: _, ...filters } = firstPage();
     return filters;
@@ -28,29 +29,67 @@ export async function show(main, route, signal) {
   let chosenState = route.query.get("state") ?? "";
   const state = () => chosenState;
 
-  const filtered = debounced(() => {
-    keep(filters());
-    redraw();
-    attend(load(), signal);
-  }, 250, signal);
-  const input = (/** @type {string} */ label, /** @type {string} */ name, /** @type {string} */ type = "text") =>
-    h("input", { type, value: route.query.get(name) ?? "", oninput: filtered, "aria-label": label, placeholder: label, size: 12 });
+  const filtered = debounced(
+    () => {
+      keep(filters());
+      redraw();
+      attend(load(), signal);
+    },
+    250,
+    signal,
+  );
+  const input = (
+    /** @type {string} */ label,
+    /** @type {string} */ name,
+    /** @type {string} */ type = "text",
+  ) =>
+    h("input", {
+      type,
+      value: route.query.get(name) ?? "",
+      oninput: filtered,
+      "aria-label": label,
+      placeholder: label,
+      size: 12,
+    });
   const search = input("Search names", "name", "search");
   search.size = 24;
   search.title = "Press / to search";
   const owner = input("Owner", "owner");
   const tag = input("Tag", "tag");
-  const states = choice("State", [["", "all"], ["running", "running"], ["paused", "paused"], ["completed", "completed"], ["cancelled", "cancelled"]], chosenState, (value) => {
-    chosenState = value;
-    filtered();
-  });
-  const field = (/** @type {string} */ name, /** @type {HTMLElement} */ element) => h("label", { class: "field" }, h("span", {}, name), element);
+  const states = choice(
+    "State",
+    [
+      ["", "all"],
+      ["running", "running"],
+      ["paused", "paused"],
+      ["completed", "completed"],
+      ["cancelled", "cancelled"],
+    ],
+    chosenState,
+    (value) => {
+      chosenState = value;
+      filtered();
+    },
+  );
+  const field = (/** @type {string} */ name, /** @type {HTMLElement} */ element) =>
+    h("label", { class: "field" }, h("span", {}, name), element);
 
   const body = h("tbody", {});
   const table = h(
     "table",
     { "aria-label": "Sweeps" },
-    h("thead", {}, h("tr", {}, h("th", {}, "Sweep"), h("th", {}, "State"), h("th", { class: "wide-only" }, "Owner"), h("th", { class: "wide-only" }, "Submitted"))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("th", {}, "Sweep"),
+        h("th", {}, "State"),
+        h("th", { class: "wide-only" }, "Owner"),
+        h("th", { class: "wide-only" }, "Submitted"),
+      ),
+    ),
     body,
   );
   const end = h("p", { class: "soft small", role: "status" });
@@ -117,16 +156,37 @@ export async function show(main, route, signal) {
   function sayEnd() {
     const hasFilter = Object.values(filters()).some(Boolean);
     if (known.size === 0 && !next) {
-      fill(end, hasFilter ? "No sweep matches these filters." : h("span", {}, "There are no sweeps yet. ", h("a", { href: "#/new" }, "Submit the first one"), "."));
+      fill(
+        end,
+        hasFilter
+          ? "No sweep matches these filters."
+          : h(
+              "span",
+              {},
+              "There are no sweeps yet. ",
+              h("a", { href: "#/new" }, "Submit the first one"),
+              ".",
+            ),
+      );
     } else {
-      fill(end, next ? "Further sweeps follow as you scroll." : `${known.size} ${known.size === 1 ? "sweep" : "sweeps"}.`);
+      fill(
+        end,
+        next
+          ? "Further sweeps follow as you scroll."
+          : `${known.size} ${known.size === 1 ? "sweep" : "sweeps"}.`,
+      );
     }
   }
 
   /** Whether a sweep belongs in the list, as the service decides it. @param {any} sweep */
   function passes(sweep) {
     const { state, name, owner, tag } = filters();
-    return (!state || sweep.state === state) && (!owner || sweep.owner === owner) && (!tag || (sweep.tags ?? []).includes(tag)) && (sweep.name ?? "").toLowerCase().includes(name.toLowerCase());
+    return (
+      (!state || sweep.state === state) &&
+      (!owner || sweep.owner === owner) &&
+      (!tag || (sweep.tags ?? []).includes(tag)) &&
+      (sweep.name ?? "").toLowerCase().includes(name.toLowerCase())
+    );
   }
 
   /** What the stream told last of each sweep: an answer may be older than that. @type {Map<string, any>} */
@@ -153,11 +213,15 @@ export async function show(main, route, signal) {
   let isStreaming = false;
   /** Sweeps that the list does not show, and of which something was told. @type {Set<string>} */
   const unknown = new Set();
-  const askForNew = debounced(() => {
-    const isAsked = [...unknown].some((id) => !known.has(id));
-    unknown.clear();
-    if (isAsked) void poll().catch(() => {});
-  }, COLLECT_MS, signal);
+  const askForNew = debounced(
+    () => {
+      const isAsked = [...unknown].some((id) => !known.has(id));
+      unknown.clear();
+      if (isAsked) void poll().catch(() => {});
+    },
+    COLLECT_MS,
+    signal,
+  );
 
   /** Takes what the stream tells of a sweep. @param {any} sweep */
   function hear(sweep) {
@@ -175,7 +239,8 @@ export async function show(main, route, signal) {
     const row = known.get(id)?.row;
     if (!row) return;
     // Where the selected sweep was, its neighbour is; who types in a field goes on there.
-    if (id === selected && body.rows.length > 1) move(row === body.rows[body.rows.length - 1] ? -1 : 1, row.contains(document.activeElement));
+    if (id === selected && body.rows.length > 1)
+      move(row === body.rows[body.rows.length - 1] ? -1 : 1, row.contains(document.activeElement));
     row.remove();
     known.delete(id);
     sayEnd();
@@ -194,12 +259,16 @@ export async function show(main, route, signal) {
     if (mine !== generation || look < answered) return;
     answered = look;
     // Identifiers grow with time: what that page would have and has not does not pass the filters any more.
-    const [listed, last] = [new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)), page.next ? page.sweeps.at(-1).id : ""];
+    const [listed, last] = [
+      new Set(page.sweeps.map((/** @type {any} */ sweep) => sweep.id)),
+      page.next ? page.sweeps.at(-1).id : "",
+    ];
     for (const id of [...known.keys()]) if (id > last && !listed.has(id)) forget(id);
     const sweeps = page.sweeps.map(latest).filter((/** @type {any} */ sweep) => !deleted.has(sweep.id));
     const fresh = sweeps.filter((/** @type {any} */ sweep) => !known.has(sweep.id) && passes(sweep));
     sweeps.forEach(update);
-    for (const sweep of fresh) enter(sweep, [...body.rows].find((row) => (row.dataset.sweep ?? "") < sweep.id) ?? null);
+    for (const sweep of fresh)
+      enter(sweep, [...body.rows].find((row) => (row.dataset.sweep ?? "") < sweep.id) ?? null);
     sayEnd();
   }
 
@@ -209,15 +278,22 @@ export async function show(main, route, signal) {
 
   /** Looks at the service once more, not too often. */
   function serviceChanged() {
-    serviceWaits ??= setTimeout(() => {
-      serviceWaits = undefined;
-      if (!document.hidden) void drawService().catch(() => {});
-    }, Math.max(0, serviceAt + SERVICE_MS - Date.now()));
+    serviceWaits ??= setTimeout(
+      () => {
+        serviceWaits = undefined;
+        if (!document.hidden) void drawService().catch(() => {});
+      },
+      Math.max(0, serviceAt + SERVICE_MS - Date.now()),
+    );
   }
 
   async function drawService() {
     serviceAt = Date.now();
-    const [queue, { workers }, failed] = await Promise.all([get("/v1/queue", {}, signal), get("/v1/workers", {}, signal), get("/v1/failures", { limit: 5 }, signal)]);
+    const [queue, { workers }, failed] = await Promise.all([
+      get("/v1/queue", {}, signal),
+      get("/v1/workers", {}, signal),
+      get("/v1/failures", { limit: 5 }, signal),
+    ]);
     fill(service, ...servicePart(queue, workers));
     fill(failures, ...failuresPart(failed.failures));
   }
@@ -236,21 +312,28 @@ export async function show(main, route, signal) {
     next.scrollIntoView({ block: "nearest" });
   }
 
-  addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
-    if (event.target instanceof HTMLElement && event.target.matches("input, select, textarea")) {
-      if (event.key === "Escape") event.target.blur();
-      return;
-    }
-    if (event.key === "/") {
-      event.preventDefault();
-      search.focus();
-    } else if (event.key === "j") move(1);
-    else if (event.key === "k") move(-1);
-    else if (event.key === "n") go("#/new");
-  }, { signal });
+  addEventListener(
+    "keydown",
+    (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+      if (event.target instanceof HTMLElement && event.target.matches("input, select, textarea")) {
+        if (event.key === "Escape") event.target.blur();
+        return;
+      }
+      if (event.key === "/") {
+        event.preventDefault();
+        search.focus();
+      } else if (event.key === "j") move(1);
+      else if (event.key === "k") move(-1);
+      else if (event.key === "n") go("#/new");
+    },
+    { signal },
+  );
 
-  const observer = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && more().catch(() => {}), { rootMargin: "800px" });
+  const observer = new IntersectionObserver(
+    (entries) => entries.some((entry) => entry.isIntersecting) && more().catch(() => {}),
+    { rootMargin: "800px" },
+  );
   observer.observe(end);
   signal.addEventListener("abort", () => observer.disconnect());
   const timer = setInterval(() => {
@@ -266,7 +349,10 @@ export async function show(main, route, signal) {
   const taken = lines(() => {
     const chosen = Object.entries(filters()).filter(([, value]) => value);
     return {
-      ...requestLines([{ path: "/v1/sweeps", query: filters(), name: "list", isDocument: true }], `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`),
+      ...requestLines(
+        [{ path: "/v1/sweeps", query: filters(), name: "list", isDocument: true }],
+        `from drillsweep import Client\n\nfor sweep in Client("${location.origin}").sweeps(${chosen.map(([name, value]) => `${name}=${JSON.stringify(value)}`).join(", ")}):\n    print(sweep.id, sweep.name, sweep.state, sweep.progress)`,
+      ),
       cli: `drillsweep list --server ${location.origin}${chosen.map(([name, value]) => ` --${name} ${shell(value)}`).join("")}`,
     };
   });
@@ -274,29 +360,63 @@ export async function show(main, route, signal) {
 
   fill(
     main,
-    h("div", { class: "head" }, h("h1", {}, "Sweeps"), h("p", { class: "soft small wide-only" }, h("kbd", {}, "j"), " ", h("kbd", {}, "k"), " move, ", h("kbd", {}, "Enter"), " opens, ", h("kbd", {}, "/"), " searches, ", h("kbd", {}, "n"), " new")),
+    h(
+      "div",
+      { class: "head" },
+      h("h1", {}, "Sweeps"),
+      h(
+        "p",
+        { class: "soft small wide-only" },
+        h("kbd", {}, "j"),
+        " ",
+        h("kbd", {}, "k"),
+        " move, ",
+        h("kbd", {}, "Enter"),
+        " opens, ",
+        h("kbd", {}, "/"),
+        " searches, ",
+        h("kbd", {}, "n"),
+        " new",
+      ),
+    ),
     h(
       "div",
       { class: "columns" },
-      h("div", {}, h("div", { class: "controls", role: "search" }, field("Name", search), states, field("Owner", owner), field("Tag", tag)), h("div", { class: "panel scroll" }, table, end), taken),
+      h(
+        "div",
+        {},
+        h(
+          "div",
+          { class: "controls", role: "search" },
+          field("Name", search),
+          states,
+          field("Owner", owner),
+          field("Tag", tag),
+        ),
+        h("div", { class: "panel scroll" }, table, end),
+        taken,
+      ),
       h("aside", { "aria-label": "Service" }, service, failures),
     ),
   );
   await load();
   main.addEventListener("shown", () => attend(drawService(), signal), { once: true });
-  followAll({
-    sweep: hear,
-    deleted: (id) => {
-      deleted.add(id);
-      forget(id);
+  followAll(
+    {
+      sweep: hear,
+      deleted: (id) => {
+        deleted.add(id);
+        forget(id);
+      },
+      opened: () => {
+        isStreaming = true;
+        // What has changed between the list and the stream, or while there was none, it may not tell.
+        void poll().catch(() => {});
+      },
+      broken: () => (isStreaming = false),
     },
-    opened: () => {
-      isStreaming = true;
-      // What has changed between the list and the stream, or while there was none, it may not tell.
-      void poll().catch(() => {});
-    },
-    broken: () => (isStreaming = false),
-  }, signal);
+    signal,
+  );
   return "Sweeps";
 }
 
@@ -307,7 +427,9 @@ export async function show(main, route, signal) {
  */
 function isBefore(sweep, other) {
   const final = (/** @type {any} */ { counts }) => counts.succeeded + counts.failed + counts.cancelled;
-  return sweep.revision < other.revision || (sweep.revision === other.revision && final(sweep) < final(other));
+  return (
+    sweep.revision < other.revision || (sweep.revision === other.revision && final(sweep) < final(other))
+  );
 }
 
 /**
@@ -320,7 +442,19 @@ function drawRow(row, sweep, pace) {
   const anchor = h("a", { class: "name", href: link(["sweeps", sweep.id]) }, title);
   fill(
     row,
-    h("td", {}, anchor, h("div", { class: "small soft" }, `${sweep.counts.total} ${sweep.counts.total === 1 ? "point" : "points"} `, (sweep.tags ?? []).map((/** @type {string} */ tag) => h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag)))),
+    h(
+      "td",
+      {},
+      anchor,
+      h(
+        "div",
+        { class: "small soft" },
+        `${sweep.counts.total} ${sweep.counts.total === 1 ? "point" : "points"} `,
+        (sweep.tags ?? []).map((/** @type {string} */ tag) =>
+          h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag),
+        ),
+      ),
+    ),
     h("td", {}, progressPart(sweep, pace)),
     h("td", { class: "wide-only" }, sweep.owner),
     h("td", { class: "wide-only" }, when(sweep.created)),
@@ -329,22 +463,56 @@ function drawRow(row, sweep, pace) {
 
 /** @param {any} queue @param {any[]} workers */
 function servicePart(queue, workers) {
-  const fact = (/** @type {string} */ name, /** @type {any} */ value) => [h("dt", {}, name), h("dd", { class: "number" }, value)];
+  const fact = (/** @type {string} */ name, /** @type {any} */ value) => [
+    h("dt", {}, name),
+    h("dd", { class: "number" }, value),
+  ];
   const rows = workers.map((worker) => {
     const silent = (Date.now() - Date.parse(worker.seen)) / 1000;
-    return h("tr", {}, h("td", { class: "small" }, `${worker.host}, process ${worker.process}`), h("td", { class: "small soft number" }, silent < 20 ? "alive" : `silent for ${duration(silent)}`));
+    return h(
+      "tr",
+      {},
+      h("td", { class: "small" }, `${worker.host}, process ${worker.process}`),
+      h("td", { class: "small soft number" }, silent < 20 ? "alive" : `silent for ${duration(silent)}`),
+    );
   });
   return [
     h("h2", {}, "Workers and queue"),
-    h("dl", { class: "facts" }, fact("Running", queue.running), fact("Queued", queue.queued), fact("Paused", queue.paused), fact("To be retried", queue.waiting_for_retry)),
-    workers.length ? h("table", { "aria-label": "Workers" }, h("tbody", {}, rows)) : h("p", { class: "wrong" }, "No worker is there: queued points wait."),
+    h(
+      "dl",
+      { class: "facts" },
+      fact("Running", queue.running),
+      fact("Queued", queue.queued),
+      fact("Paused", queue.paused),
+      fact("To be retried", queue.waiting_for_retry),
+    ),
+    workers.length
+      ? h("table", { "aria-label": "Workers" }, h("tbody", {}, rows))
+      : h("p", { class: "wrong" }, "No worker is there: queued points wait."),
   ];
 }
 
 /** @param {any[]} failed */
 function failuresPart(failed) {
   const rows = failed.map((point) =>
-    h("li", {}, h("a", { href: link(["sweeps", point.sweep, "points", String(point.ordinal)]) }, `${point.sweep_name ?? "Sweep"}, point ${point.ordinal}`), h("div", { class: "small soft brief", title: point.error?.reason }, when(point.at), ` ${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"}`)),
+    h(
+      "li",
+      {},
+      h(
+        "a",
+        { href: link(["sweeps", point.sweep, "points", String(point.ordinal)]) },
+        `${point.sweep_name ?? "Sweep"}, point ${point.ordinal}`,
+      ),
+      h(
+        "div",
+        { class: "small soft brief", title: point.error?.reason },
+        when(point.at),
+        ` ${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"}`,
+      ),
+    ),
   );
-  return [h("h2", {}, "Failed lately"), rows.length ? h("ul", {}, rows) : h("p", { class: "soft" }, "Nothing has failed.")];
+  return [
+    h("h2", {}, "Failed lately"),
+    rows.length ? h("ul", {}, rows) : h("p", { class: "soft" }, "Nothing has failed."),
+  ];
 }

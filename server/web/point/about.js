@@ -10,44 +10,174 @@ import { bytes, duration, label, meaning, moment, number, say } from "../data/un
  */
 export function about(context) {
   const { point, path, signal } = context;
-  const effects = h("section", { class: "panel", "aria-label": "Effects" }, h("h2", {}, "Effects"), h("p", { class: "soft" }, "Loading…"));
-  const files = h("section", { class: "panel", "aria-label": "Downloads" }, h("h2", {}, "Downloads"), h("p", { class: "soft" }, "Loading…"));
+  const effects = h(
+    "section",
+    { class: "panel", "aria-label": "Effects" },
+    h("h2", {}, "Effects"),
+    h("p", { class: "soft" }, "Loading…"),
+  );
+  const files = h(
+    "section",
+    { class: "panel", "aria-label": "Downloads" },
+    h("h2", {}, "Downloads"),
+    h("p", { class: "soft" }, "Loading…"),
+  );
 
   async function drawEffects() {
     try {
       const plan = await get(`${path}/plan`, {}, signal);
-      const rows = plan.effects.map((/** @type {any} */ effect) => h("tr", {}, h("td", {}, effect.effect.replaceAll("_", " ")), h("td", {}, h("span", { class: `state ${effect.active ? "succeeded" : "cancelled"}` }, effect.active ? "on" : "off")), h("td", {}, effect.reason), h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`)));
-      fill(effects, h("h2", {}, "Effects"), h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Effect"), h("th", {}, "Is"), h("th", {}, "Why"), h("th", {}, "Switch"))), h("tbody", {}, rows))));
+      const rows = plan.effects.map((/** @type {any} */ effect) =>
+        h(
+          "tr",
+          {},
+          h("td", {}, effect.effect.replaceAll("_", " ")),
+          h(
+            "td",
+            {},
+            h(
+              "span",
+              { class: `state ${effect.active ? "succeeded" : "cancelled"}` },
+              effect.active ? "on" : "off",
+            ),
+          ),
+          h("td", {}, effect.reason),
+          h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`),
+        ),
+      );
+      fill(
+        effects,
+        h("h2", {}, "Effects"),
+        h(
+          "div",
+          { class: "scroll" },
+          h(
+            "table",
+            {},
+            h(
+              "thead",
+              {},
+              h(
+                "tr",
+                {},
+                h("th", {}, "Effect"),
+                h("th", {}, "Is"),
+                h("th", {}, "Why"),
+                h("th", {}, "Switch"),
+              ),
+            ),
+            h("tbody", {}, rows),
+          ),
+        ),
+      );
     } catch (error) {
       if (signal.aborted) return;
-      fill(effects, h("h2", {}, "Effects"), h("p", { class: "soft" }, String(error instanceof Error ? error.message : error)));
+      fill(
+        effects,
+        h("h2", {}, "Effects"),
+        h("p", { class: "soft" }, String(error instanceof Error ? error.message : error)),
+      );
     }
   }
 
   async function drawFiles() {
     const { artifacts } = await get(`${path}/artifacts`, {}, signal);
     const rows = artifacts.map((/** @type {any} */ file) => {
-      const hasView = ["profile", "statics", "history", "contacts", "energy", "snapshots"].includes(file.name);
-      return h("tr", {}, h("td", {}, file.expired ? `${file.name} (expired)` : h("a", { href: file.link, download: "" }, `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`)), h("td", { class: "number" }, file.rows), h("td", { class: "number" }, bytes(file.bytes)), h("td", {}, hasView && !file.expired && h("a", { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` }, "CSV")));
+      const hasView = ["profile", "statics", "history", "contacts", "energy", "snapshots"].includes(
+        file.name,
+      );
+      return h(
+        "tr",
+        {},
+        h(
+          "td",
+          {},
+          file.expired
+            ? `${file.name} (expired)`
+            : h(
+                "a",
+                { href: file.link, download: "" },
+                `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`,
+              ),
+        ),
+        h("td", { class: "number" }, file.rows),
+        h("td", { class: "number" }, bytes(file.bytes)),
+        h(
+          "td",
+          {},
+          hasView &&
+            !file.expired &&
+            h(
+              "a",
+              { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` },
+              "CSV",
+            ),
+        ),
+      );
     });
-    fill(files, h("h2", {}, "Downloads"), rows.length ? h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "File"), h("th", { class: "number" }, "Rows"), h("th", { class: "number" }, "Size"), h("th", {}, "As"))), h("tbody", {}, rows)) : h("p", { class: "soft" }, "Of this point only its row of the table is stored."));
+    fill(
+      files,
+      h("h2", {}, "Downloads"),
+      rows.length
+        ? h(
+            "table",
+            {},
+            h(
+              "thead",
+              {},
+              h(
+                "tr",
+                {},
+                h("th", {}, "File"),
+                h("th", { class: "number" }, "Rows"),
+                h("th", { class: "number" }, "Size"),
+                h("th", {}, "As"),
+              ),
+            ),
+            h("tbody", {}, rows),
+          )
+        : h("p", { class: "soft" }, "Of this point only its row of the table is stored."),
+    );
   }
 
   return {
-    element: h("div", { class: "half" }, accuracyPart(context), factsPart("What it cost", costFacts(point)), effects, files, summaryPart(context), provenancePart(point)),
+    element: h(
+      "div",
+      { class: "half" },
+      accuracyPart(context),
+      factsPart("What it cost", costFacts(point)),
+      effects,
+      files,
+      summaryPart(context),
+      provenancePart(point),
+    ),
     draw: async () => {
       await Promise.all([drawEffects(), drawFiles()]);
     },
     request: () => ({
-      asked: [{ table: "", isDocument: true }, { table: "plan", isDocument: true }, { table: "artifacts", isDocument: true }],
-      python: "summary, provenance = point.summary, point.provenance\nplan = point.plan()\nprint(summary, provenance, plan[\"effects\"], sep=\"\\n\")",
+      asked: [
+        { table: "", isDocument: true },
+        { table: "plan", isDocument: true },
+        { table: "artifacts", isDocument: true },
+      ],
+      python:
+        'summary, provenance = point.summary, point.provenance\nplan = point.plan()\nprint(summary, provenance, plan["effects"], sep="\\n")',
     }),
   };
 }
 
 /** @param {string} heading @param {[string, string][]} facts @param {any[]} [more] */
 function factsPart(heading, facts, more = []) {
-  return h("section", { class: "panel", "aria-label": heading }, h("h2", {}, heading), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])), more);
+  return h(
+    "section",
+    { class: "panel", "aria-label": heading },
+    h("h2", {}, heading),
+    h(
+      "dl",
+      { class: "facts" },
+      facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]),
+    ),
+    more,
+  );
 }
 
 /**
@@ -56,7 +186,8 @@ function factsPart(heading, facts, more = []) {
  * @returns {[string, string][]}
  */
 export function accuracyFacts({ summary }) {
-  const percent = (/** @type {any} */ value) => (typeof value === "number" ? `${number(100 * value, 2)} %` : "not known");
+  const percent = (/** @type {any} */ value) =>
+    typeof value === "number" ? `${number(100 * value, 2)} %` : "not known";
   return [
     ["Error of orbit size, promised", percent(summary.promised_error)],
     ["Error of orbit size, stated", percent(summary.whole_error)],
@@ -65,7 +196,10 @@ export function accuracyFacts({ summary }) {
     ["of it by sampling", percent(summary.sampling_error)],
     ["Mesh: error of the mean radius at rest", percent(summary.mesh_error_mean_radius)],
     ["Spread of an ensemble", percent(summary.relative_spread)],
-    ["Error of a displacement at the end", say("error_estimate_displacement", summary.error_estimate_displacement, 2)],
+    [
+      "Error of a displacement at the end",
+      say("error_estimate_displacement", summary.error_estimate_displacement, 2),
+    ],
     ["Resolved up to", say("resolved_hz", summary.resolved_hz)],
     ["Unresolved steps", String(summary.unresolved_steps ?? "–")],
     ["Energy that the ledger misses", say("energy_residual_ratio", summary.energy_residual_ratio, 2)],
@@ -79,7 +213,12 @@ export function accuracyFacts({ summary }) {
  */
 export function accuracyReasons({ provenance = {} }) {
   const { time, mesh, sampling, spread } = provenance.errors ?? {};
-  const reasons = [["Steps", time?.condition ?? time?.reason], ["Mesh", mesh?.reason], ["Sampling", sampling?.reason], ["Spread", spread?.reason]];
+  const reasons = [
+    ["Steps", time?.condition ?? time?.reason],
+    ["Mesh", mesh?.reason],
+    ["Sampling", sampling?.reason],
+    ["Spread", spread?.reason],
+  ];
   return /** @type {[string, string][]} */ (reasons.filter(([, text]) => text));
 }
 
@@ -87,7 +226,18 @@ export function accuracyReasons({ provenance = {} }) {
 function accuracyPart({ point, bias }) {
   const { summary } = point;
   const biased = Object.keys(summary).filter((name) => name.startsWith("orbit_radius_rms") && bias(name));
-  return factsPart("How far to trust it", accuracyFacts(point), [accuracyReasons(point).map(([of, text]) => h("p", { class: "small soft" }, `${of}: ${text}`)), biased.length ? h("p", { class: "small" }, "Verified against reference runs: ", biased.map((name) => `${label(name)}${bias(name)}`).join(", "), ".") : null]);
+  return factsPart("How far to trust it", accuracyFacts(point), [
+    accuracyReasons(point).map(([of, text]) => h("p", { class: "small soft" }, `${of}: ${text}`)),
+    biased.length
+      ? h(
+          "p",
+          { class: "small" },
+          "Verified against reference runs: ",
+          biased.map((name) => `${label(name)}${bias(name)}`).join(", "),
+          ".",
+        )
+      : null,
+  ]);
 }
 
 /**
@@ -99,29 +249,77 @@ export function costFacts(point) {
   const { provenance = {} } = point;
   /** @type {[string, string][]} */
   const facts = [];
-  const add = (/** @type {string} */ name, /** @type {any} */ value, /** @type {(value: any) => string} */ write = String) => value !== undefined && value !== null && facts.push([name, write(value)]);
-  add("Simulated time", point.summary?.simulated_time ?? point.scenario.duration, (value) => say("time", value));
+  const add = (
+    /** @type {string} */ name,
+    /** @type {any} */ value,
+    /** @type {(value: any) => string} */ write = String,
+  ) => value !== undefined && value !== null && facts.push([name, write(value)]);
+  add("Simulated time", point.summary?.simulated_time ?? point.scenario.duration, (value) =>
+    say("time", value),
+  );
   add("Processor time of the run", provenance.transient_cpu_time, duration);
   add("Processor time of the equilibrium", provenance.statics_cpu_time, duration);
   add("Wall time of the run", provenance.transient_wall_time, duration);
   add("Elements", provenance.elements);
   add("Method", provenance.integrator);
   add("Steps", provenance.steps);
-  add("Steps from", provenance.shortest_step, (value) => `${duration(value)} to ${duration(provenance.longest_step ?? value)}`);
+  add(
+    "Steps from",
+    provenance.shortest_step,
+    (value) => `${duration(value)} to ${duration(provenance.longest_step ?? value)}`,
+  );
   add("Rejected steps", provenance.rejected_steps);
   return facts;
 }
 
 /** @param {import("./part.js").PointContext} context */
 function summaryPart({ point, bias }) {
-  const rows = Object.entries(point.summary).filter(([, value]) => value !== null).map(([name, value]) => h("tr", { title: meaning(name) }, h("td", {}, label(name)), h("td", { class: "number" }, say(name, value), h("span", { class: "soft small" }, bias(name)))));
-  return h("section", { class: "panel", "aria-label": "Summary" }, h("h2", {}, "Summary"), h("div", { class: "scroll", style: "max-height:26rem", tabindex: "0", role: "region", "aria-label": "Summary, scrollable" }, h("table", {}, h("tbody", {}, rows))));
+  const rows = Object.entries(point.summary)
+    .filter(([, value]) => value !== null)
+    .map(([name, value]) =>
+      h(
+        "tr",
+        { title: meaning(name) },
+        h("td", {}, label(name)),
+        h("td", { class: "number" }, say(name, value), h("span", { class: "soft small" }, bias(name))),
+      ),
+    );
+  return h(
+    "section",
+    { class: "panel", "aria-label": "Summary" },
+    h("h2", {}, "Summary"),
+    h(
+      "div",
+      {
+        class: "scroll",
+        style: "max-height:26rem",
+        tabindex: "0",
+        role: "region",
+        "aria-label": "Summary, scrollable",
+      },
+      h("table", {}, h("tbody", {}, rows)),
+    ),
+  );
 }
 
 /** @param {any} point */
 function provenancePart(point) {
   const { provenance = {} } = point;
   /** @type {[string, string][]} */
-  const facts = [["Key", point.key], ["Version", `${provenance.version ?? "–"}, physics ${provenance.physics_version ?? "–"}`], ["Computed by", `${provenance.worker ?? "–"} on ${provenance.host ?? "–"}`], ["Begun", provenance.started ? moment(provenance.started, "second") : "–"], ["Ended", provenance.ended ? moment(provenance.ended, "second") : "–"], ["Attempts", String(point.attempts)]];
-  return factsPart("Where it comes from", facts, [h("details", {}, h("summary", {}, "Scenario as simulated"), h("pre", { tabindex: "0", style: "max-height:24rem" }, JSON.stringify(point.scenario, null, 2)))]);
+  const facts = [
+    ["Key", point.key],
+    ["Version", `${provenance.version ?? "–"}, physics ${provenance.physics_version ?? "–"}`],
+    ["Computed by", `${provenance.worker ?? "–"} on ${provenance.host ?? "–"}`],
+    ["Begun", provenance.started ? moment(provenance.started, "second") : "–"],
+    ["Ended", provenance.ended ? moment(provenance.ended, "second") : "–"],
+    ["Attempts", String(point.attempts)],
+  ];
+  return factsPart("Where it comes from", facts, [
+    h(
+      "details",
+      {},
+      h("summary", {}, "Scenario as simulated"),
+      h("pre", { tabindex: "0", style: "max-height:24rem" }, JSON.stringify(point.scenario, null, 2)),
+    ),
+  ]);
 }

@@ -17,10 +17,18 @@ const SAMPLED = 50_000;
  * @param {{heading: string, key: string}} [named] where there are several
  */
 export function contactMap(context, onTime, named) {
-  const place = canvas(`Contact force over depth and time${named ? `, point ${named.heading}` : ""}`, named?.key ?? "contacts");
+  const place = canvas(
+    `Contact force over depth and time${named ? `, point ${named.heading}` : ""}`,
+    named?.key ?? "contacts",
+  );
   const caption = h("figcaption", {});
   return {
-    element: h("div", { class: "panel" }, h("h2", {}, named?.heading ?? "Contacts"), h("figure", {}, place, caption)),
+    element: h(
+      "div",
+      { class: "panel" },
+      h("h2", {}, named?.heading ?? "Contacts"),
+      h("figure", {}, place, caption),
+    ),
     /**
      * @param {import("../data/snapshots.js").Frames} frames with the normal force
      * @param {any} statics columns of the table
@@ -33,8 +41,23 @@ export function contactMap(context, onTime, named) {
       caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND}${onTime ? " Select a place to see the string at that time." : ""}`;
       const shape = await draw(
         place,
-        [{ type: "heatmap", x: time, y: shown("measured_depth", statics.measured_depth), z: force.map((row) => row.map((value) => value / size)), zmin: 0, zmax: most / size, colorscale: SCALE, colorbar: colourBar(title("normal_force")), hovertemplate: `%{x:.2f} s, %{y:.1f} ${unit("measured_depth").symbol}: %{z:.4~g} ${unit("normal_force").symbol}<extra></extra>` }],
-        { xaxis: { title: "time [s]" }, yaxis: { title: title("measured_depth"), quantity: "measured_depth", autorange: "reversed" } },
+        [
+          {
+            type: "heatmap",
+            x: time,
+            y: shown("measured_depth", statics.measured_depth),
+            z: force.map((row) => row.map((value) => value / size)),
+            zmin: 0,
+            zmax: most / size,
+            colorscale: SCALE,
+            colorbar: colourBar(title("normal_force")),
+            hovertemplate: `%{x:.2f} s, %{y:.1f} ${unit("measured_depth").symbol}: %{z:.4~g} ${unit("normal_force").symbol}<extra></extra>`,
+          },
+        ],
+        {
+          xaxis: { title: "time [s]" },
+          yaxis: { title: title("measured_depth"), quantity: "measured_depth", autorange: "reversed" },
+        },
         context.signal,
       );
       shape.removeAllListeners?.("plotly_click");
@@ -65,10 +88,14 @@ function largest({ nodes, count, first, interval, columns: { normal_force } }, e
   const force = Array.from({ length: nodes }, (_, node) =>
     Array.from({ length }, (_, column) => {
       let most = -Infinity;
-      for (let frame = column * every; frame < Math.min(count, (column + 1) * every); frame += 1) most = Math.max(most, normal_force[frame * nodes + node]);
+      for (let frame = column * every; frame < Math.min(count, (column + 1) * every); frame += 1)
+        most = Math.max(most, normal_force[frame * nodes + node]);
       return most;
     }),
   );
-  const time = Array.from({ length }, (_, column) => first + (column * every + (Math.min(every, count - column * every) - 1) / 2) * interval);
+  const time = Array.from(
+    { length },
+    (_, column) => first + (column * every + (Math.min(every, count - column * every) - 1) / 2) * interval,
+  );
   return { time, force };
 }

@@ -41,13 +41,29 @@ export function energy(context) {
     const { columns } = await context.table("energy");
     const last = columns.time.length - 1;
     const { accounts, change } = ledger(columns);
-    const kind = (/** @type {string} */ name) => (SUPPLIED.includes(name) ? 0 : DISSIPATED.includes(name) ? 1 : 2);
+    const kind = (/** @type {string} */ name) =>
+      SUPPLIED.includes(name) ? 0 : DISSIPATED.includes(name) ? 1 : 2;
     const backwards = accounts.toReversed();
     const symbol = unit("kinetic").symbol;
-    fill(caption, `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of what it moves: the error of the integration.`);
+    fill(
+      caption,
+      `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of what it moves: the error of the integration.`,
+    );
     const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
       const names = backwards.filter((account) => kind(account) === group);
-      return { type: "bar", orientation: "h", name, y: names.map(label), x: names.map((account) => shown(account, [change(account)])[0]), marker: { color: LINES[group] }, showlegend: true, text: names.map((account) => say(account, change(account), 3)), textposition: "outside", cliponaxis: false, hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>` };
+      return {
+        type: "bar",
+        orientation: "h",
+        name,
+        y: names.map(label),
+        x: names.map((account) => shown(account, [change(account)])[0]),
+        marker: { color: LINES[group] },
+        showlegend: true,
+        text: names.map((account) => say(account, change(account), 3)),
+        textposition: "outside",
+        cliponaxis: false,
+        hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>`,
+      };
     });
     const values = accounts.map((account) => Number(shown(account, [change(account)])[0]));
     const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
@@ -55,13 +71,55 @@ export function energy(context) {
     const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (bars.clientWidth || USUAL) - NAMES));
     const room = (part / (1 - 2 * part)) * (largest - least || 1);
     await Promise.all([
-      draw(bars, traces, { xaxis: { title: `energy [${symbol}]`, quantity: backwards[0], range: [least < 0 ? least - room : 0, largest + room] }, yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) }, margin: { l: 20, r: 80, t: 30, b: 50 } }, context.signal),
-      draw(curves, accounts.map((name, order) => ({ type: "scatter", mode: "lines", name: label(name), x: columns.time, y: shown(name, columns[name]), line: { color: LINES[order % LINES.length], dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)], width: 1.4 }, showlegend: true, hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>` })), { xaxis: { title: "time [s]" }, yaxis: { title: `energy since the start [${symbol}]`, quantity: backwards[0] }, hovermode: "x" }, context.signal),
+      draw(
+        bars,
+        traces,
+        {
+          xaxis: {
+            title: `energy [${symbol}]`,
+            quantity: backwards[0],
+            range: [least < 0 ? least - room : 0, largest + room],
+          },
+          yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) },
+          margin: { l: 20, r: 80, t: 30, b: 50 },
+        },
+        context.signal,
+      ),
+      draw(
+        curves,
+        accounts.map((name, order) => ({
+          type: "scatter",
+          mode: "lines",
+          name: label(name),
+          x: columns.time,
+          y: shown(name, columns[name]),
+          line: {
+            color: LINES[order % LINES.length],
+            dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)],
+            width: 1.4,
+          },
+          showlegend: true,
+          hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>`,
+        })),
+        {
+          xaxis: { title: "time [s]" },
+          yaxis: { title: `energy since the start [${symbol}]`, quantity: backwards[0] },
+          hovermode: "x",
+        },
+        context.signal,
+      ),
     ]);
   }
 
   return {
-    element: h("div", {}, h("h2", {}, "By account"), h("figure", {}, bars, caption), h("h2", {}, "Over time"), h("figure", {}, curves)),
+    element: h(
+      "div",
+      {},
+      h("h2", {}, "By account"),
+      h("figure", {}, bars, caption),
+      h("h2", {}, "Over time"),
+      h("figure", {}, curves),
+    ),
     draw: redraw,
     request: () => ({ asked: [{ table: "energy" }], python: "energy = point.energy().to_pandas()" }),
   };

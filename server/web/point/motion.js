@@ -4,10 +4,30 @@ import { get, Problem } from "../data/api.js";
 import { Brush, dragWindow, orbitStatistics } from "../draw/brush.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { pythonNode } from "../ui/snippets.js";
-import { chosenWindow, keptWindow, nodeTables, rangesOf, rotationTable, selectedNode, spectrumRange, spectrumWeighting, windowTables } from "../data/motion-requests.js";
+import {
+  chosenWindow,
+  keptWindow,
+  nodeTables,
+  rangesOf,
+  rotationTable,
+  selectedNode,
+  spectrumRange,
+  spectrumWeighting,
+  windowTables,
+} from "../data/motion-requests.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { holeTrace, modeOf, multiple, namedLines, orbitLayout, orbitTrace, seenDownhole, spectrumLayout, spectrumTrace } from "../draw/orbit.js";
+import {
+  holeTrace,
+  modeOf,
+  multiple,
+  namedLines,
+  orbitLayout,
+  orbitTrace,
+  seenDownhole,
+  spectrumLayout,
+  spectrumTrace,
+} from "../draw/orbit.js";
 import { adjust, canvas, draw, LINES } from "../draw/plots.js";
 import { biasOver, FEWEST, recordedAs, spectrumWindow, STATISTICS } from "../data/statistics.js";
 import { say, shown, unit } from "../data/units.js";
@@ -59,7 +79,17 @@ export function motion(context) {
   const set = (name, value) => context.keep({ [name]: value });
 
   /** The fields of the window; they stay, so that the keyboard's focus goes on from them. */
-  const [fromBox, toBox] = ["From", "To"].map((name) => h("input", { type: "number", min: kept.from, max: kept.to, step: "any", style: "width:7rem", "aria-label": `${name} [s]`, onchange: () => choose(Number(fromBox.value), Number(toBox.value)) }));
+  const [fromBox, toBox] = ["From", "To"].map((name) =>
+    h("input", {
+      type: "number",
+      min: kept.from,
+      max: kept.to,
+      step: "any",
+      style: "width:7rem",
+      "aria-label": `${name} [s]`,
+      onchange: () => choose(Number(fromBox.value), Number(toBox.value)),
+    }),
+  );
 
   function fillWindow() {
     const { from, to } = span();
@@ -69,32 +99,74 @@ export function motion(context) {
 
   function drawControls() {
     fillWindow();
-    const entry = (/** @type {string} */ name, /** @type {HTMLInputElement} */ box) => h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
+    const entry = (/** @type {string} */ name, /** @type {HTMLInputElement} */ box) =>
+      h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
     fill(
       controls,
-      choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth)]), query.get("node") ?? "0", (value) => {
-        set("node", value);
-        attend(redraw(), signal);
-      }),
+      choice(
+        "Node",
+        nodes.map((node, index) => [
+          String(index),
+          node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth),
+        ]),
+        query.get("node") ?? "0",
+        (value) => {
+          set("node", value);
+          attend(redraw(), signal);
+        },
+      ),
       entry("From", fromBox),
       entry("To", toBox),
-      choice("Orbit shows", [["motion", "the motion"], ["hole", "the whole hole"]], isZoomed() ? "motion" : "hole", (value) => {
-        set("zoom", value);
-        void drawOrbit();
-      }),
-      choice("Frequencies up to", rangesOf(recording.rate_hz).map((text) => [text, `${text} Hz`]), String(range()), (value) => {
-        set("range", value);
-        attend(drawWindow(), signal);
-      }),
-      choice("Amplitude", [["linear", "linear"], ["log", "logarithmic"]], isLog() ? "log" : "linear", (value) => {
-        set("amplitude", value);
-        void drawSpectrum();
-      }),
-      choice("Weighting", [["hann", "Hann"], ["rectangular", "rectangular"]], weighting(), (value) => {
-        set("window", value);
-        attend(drawWindow(), signal);
-      }),
-      h("button", { onclick: () => choose(kept.from, kept.to) }, point.scenario.recording.orbit_window === "settled" ? "All that is kept" : "Whole run"),
+      choice(
+        "Orbit shows",
+        [
+          ["motion", "the motion"],
+          ["hole", "the whole hole"],
+        ],
+        isZoomed() ? "motion" : "hole",
+        (value) => {
+          set("zoom", value);
+          void drawOrbit();
+        },
+      ),
+      choice(
+        "Frequencies up to",
+        rangesOf(recording.rate_hz).map((text) => [text, `${text} Hz`]),
+        String(range()),
+        (value) => {
+          set("range", value);
+          attend(drawWindow(), signal);
+        },
+      ),
+      choice(
+        "Amplitude",
+        [
+          ["linear", "linear"],
+          ["log", "logarithmic"],
+        ],
+        isLog() ? "log" : "linear",
+        (value) => {
+          set("amplitude", value);
+          void drawSpectrum();
+        },
+      ),
+      choice(
+        "Weighting",
+        [
+          ["hann", "Hann"],
+          ["rectangular", "rectangular"],
+        ],
+        weighting(),
+        (value) => {
+          set("window", value);
+          attend(drawWindow(), signal);
+        },
+      ),
+      h(
+        "button",
+        { onclick: () => choose(kept.from, kept.to) },
+        point.scenario.recording.orbit_window === "settled" ? "All that is kept" : "Whole run",
+      ),
     );
   }
 
@@ -117,7 +189,12 @@ export function motion(context) {
   /** What the statics say of the node that the answer is of. */
   function place() {
     const index = Math.max(0, statics.columns.node.indexOf(whole.attributes.node));
-    return { lowSide: statics.columns.low_side_angle[index], clearance: statics.columns.clearance[index], depth: whole.attributes.measured_depth, node: whole.attributes.node };
+    return {
+      lowSide: statics.columns.low_side_angle[index],
+      clearance: statics.columns.clearance[index],
+      depth: whole.attributes.measured_depth,
+      node: whole.attributes.node,
+    };
   }
 
   async function redraw() {
@@ -155,11 +232,39 @@ export function motion(context) {
     const { lowSide, node, depth } = place();
     const { across, up } = seenDownhole(whole.columns.u, whole.columns.v, lowSide);
     const traces = [
-      { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", up), name: "from the low side up", line: { color: LINES[0], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
-      { type: "scatter", mode: "lines", x: whole.columns.time, y: shown("radius", across), name: "across the hole", line: { color: LINES[1], width: 1 }, hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>" },
+      {
+        type: "scatter",
+        mode: "lines",
+        x: whole.columns.time,
+        y: shown("radius", up),
+        name: "from the low side up",
+        line: { color: LINES[0], width: 1 },
+        hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+      },
+      {
+        type: "scatter",
+        mode: "lines",
+        x: whole.columns.time,
+        y: shown("radius", across),
+        name: "across the hole",
+        line: { color: LINES[1], width: 1 },
+        hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+      },
     ];
     history.setAttribute("aria-label", `History of node ${node} at ${say("measured_depth", depth)}`);
-    const shape = await draw(history, traces, { showlegend: true, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]", range: [kept.from, kept.to] }, yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" }, shapes: [shade()] }, signal);
+    const shape = await draw(
+      history,
+      traces,
+      {
+        showlegend: true,
+        dragmode: "select",
+        selectdirection: "h",
+        xaxis: { title: "time [s]", range: [kept.from, kept.to] },
+        yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" },
+        shapes: [shade()],
+      },
+      signal,
+    );
     if (shape !== history || isDraggable || signal.aborted) return;
     isDraggable = true;
     dragWindow(history, follow, release, signal);
@@ -168,7 +273,19 @@ export function motion(context) {
 
   function shade() {
     const { from, to } = span();
-    return { type: "rect", xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1, fillcolor: LINES[5], opacity: 0.18, line: { width: 0 }, layer: "below" };
+    return {
+      type: "rect",
+      xref: "x",
+      yref: "paper",
+      x0: from,
+      x1: to,
+      y0: 0,
+      y1: 1,
+      fillcolor: LINES[5],
+      opacity: 0.18,
+      line: { width: 0 },
+      layer: "below",
+    };
   }
 
   async function drawRotation() {
@@ -185,10 +302,38 @@ export function motion(context) {
     await draw(
       rotation,
       [
-        { type: "scatter", mode: "lines", x: columns.time, y: shown(speed, columns[speed]), name: "rotation speed", line: { color: LINES[0], width: 1 } },
-        { type: "scatter", mode: "lines", x: columns.time, y: shown(torque, columns[torque]), name: "torque", yaxis: "y2", line: { color: LINES[1], width: 1, dash: "dot" } },
+        {
+          type: "scatter",
+          mode: "lines",
+          x: columns.time,
+          y: shown(speed, columns[speed]),
+          name: "rotation speed",
+          line: { color: LINES[0], width: 1 },
+        },
+        {
+          type: "scatter",
+          mode: "lines",
+          x: columns.time,
+          y: shown(torque, columns[torque]),
+          name: "torque",
+          yaxis: "y2",
+          line: { color: LINES[1], width: 1, dash: "dot" },
+        },
       ],
-      { showlegend: true, margin: { l: 64, r: 70, t: 30, b: 50 }, xaxis: { title: "time [s]", range: [kept.from, kept.to] }, yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" }, yaxis2: { title: `torque [${unit(torque).symbol}]`, quantity: "torque", overlaying: "y", side: "right", showgrid: false, tickmode: "auto" } },
+      {
+        showlegend: true,
+        margin: { l: 64, r: 70, t: 30, b: 50 },
+        xaxis: { title: "time [s]", range: [kept.from, kept.to] },
+        yaxis: { title: `rotation speed [${unit(speed).symbol}]`, quantity: "rotation_speed" },
+        yaxis2: {
+          title: `torque [${unit(torque).symbol}]`,
+          quantity: "torque",
+          overlaying: "y",
+          side: "right",
+          showgrid: false,
+          tickmode: "auto",
+        },
+      },
       signal,
     );
   }
@@ -234,9 +379,15 @@ export function motion(context) {
     rested();
   }
 
-  const rested = debounced(() => dragged && void lookAt(dragged).catch((error) => {
-    if (!(error instanceof Problem) && !signal.aborted) console.error(error);
-  }), REST_MS, signal);
+  const rested = debounced(
+    () =>
+      dragged &&
+      void lookAt(dragged).catch((error) => {
+        if (!(error instanceof Problem) && !signal.aborted) console.error(error);
+      }),
+    REST_MS,
+    signal,
+  );
 
   /** All samples of a window that rests while it is dragged. @param {[number, number]} range */
   async function lookAt(range) {
@@ -245,7 +396,12 @@ export function motion(context) {
     const [cut, lines, statistics] = await ofWindow({ from, to });
     if (dragged !== range) return;
     brush?.paintTrace(orbitTrace(cut, place().lowSide, { color: LINES[0] }));
-    showStatistics(from, to, (name) => say(name, statistics.columns[name][0]), String(statistics.attributes.samples));
+    showStatistics(
+      from,
+      to,
+      (name) => say(name, statistics.columns[name][0]),
+      String(statistics.attributes.samples),
+    );
     await draw(spectrum, [spectrumTrace(lines, { color: LINES[0] })], spectrumOf(lines), signal);
   }
 
@@ -272,7 +428,12 @@ export function motion(context) {
     if (!table?.columns.u.length) return;
     orbit.setAttribute("aria-label", `Orbit of node ${node} at ${say("measured_depth", depth)}`);
     const trace = orbitTrace(table, lowSide, { color: LINES[0] });
-    await draw(orbit, [holeTrace(clearance), trace], { ...orbitLayout(isZoomed(), [trace], clearance), shows: [node, isZoomed()] }, signal);
+    await draw(
+      orbit,
+      [holeTrace(clearance), trace],
+      { ...orbitLayout(isZoomed(), [trace], clearance), shows: [node, isZoomed()] },
+      signal,
+    );
   }
 
   /** A spectrum's layout: shown farther, it is shown as a whole. @param {any} table */
@@ -284,7 +445,12 @@ export function motion(context) {
     if (!windowed) return;
     const { node, depth } = place();
     spectrum.setAttribute("aria-label", `Full spectrum of node ${node} at ${say("measured_depth", depth)}`);
-    await draw(spectrum, [spectrumTrace(windowed.lines, { color: LINES[0] })], spectrumOf(windowed.lines), signal);
+    await draw(
+      spectrum,
+      [spectrumTrace(windowed.lines, { color: LINES[0] })],
+      spectrumOf(windowed.lines),
+      signal,
+    );
   }
 
   function drawStatistics() {
@@ -292,7 +458,12 @@ export function motion(context) {
     const { columns, attributes } = windowed.statistics;
     const bias = biasOver(point, span(), context.bias);
     const as = recordedAs(point.scenario, columns.node[0], columns.measured_depth[0]);
-    showStatistics(from, to, (name) => say(name, columns[name][0]) + bias(`${name}_${as}`), String(attributes.samples));
+    showStatistics(
+      from,
+      to,
+      (name) => say(name, columns[name][0]) + bias(`${name}_${as}`),
+      String(attributes.samples),
+    );
   }
 
   /**
@@ -307,7 +478,15 @@ export function motion(context) {
       ["Clearance", say("clearance", place().clearance)],
       ["Samples", samples],
     ];
-    fill(statistics, h("h2", {}, "Statistics of the window"), h("dl", { class: "facts" }, facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)])));
+    fill(
+      statistics,
+      h("h2", {}, "Statistics of the window"),
+      h(
+        "dl",
+        { class: "facts" },
+        facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: "number" }, value)]),
+      ),
+    );
   }
 
   /**
@@ -320,7 +499,10 @@ export function motion(context) {
     const suffix = `_${recordedAs(point.scenario, node, measured_depth)}_w${spectrumWindow(point, span())}`;
     const summarised = point.summary[`line_frequency_hz${suffix}`];
     // The summary weights by Hann's window.
-    const isIt = weighting() === "hann" && typeof summarised === "number" && Math.abs(frequency - summarised) < windowed.lines.attributes.resolution / 2;
+    const isIt =
+      weighting() === "hann" &&
+      typeof summarised === "number" &&
+      Math.abs(frequency - summarised) < windowed.lines.attributes.resolution / 2;
     return (name) => (isIt ? context.bias(name + suffix) : "");
   }
 
@@ -332,7 +514,10 @@ export function motion(context) {
     const { resolution } = windowed.lines.attributes;
     const turns = multiple(frequency, operation.rotation_speed_rpm / 60, resolution, "rotation");
     const highest = Math.abs(namedLines(windowed.lines)[0].frequency);
-    const harmonic = Math.abs(frequency) > 1.5 * highest ? multiple(frequency, highest, resolution, say("frequency", highest)) : "";
+    const harmonic =
+      Math.abs(frequency) > 1.5 * highest
+        ? multiple(frequency, highest, resolution, say("frequency", highest))
+        : "";
     return { text: turns || harmonic, isHarmonic: harmonic !== "" };
   }
 
@@ -343,19 +528,42 @@ export function motion(context) {
   async function drawModes() {
     const { lines } = windowed;
     const highest = modesUpTo();
-    const asked = modes.get(highest) ?? get(`${context.path}/modes`, { to_hz: highest }, signal).catch((error) => {
-      modes.delete(highest);
-      return { modes: [], problem: error.message };
-    });
+    const asked =
+      modes.get(highest) ??
+      get(`${context.path}/modes`, { to_hz: highest }, signal).catch((error) => {
+        modes.delete(highest);
+        return { modes: [], problem: error.message };
+      });
     modes.set(highest, asked);
     const found = await asked;
     if (windowed?.lines !== lines) return;
     for (const cell of /** @type {NodeListOf<HTMLElement>} */ (listed.querySelectorAll("[data-frequency]"))) {
-      const { mode, among } = modeOf(Number(cell.dataset.frequency), found.modes, lines.attributes.resolution);
-      if (among) fill(cell, h("span", { class: "soft" }, `among ${among.count} modes from ${say("frequency", among.from, 3)} to ${say("frequency", among.to, 3)}`));
-      else fill(cell, mode && `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`);
+      const { mode, among } = modeOf(
+        Number(cell.dataset.frequency),
+        found.modes,
+        lines.attributes.resolution,
+      );
+      if (among)
+        fill(
+          cell,
+          h(
+            "span",
+            { class: "soft" },
+            `among ${among.count} modes from ${say("frequency", among.from, 3)} to ${say("frequency", among.to, 3)}`,
+          ),
+        );
+      else
+        fill(
+          cell,
+          mode &&
+            `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`,
+        );
     }
-    fill(about, found.problem ?? `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`);
+    fill(
+      about,
+      found.problem ??
+        `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`,
+    );
   }
   const about = h("p", { class: "small soft", role: "status" });
 
@@ -365,29 +573,106 @@ export function motion(context) {
     const rows = named.map((line) => {
       const is = kindOf(line.frequency);
       const bias = biasOf(line.frequency);
-      return h("tr", {}, h("td", { class: "number" }, say("frequency", line.frequency) + bias("line_frequency_hz")), h("td", {}, line.whirl), h("td", { class: "number" }, say("amplitude", line.amplitude) + bias("line_amplitude")), h("td", {}, is.text), h("td", is.isHarmonic ? {} : { "data-frequency": line.frequency }, is.isHarmonic ? "" : "…"));
+      return h(
+        "tr",
+        {},
+        h("td", { class: "number" }, say("frequency", line.frequency) + bias("line_frequency_hz")),
+        h("td", {}, line.whirl),
+        h("td", { class: "number" }, say("amplitude", line.amplitude) + bias("line_amplitude")),
+        h("td", {}, is.text),
+        h("td", is.isHarmonic ? {} : { "data-frequency": line.frequency }, is.isHarmonic ? "" : "…"),
+      );
     });
     const resolved = lines.attributes.resolved_hz ?? point.summary.resolved_hz;
     fill(
       listed,
       h("h2", {}, "Lines of the spectrum"),
-      h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Lines, scrollable" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { class: "number" }, "Frequency"), h("th", {}, "Whirl"), h("th", { class: "number" }, "Amplitude"), h("th", {}, "Is"), h("th", {}, "Mode"))), h("tbody", {}, rows))),
+      h(
+        "div",
+        { class: "scroll", tabindex: "0", role: "region", "aria-label": "Lines, scrollable" },
+        h(
+          "table",
+          {},
+          h(
+            "thead",
+            {},
+            h(
+              "tr",
+              {},
+              h("th", { class: "number" }, "Frequency"),
+              h("th", {}, "Whirl"),
+              h("th", { class: "number" }, "Amplitude"),
+              h("th", {}, "Is"),
+              h("th", {}, "Mode"),
+            ),
+          ),
+          h("tbody", {}, rows),
+        ),
+      ),
       about,
-      h("p", { class: "small soft" }, `Resolution ${say("frequency", lines.attributes.resolution)}.`, resolved ? ` The steps resolve up to ${say("frequency", resolved)}.` : "", " The line at zero, the mean position, is left out."),
+      h(
+        "p",
+        { class: "small soft" },
+        `Resolution ${say("frequency", lines.attributes.resolution)}.`,
+        resolved ? ` The steps resolve up to ${say("frequency", resolved)}.` : "",
+        " The line at zero, the mean position, is left out.",
+      ),
     );
   }
 
   const pictures = h(
     "div",
     {},
-    h("div", { class: "panel" }, h("h2", {}, "Displacement"), h("figure", {}, history, h("figcaption", {}, "Drag across the history to choose a window; orbit, spectrum and statistics follow."))),
+    h(
+      "div",
+      { class: "panel" },
+      h("h2", {}, "Displacement"),
+      h(
+        "figure",
+        {},
+        history,
+        h(
+          "figcaption",
+          {},
+          "Drag across the history to choose a window; orbit, spectrum and statistics follow.",
+        ),
+      ),
+    ),
     h("div", { style: "height:1rem" }),
-    h("div", { class: "half" }, h("div", { class: "panel" }, h("h2", {}, "Orbit, looking downhole"), h("figure", {}, orbit, h("figcaption", {}, "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall."))), h("div", { class: "panel" }, h("h2", {}, "Full spectrum"), h("figure", {}, spectrum, h("figcaption", {}, "Shaded: beyond what the time steps resolve."))), h("div", { class: "panel" }, statistics), h("div", { class: "panel" }, listed)),
+    h(
+      "div",
+      { class: "half" },
+      h(
+        "div",
+        { class: "panel" },
+        h("h2", {}, "Orbit, looking downhole"),
+        h(
+          "figure",
+          {},
+          orbit,
+          h(
+            "figcaption",
+            {},
+            "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall.",
+          ),
+        ),
+      ),
+      h(
+        "div",
+        { class: "panel" },
+        h("h2", {}, "Full spectrum"),
+        h("figure", {}, spectrum, h("figcaption", {}, "Shaded: beyond what the time steps resolve.")),
+      ),
+      h("div", { class: "panel" }, statistics),
+      h("div", { class: "panel" }, listed),
+    ),
     h("div", { style: "height:1rem" }),
     h("div", { class: "panel" }, rotationName, h("figure", {}, rotation)),
   );
   return {
-    element: nodes.length ? h("div", {}, controls, wrong, refused, pictures) : h("p", { class: "panel empty" }, "This point recorded no node."),
+    element: nodes.length
+      ? h("div", {}, controls, wrong, refused, pictures)
+      : h("p", { class: "panel empty" }, "This point recorded no node."),
     draw: nodes.length ? redraw : async () => {},
     request: () => {
       if (!nodes.length) return null;

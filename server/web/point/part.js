@@ -27,5 +27,9 @@
  * @param {PartRequest} request
  */
 export function askedOf(path, { asked }) {
-  return asked.map(({ table, name, ...rest }) => ({ ...rest, path: table ? `${path}/${table}` : path, name: name ?? (table || "point") }));
+  return asked.map(({ table, name, ...rest }) => ({
+    ...rest,
+    path: table ? `${path}/${table}` : path,
+    name: name ?? (table || "point"),
+  }));
 }

@@ -28,7 +28,14 @@ export const QUANTITIES = [
   ["radius", "statics"],
 ];
 
-const USUAL = ["friction_coefficient", "rotation_damping", "eccentricity", "effective_tension", "torque", "largest_normal_force"];
+const USUAL = [
+  "friction_coefficient",
+  "rotation_damping",
+  "eccentricity",
+  "effective_tension",
+  "torque",
+  "largest_normal_force",
+];
 
 /**
  * A quantity over measured depth: of elements as steps over their ends, of nodes as they are.
@@ -40,8 +47,14 @@ export function overDepth(name, table) {
   const { columns } = table;
   const value = shown(name, columns[name]);
   if (columns.measured_depth) return { value, depth: shown("measured_depth", columns.measured_depth) };
-  const [top, bottom] = [shown("measured_depth", columns.measured_depth_top), shown("measured_depth", columns.measured_depth_bottom)];
-  return { value: value.flatMap((entry) => [entry, entry]), depth: top.flatMap((entry, index) => [entry, bottom[index]]) };
+  const [top, bottom] = [
+    shown("measured_depth", columns.measured_depth_top),
+    shown("measured_depth", columns.measured_depth_bottom),
+  ];
+  return {
+    value: value.flatMap((entry) => [entry, entry]),
+    depth: top.flatMap((entry, index) => [entry, bottom[index]]),
+  };
 }
 
 /** Width that a profile needs for its name and its ticks [pixels]. */
@@ -52,7 +65,11 @@ const LEAST_WIDTH = 150;
  * @param {HTMLElement} place
  */
 export function scrolled(place) {
-  return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Profiles, scrollable" }, place);
+  return h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-label": "Profiles, scrollable" },
+    place,
+  );
 }
 
 /**
@@ -70,7 +87,22 @@ export async function drawProfiles(place, names, points, signal) {
       const table = point.table(name);
       if (!table?.columns[name]) return [];
       const { value, depth } = overDepth(name, table);
-      return [{ type: "scatter", mode: "lines", x: value, y: depth, xaxis: `x${column ? column + 1 : ""}`, yaxis: "y", name: point.name, meta: name, legendgroup: String(order), showlegend: column === 0 && points.length > 1, line: { color: point.colour, dash: point.dash, width: 1.4 }, hovertemplate: "%{x:.4~g}<extra></extra>" }];
+      return [
+        {
+          type: "scatter",
+          mode: "lines",
+          x: value,
+          y: depth,
+          xaxis: `x${column ? column + 1 : ""}`,
+          yaxis: "y",
+          name: point.name,
+          meta: name,
+          legendgroup: String(order),
+          showlegend: column === 0 && points.length > 1,
+          line: { color: point.colour, dash: point.dash, width: 1.4 },
+          hovertemplate: "%{x:.4~g}<extra></extra>",
+        },
+      ];
     }),
   );
   const width = 1 / names.length;
@@ -79,8 +111,33 @@ export async function drawProfiles(place, names, points, signal) {
     hovermode: "y",
     hoversubplots: "axis",
     margin: { l: 64, r: 12, t: points.length > 1 ? 40 : 12, b: 60 },
-    yaxis: { title: title("measured_depth"), quantity: "measured_depth", autorange: "reversed", showspikes: true, spikemode: "across", spikesnap: "cursor", spikethickness: 1, spikecolor: soft, spikedash: "solid", zeroline: false },
-    ...Object.fromEntries(names.map((name, column) => [`xaxis${column ? column + 1 : ""}`, { title: { text: wrapped(title(name)), font: { size: 12 } }, quantity: name, domain: [column * width + (column ? gap : 0), (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2)], anchor: "y", nticks: 5 }])),
+    yaxis: {
+      title: title("measured_depth"),
+      quantity: "measured_depth",
+      autorange: "reversed",
+      showspikes: true,
+      spikemode: "across",
+      spikesnap: "cursor",
+      spikethickness: 1,
+      spikecolor: soft,
+      spikedash: "solid",
+      zeroline: false,
+    },
+    ...Object.fromEntries(
+      names.map((name, column) => [
+        `xaxis${column ? column + 1 : ""}`,
+        {
+          title: { text: wrapped(title(name)), font: { size: 12 } },
+          quantity: name,
+          domain: [
+            column * width + (column ? gap : 0),
+            (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2),
+          ],
+          anchor: "y",
+          nticks: 5,
+        },
+      ]),
+    ),
   };
   return draw(place, traces, layout, signal);
 }
@@ -104,13 +161,20 @@ export function quantityTicks(chosen, onChange) {
   const names = new Set(asked.length ? asked : USUAL);
   const inOrder = () => QUANTITIES.map(([name]) => name).filter((name) => names.has(name));
   const ticks = QUANTITIES.map(([name]) => {
-    const box = h("input", { type: "checkbox", checked: names.has(name), onchange: () => {
-      box.checked ? names.add(name) : names.delete(name);
-      if (names.size) onChange(inOrder());
-    } });
+    const box = h("input", {
+      type: "checkbox",
+      checked: names.has(name),
+      onchange: () => {
+        box.checked ? names.add(name) : names.delete(name);
+        if (names.size) onChange(inOrder());
+      },
+    });
     return h("label", { class: "tick small", title: meaning(name) }, box, label(name));
   });
-  return { element: h("details", {}, h("summary", {}, "Quantities"), h("div", { class: "controls" }, ticks)), names: inOrder };
+  return {
+    element: h("details", {}, h("summary", {}, "Quantities"), h("div", { class: "controls" }, ticks)),
+    names: inOrder,
+  };
 }
 
 /**
@@ -125,7 +189,9 @@ export function profiles(context) {
   });
   /** @type {Record<string, any>} */
   const tables = {};
-  const cursor = depthCursor(place, context, (depth, told) => reading(ticks.names(), (name) => tables[tableOf(name)], depth, told));
+  const cursor = depthCursor(place, context, (depth, told) =>
+    reading(ticks.names(), (name) => tables[tableOf(name)], depth, told),
+  );
   const begin = generations();
 
   async function redraw() {
@@ -134,17 +200,34 @@ export function profiles(context) {
     const needed = new Set(names.map(tableOf));
     await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
     if (!isNewest()) return;
-    const shape = await drawProfiles(place, names, [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }], context.signal);
-    cursor.follow(shape, nodeDepths(names, (name) => tables[tableOf(name)]));
+    const shape = await drawProfiles(
+      place,
+      names,
+      [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }],
+      context.signal,
+    );
+    cursor.follow(
+      shape,
+      nodeDepths(names, (name) => tables[tableOf(name)]),
+    );
   }
 
   return {
     element: h("div", {}, ticks.element, h("figure", {}, scrolled(place)), cursor.element),
     draw: redraw,
     request: () => {
-      const asked = profileTables(ticks.names()).map(({ table, fields }) => ({ table, query: { fields: fields.join(",") } }));
+      const asked = profileTables(ticks.names()).map(({ table, fields }) => ({
+        table,
+        query: { fields: fields.join(",") },
+      }));
       const drawn = ticks.names().find((name) => tableOf(name) === "profile");
-      return { asked, python: [...asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))), ...(drawn ? [`plot.profile(point, "${drawn}")`] : [])].join("\n") };
+      return {
+        asked,
+        python: [
+          ...asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))),
+          ...(drawn ? [`plot.profile(point, "${drawn}")`] : []),
+        ].join("\n"),
+      };
     },
   };
 }
@@ -167,11 +250,13 @@ export function nodeDepths(names, table) {
  * @param {any[]} told points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
  */
 export function reading(names, table, depth, told) {
-  const words = names.filter((name) => table(name)?.columns[name]).map((name) => {
-    const { value, depth: own } = overDepth(name, table(name));
-    const seen = told.find((point) => point.data.meta === name)?.x ?? value[nearest(own, depth)];
-    return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
-  });
+  const words = names
+    .filter((name) => table(name)?.columns[name])
+    .map((name) => {
+      const { value, depth: own } = overDepth(name, table(name));
+      const seen = told.find((point) => point.data.meta === name)?.x ?? value[nearest(own, depth)];
+      return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
+    });
   return words.join(" · ");
 }
 
@@ -180,7 +265,13 @@ export function reading(names, table, depth, told) {
  * @param {string[]} names
  */
 export function profileTables(names) {
-  return [...new Set(names.map(tableOf))].map((table) => ({ table, fields: [...(table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"]), ...names.filter((name) => tableOf(name) === table)] }));
+  return [...new Set(names.map(tableOf))].map((table) => ({
+    table,
+    fields: [
+      ...(table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"]),
+      ...names.filter((name) => tableOf(name) === table),
+    ],
+  }));
 }
 
 /**

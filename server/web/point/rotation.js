@@ -15,7 +15,8 @@ const SHOWN = 4000;
 const QUANTITIES = ["rotation_speed", "torque"];
 
 /** Why there may be no such lines. */
-export const RECORD_ENDS = "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or what is kept is chosen (recording.outputs).";
+export const RECORD_ENDS =
+  "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or what is kept is chosen (recording.outputs).";
 
 /**
  * One quantity at one end, in served units.
@@ -48,7 +49,19 @@ export async function endsOfSnapshots(context, window) {
   const { count, first, interval, columns } = await frames(context, QUANTITIES, window, nodes, TAKEN);
   if (!count) return [];
   const time = Array.from({ length: count }, (_, frame) => first + frame * interval);
-  return QUANTITIES.flatMap((quantity) => /** @type {["bit" | "top", number][]} */ ([["bit", nodes], ["top", 1]]).map(([end, node]) => ({ end, node, quantity, source: "snapshots", time, values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]) })));
+  return QUANTITIES.flatMap((quantity) =>
+    /** @type {["bit" | "top", number][]} */ ([
+      ["bit", nodes],
+      ["top", 1],
+    ]).map(([end, node]) => ({
+      end,
+      node,
+      quantity,
+      source: "snapshots",
+      time,
+      values: time.map((_, frame) => columns[quantity][frame * nodes + node - 1]),
+    })),
+  );
 }
 
 /**
@@ -61,16 +74,41 @@ export async function endsOfHistory(context, window) {
   if (!context.point.tables.includes("history")) return [];
   try {
     // One sample tells the columns.
-    const [statics, sample] = await Promise.all([context.table("statics", { fields: "node" }), context.table("history", { max_points: 1 })]);
+    const [statics, sample] = await Promise.all([
+      context.table("statics", { fields: "node" }),
+      context.table("history", { max_points: 1 }),
+    ]);
     const [top, bit] = [statics.columns.node[0], statics.columns.node.at(-1)];
-    const has = (/** @type {number} */ node) => QUANTITIES.every((quantity) => `${quantity}_${node}` in sample.columns);
+    const has = (/** @type {number} */ node) =>
+      QUANTITIES.every((quantity) => `${quantity}_${node}` in sample.columns);
     if (!has(bit)) return [];
-    const ends = /** @type {["bit" | "top", number][]} */ ([["bit", bit], ["top", top]]).filter(([, node]) => has(node));
-    const found = await Promise.all(ends.map(async ([end, node]) => {
-      const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
-      const { columns } = await context.table("history", { node, ...window, fields: ["time", ...names].join(","), max_points: SHOWN, decimation: "minmax" });
-      return QUANTITIES.map((quantity, index) => /** @type {EndLine} */ ({ end, node, quantity, source: "history", time: columns.time, values: columns[names[index]] }));
-    }));
+    const ends = /** @type {["bit" | "top", number][]} */ ([
+      ["bit", bit],
+      ["top", top],
+    ]).filter(([, node]) => has(node));
+    const found = await Promise.all(
+      ends.map(async ([end, node]) => {
+        const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
+        const { columns } = await context.table("history", {
+          node,
+          ...window,
+          fields: ["time", ...names].join(","),
+          max_points: SHOWN,
+          decimation: "minmax",
+        });
+        return QUANTITIES.map(
+          (quantity, index) =>
+            /** @type {EndLine} */ ({
+              end,
+              node,
+              quantity,
+              source: "history",
+              time: columns.time,
+              values: columns[names[index]],
+            }),
+        );
+      }),
+    );
     return found.flat();
   } catch (error) {
     // Files expire.
@@ -87,10 +125,22 @@ export async function endsOfHistory(context, window) {
  */
 export function endsRequest(lines, window = null) {
   const nodes = [...new Set(lines.filter(({ source }) => source === "history").map(({ node }) => node))];
-  const columns = (/** @type {number} */ node) => ["time", ...QUANTITIES.map((quantity) => `${quantity}_${node}`)];
+  const columns = (/** @type {number} */ node) => [
+    "time",
+    ...QUANTITIES.map((quantity) => `${quantity}_${node}`),
+  ];
   return {
-    asked: nodes.map((node) => ({ table: "history", name: `history_${node}`, query: { node, ...window, fields: columns(node).join(",") } })),
-    python: nodes.map((node) => `history_${node} = point.history(${pythonNode({ node }, window)}).to_pandas()[${python(columns(node))}]`).join("\n"),
+    asked: nodes.map((node) => ({
+      table: "history",
+      name: `history_${node}`,
+      query: { node, ...window, fields: columns(node).join(",") },
+    })),
+    python: nodes
+      .map(
+        (node) =>
+          `history_${node} = point.history(${pythonNode({ node }, window)}).to_pandas()[${python(columns(node))}]`,
+      )
+      .join("\n"),
   };
 }
 
@@ -120,7 +170,12 @@ export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
   const caption = h("figcaption", {});
   const begin = generations();
-  const element = h("div", { class: "panel" }, h("h2", {}, "Rotation speed and torque at bit and top"), h("figure", {}, place, caption));
+  const element = h(
+    "div",
+    { class: "panel" },
+    h("h2", {}, "Rotation speed and torque at bit and top"),
+    h("figure", {}, place, caption),
+  );
   return {
     element,
     /**
@@ -135,11 +190,23 @@ export function rotation(context) {
       element.hidden = !lines.length;
       if (!lines.length) return lines;
       const has = (/** @type {string} */ end) => lines.some((line) => line.end === end);
-      const colours = { bit: { rotation_speed: LINES[0], torque: LINES[1] }, top: { rotation_speed: LINES[5], torque: LINES[3] } };
+      const colours = {
+        bit: { rotation_speed: LINES[0], torque: LINES[1] },
+        top: { rotation_speed: LINES[5], torque: LINES[3] },
+      };
       caption.textContent = `${saySources(lines)} ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
       await draw(
         place,
-        lines.map(({ end, quantity, time, values }) => ({ type: "scattergl", mode: "lines", x: time, y: shown(quantity, values), yaxis: quantity === "torque" ? "y2" : "y", name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`, line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 }, hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>" })),
+        lines.map(({ end, quantity, time, values }) => ({
+          type: "scattergl",
+          mode: "lines",
+          x: time,
+          y: shown(quantity, values),
+          yaxis: quantity === "torque" ? "y2" : "y",
+          name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`,
+          line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 },
+          hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>",
+        })),
         { showlegend: true, ...twoPanels() },
         context.signal,
       );
@@ -150,5 +217,9 @@ export function rotation(context) {
 
 /** Rotation speed above torque over one axis of time. */
 export function twoPanels() {
-  return { xaxis: { title: "time [s]", anchor: "y2" }, yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] }, yaxis2: { title: title("torque"), quantity: "torque", domain: [0, 0.46], anchor: "x" } };
+  return {
+    xaxis: { title: "time [s]", anchor: "y2" },
+    yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] },
+    yaxis2: { title: title("torque"), quantity: "torque", domain: [0, 0.46], anchor: "x" },
+  };
 }

@@ -28,7 +28,8 @@ export function spectrogram(context) {
   const wrong = h("p", { class: "wrong", role: "alert" });
   let generation = 0;
 
-  const of = (/** @type {string} */ name, /** @type {string[]} */ offered, /** @type {string} */ usual) => (offered.includes(query.get(name) ?? "") ? (query.get(name) ?? usual) : usual);
+  const of = (/** @type {string} */ name, /** @type {string[]} */ offered, /** @type {string} */ usual) =>
+    offered.includes(query.get(name) ?? "") ? (query.get(name) ?? usual) : usual;
   const range = () => of("range", RANGES, "20");
   const length = () => of("length", ["", ...LENGTHS], "");
   const isLog = () => query.get("amplitude") !== "linear";
@@ -36,7 +37,11 @@ export function spectrogram(context) {
     const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
     return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
   };
-  const asks = () => ({ ...selector(), range_hz: Number(range()), ...(length() ? { window_s: Number(length()) } : {}) });
+  const asks = () => ({
+    ...selector(),
+    range_hz: Number(range()),
+    ...(length() ? { window_s: Number(length()) } : {}),
+  });
 
   function drawControls() {
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
@@ -45,10 +50,36 @@ export function spectrogram(context) {
     };
     fill(
       controls,
-      choice("Node", nodes.map((node, index) => [String(index), node.node !== undefined ? String(node.node) : say("measured_depth", node.depth)]), query.get("node") ?? "0", set("node")),
-      choice("Frequencies up to", RANGES.map((text) => [text, `${text} Hz`]), range(), set("range")),
-      choice("Length of a window", [["", "by the run"], ...LENGTHS.map((text) => /** @type {[string, string]} */ ([text, `${text} s`]))], length(), set("length")),
-      choice("Amplitude", [["log", "logarithmic"], ["linear", "linear"]], isLog() ? "log" : "linear", set("amplitude")),
+      choice(
+        "Node",
+        nodes.map((node, index) => [
+          String(index),
+          node.node !== undefined ? String(node.node) : say("measured_depth", node.depth),
+        ]),
+        query.get("node") ?? "0",
+        set("node"),
+      ),
+      choice(
+        "Frequencies up to",
+        RANGES.map((text) => [text, `${text} Hz`]),
+        range(),
+        set("range"),
+      ),
+      choice(
+        "Length of a window",
+        [["", "by the run"], ...LENGTHS.map((text) => /** @type {[string, string]} */ ([text, `${text} s`]))],
+        length(),
+        set("length"),
+      ),
+      choice(
+        "Amplitude",
+        [
+          ["log", "logarithmic"],
+          ["linear", "linear"],
+        ],
+        isLog() ? "log" : "linear",
+        set("amplitude"),
+      ),
     );
   }
 
@@ -66,18 +97,31 @@ export function spectrogram(context) {
     }
     if (mine !== generation) return;
     const { node, measured_depth } = table.attributes;
-    place.setAttribute("aria-label", `Spectrogram of node ${node} at ${say("measured_depth", measured_depth)}`);
+    place.setAttribute(
+      "aria-label",
+      `Spectrogram of node ${node} at ${say("measured_depth", measured_depth)}`,
+    );
     fill(caption, describe(table, Number(range())));
-    await drawSpectrogram(place, table, { isLog: isLog(), range: Number(range()), most: largestOf(table) }, context.signal);
+    await drawSpectrogram(
+      place,
+      table,
+      { isLog: isLog(), range: Number(range()), most: largestOf(table) },
+      context.signal,
+    );
   }
 
   return {
-    element: nodes.length ? h("div", { class: "panel" }, controls, wrong, h("figure", {}, place, caption)) : h("p", { class: "panel empty" }, "This point recorded no node."),
+    element: nodes.length
+      ? h("div", { class: "panel" }, controls, wrong, h("figure", {}, place, caption))
+      : h("p", { class: "panel empty" }, "This point recorded no node."),
     draw: nodes.length ? redraw : async () => {},
     request: () => {
       if (!nodes.length) return null;
       const { range_hz, window_s, ...which } = /** @type {any} */ (asks());
-      return { asked: [{ table: "spectrogram", query: asks() }], python: `spectrogram = point.spectrogram(${pythonNode(which)}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()` };
+      return {
+        asked: [{ table: "spectrogram", query: asks() }],
+        python: `spectrogram = point.spectrogram(${pythonNode(which)}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()`,
+      };
     },
   };
 }
@@ -97,7 +141,13 @@ function isMeanAt(frequency, table) {
  */
 export function largestOf(table) {
   const { amplitude, frequency } = table.columns;
-  return amplitude.reduce((/** @type {number} */ most, /** @type {number} */ value, /** @type {number} */ row) => (isMeanAt(frequency[row], table) ? most : Math.max(most, value)), 0) || 1;
+  return (
+    amplitude.reduce(
+      (/** @type {number} */ most, /** @type {number} */ value, /** @type {number} */ row) =>
+        isMeanAt(frequency[row], table) ? most : Math.max(most, value),
+      0,
+    ) || 1
+  );
 }
 
 /**
@@ -122,16 +172,50 @@ export async function drawSpectrogram(place, table, { isLog, range, most }, sign
   const frequency = table.columns.frequency.slice(0, bins);
   const time = Array.from({ length: windows }, (_, index) => table.columns.time[index * bins]);
   const isMean = frequency.map((/** @type {number} */ value) => isMeanAt(value, table));
-  const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) => (isMean[bin] ? Array(windows).fill(null) : time.map((_, index) => table.columns.amplitude[index * bins + bin])));
-  const z = rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row).map((value) => (value === null || !isLog ? value : Math.log10(Math.max(value, 1e-12)))));
+  const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) =>
+    isMean[bin]
+      ? Array(windows).fill(null)
+      : time.map((_, index) => table.columns.amplitude[index * bins + bin]),
+  );
+  const z = rows.map((/** @type {(number | null)[]} */ row) =>
+    shown("amplitude", row).map((value) =>
+      value === null || !isLog ? value : Math.log10(Math.max(value, 1e-12)),
+    ),
+  );
   const top = Number(shown("amplitude", [most])[0]);
   const [least, largest] = isLog ? [Math.log10(top * DEPTH), Math.log10(top)] : [0, top];
   const { soft } = inks();
   const limits = resolved_hz && resolved_hz < range ? [resolved_hz, -resolved_hz] : [];
   await draw(
     place,
-    [{ type: "heatmap", x: time, y: frequency, z, zmin: least, zmax: largest, colorscale: SCALE, customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)), colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) }, hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>` }],
-    { shows: range, xaxis: { title: "time [s]" }, yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft }, shapes: limits.map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: soft, width: 1, dash: "dot" } })) },
+    [
+      {
+        type: "heatmap",
+        x: time,
+        y: frequency,
+        z,
+        zmin: least,
+        zmax: largest,
+        colorscale: SCALE,
+        customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)),
+        colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) },
+        hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>`,
+      },
+    ],
+    {
+      shows: range,
+      xaxis: { title: "time [s]" },
+      yaxis: { title: "frequency [Hz], backward − and forward + whirl", zerolinecolor: soft },
+      shapes: limits.map((y) => ({
+        type: "line",
+        xref: "paper",
+        x0: 0,
+        x1: 1,
+        y0: y,
+        y1: y,
+        line: { color: soft, width: 1, dash: "dot" },
+      })),
+    },
     signal,
   );
 }

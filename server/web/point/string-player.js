@@ -27,7 +27,11 @@ const COLOURS = [
   ["torque", "snapshots"],
 ];
 /** What the page calls them where the vocabulary has another word. @type {Record<string, string>} */
-const CALLED = { normal_force: "contact force", orbit_radius_rms: "whirl amplitude", radius: "distance from the axis" };
+const CALLED = {
+  normal_force: "contact force",
+  orbit_radius_rms: "whirl amplitude",
+  radius: "distance from the axis",
+};
 /** Part of the values that the scale of colours covers. */
 const COVERED = 0.995;
 /** Values from which that is estimated. */
@@ -67,23 +71,41 @@ export function stringPlayer(strings, onLoad) {
   const caption = h("figcaption", {});
   const play = h("button", { class: "main", onclick: () => setPlaying(!isPlaying) }, "Play");
   const clock = h("output", { class: "number" });
-  const slider = h("input", { type: "range", "aria-label": "Time", min: 0, max: 1, step: "any", value: 0, style: "flex:1;min-width:8rem", oninput: () => {
-    setPlaying(false);
-    go(Number(slider.value));
-  } });
+  const slider = h("input", {
+    type: "range",
+    "aria-label": "Time",
+    min: 0,
+    max: 1,
+    step: "any",
+    value: 0,
+    style: "flex:1;min-width:8rem",
+    oninput: () => {
+      setPlaying(false);
+      go(Number(slider.value));
+    },
+  });
   const view = readView(query.get("turn") ?? "");
   const keepView = debounced(() => keep({ turn: sayView(view) || null }), REST_MS, signal);
-  const keepTime = debounced(() => isPlaying || keep({ time: time > first() ? String(Number(time.toFixed(4))) : null }), REST_MS, signal);
+  const keepTime = debounced(
+    () => isPlaying || keep({ time: time > first() ? String(Number(time.toFixed(4))) : null }),
+    REST_MS,
+    signal,
+  );
   /** @type {Actor[]} */
   const actors = strings.map((one) => ({
     ...one,
     geometry: nodeFrames(one.statics),
     motion: null,
     colours: { value: () => 0, range: [0, 1] },
-    scene: stringScene(`The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`, view, () => {
-      actors.forEach((actor) => actor.scene.turned());
-      keepView();
-    }, signal),
+    scene: stringScene(
+      `The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`,
+      view,
+      () => {
+        actors.forEach((actor) => actor.scene.turned());
+        keepView();
+      },
+      signal,
+    ),
   }));
   let isPlaying = false;
   let time = 0;
@@ -94,43 +116,88 @@ export function stringPlayer(strings, onLoad) {
   const has = (/** @type {string} */ name) => actors.every(({ there }) => there.names.includes(name));
   const offered = () => COLOURS.filter(([name, source]) => source !== "snapshots" || has(name));
   const colour = () => offered().find(([name]) => name === query.get("colour")) ?? offered()[0];
-  const factor = () => (EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : 100);
+  const factor = () =>
+    EXAGGERATIONS.includes(query.get("exaggerate") ?? "") ? Number(query.get("exaggerate")) : 100;
   const speed = () => (SPEEDS.includes(query.get("speed") ?? "") ? Number(query.get("speed")) : 1);
   const kept = () => {
-    const windows = actors.map(({ context: { point } }) => point.scenario.recording.snapshots.window ?? { from: 0, to: point.scenario.duration });
-    return { from: Math.min(...windows.map(({ from }) => from)), to: Math.max(...windows.map(({ to }) => to)) };
+    const windows = actors.map(
+      ({ context: { point } }) =>
+        point.scenario.recording.snapshots.window ?? { from: 0, to: point.scenario.duration },
+    );
+    return {
+      from: Math.min(...windows.map(({ from }) => from)),
+      to: Math.max(...windows.map(({ to }) => to)),
+    };
   };
   const span = () => ordered("from", "to", kept().from, kept().to);
-  const depths = () => ordered("top", "bottom", 0, Math.max(...actors.map(({ statics }) => statics.measured_depth.at(-1))));
+  const depths = () =>
+    ordered("top", "bottom", 0, Math.max(...actors.map(({ statics }) => statics.measured_depth.at(-1))));
   const moving = () => actors.flatMap(({ motion }) => (motion ? [motion] : []));
   const first = () => Math.min(...moving().map((motion) => motion.first));
-  const end = () => Math.max(...moving().map((motion) => motion.first + (motion.count - 1) * motion.interval));
+  const end = () =>
+    Math.max(...moving().map((motion) => motion.first + (motion.count - 1) * motion.interval));
 
   /** Two numbers of the link in their order, or the whole. @param {string} lower @param {string} upper @param {number} least @param {number} largest */
   function ordered(lower, upper, least, largest) {
-    const read = (/** @type {string} */ name, /** @type {number} */ usual) => (query.has(name) && Number.isFinite(Number(query.get(name))) ? Number(query.get(name)) : usual);
+    const read = (/** @type {string} */ name, /** @type {number} */ usual) =>
+      query.has(name) && Number.isFinite(Number(query.get(name))) ? Number(query.get(name)) : usual;
     const [from, to] = [Math.max(least, read(lower, least)), Math.min(largest, read(upper, largest))];
     return from < to ? { from, to } : { from: least, to: largest };
   }
 
   function drawControls() {
-    const set = (/** @type {string} */ name, /** @type {() => void} */ then) => (/** @type {string} */ value) => {
-      keep({ [name]: value });
-      then();
-    };
-    const entry = (/** @type {string} */ text, /** @type {string} */ name, /** @type {number} */ value, /** @type {string} */ quantity, /** @type {() => void} */ then) => {
-      const { symbol, size } = unit(quantity);
-      const box = h("input", { type: "number", step: "any", value: Number((value / size).toFixed(3)), style: "width:7rem", onchange: () => {
-        keep({ [name]: box.value === "" ? null : String(Number(box.value) * size) });
+    const set =
+      (/** @type {string} */ name, /** @type {() => void} */ then) => (/** @type {string} */ value) => {
+        keep({ [name]: value });
         then();
-      } });
+      };
+    const entry = (
+      /** @type {string} */ text,
+      /** @type {string} */ name,
+      /** @type {number} */ value,
+      /** @type {string} */ quantity,
+      /** @type {() => void} */ then,
+    ) => {
+      const { symbol, size } = unit(quantity);
+      const box = h("input", {
+        type: "number",
+        step: "any",
+        value: Number((value / size).toFixed(3)),
+        style: "width:7rem",
+        onchange: () => {
+          keep({ [name]: box.value === "" ? null : String(Number(box.value) * size) });
+          then();
+        },
+      });
       return h("label", { class: "field" }, h("span", {}, `${text} [${symbol}]`), box);
     };
     fill(
       controls,
-      choice("Colour", offered().map(([name]) => [name, named(name)]), colour()[0], set("colour", () => attend(recolour(), signal))),
-      choice("Distance from the axis", EXAGGERATIONS.map((text) => [text, text === "1" ? "to scale" : `${text} times`]), String(factor()), set("exaggerate", show)),
-      choice("Speed", SPEEDS.map((text) => [text, text === "1" ? "as it happens" : Number(text) > 1 ? `${text} times` : `1/${Math.round(1 / Number(text))}`]), String(speed()), set("speed", () => {})),
+      choice(
+        "Colour",
+        offered().map(([name]) => [name, named(name)]),
+        colour()[0],
+        set("colour", () => attend(recolour(), signal)),
+      ),
+      choice(
+        "Distance from the axis",
+        EXAGGERATIONS.map((text) => [text, text === "1" ? "to scale" : `${text} times`]),
+        String(factor()),
+        set("exaggerate", show),
+      ),
+      choice(
+        "Speed",
+        SPEEDS.map((text) => [
+          text,
+          text === "1"
+            ? "as it happens"
+            : Number(text) > 1
+              ? `${text} times`
+              : `1/${Math.round(1 / Number(text))}`,
+        ]),
+        String(speed()),
+        set("speed", () => {}),
+      ),
       entry("From depth", "top", depths().from, "measured_depth", show),
       entry("to depth", "bottom", depths().to, "measured_depth", show),
       entry("From", "from", span().from, "time", () => attend(load(), signal)),
@@ -147,7 +214,9 @@ export function stringPlayer(strings, onLoad) {
     drawControls();
     setPlaying(false);
     const names = ["u", "v", ...(has("normal_force") ? ["normal_force"] : [])];
-    const taken = await Promise.all(actors.map(({ context, there }) => frames(context, names, span(), there.nodes)));
+    const taken = await Promise.all(
+      actors.map(({ context, there }) => frames(context, names, span(), there.nodes)),
+    );
     if (mine !== generation) return;
     const still = actors.find((_, order) => taken[order].count < 2);
     if (still) {
@@ -170,7 +239,10 @@ export function stringPlayer(strings, onLoad) {
     const found = await Promise.all(actors.map((actor) => coloursOf(actor, name, source)));
     if (mine !== generation || name !== colour()[0]) return;
     /** @type {[number, number]} */
-    const range = [Math.min(...found.map((one) => one.range[0])), Math.max(...found.map((one) => one.range[1]))];
+    const range = [
+      Math.min(...found.map((one) => one.range[0])),
+      Math.max(...found.map((one) => one.range[1])),
+    ];
     actors.forEach((actor, order) => (actor.colours = { ...found[order], range }));
     show();
   }
@@ -186,36 +258,59 @@ export function stringPlayer(strings, onLoad) {
       const values = onNodes((await context.table("profile", { fields: name })).columns, name, there.nodes);
       return { value: (node) => values[node] ?? 0, range: covered(values.flatMap((value) => value ?? [])) };
     }
-    if (source === "snapshots" && !motion.columns[name]) Object.assign(motion.columns, (await frames(context, [name], span(), there.nodes)).columns);
+    if (source === "snapshots" && !motion.columns[name])
+      Object.assign(motion.columns, (await frames(context, [name], span(), there.nodes)).columns);
     if (name === "orbit_radius_rms") {
       const amplitude = amplitudes(motion);
       return { value: (node) => amplitude[node], range: [0, Math.max(...amplitude)] };
     }
-    if (name === "radius") return { value: (node) => Math.hypot(...placeOf(motion, node)), range: [0, Math.max(...statics.clearance)] };
+    if (name === "radius")
+      return {
+        value: (node) => Math.hypot(...placeOf(motion, node)),
+        range: [0, Math.max(...statics.clearance)],
+      };
     const column = motion.columns[name];
     const isForce = name === "normal_force";
     const value = (/** @type {number} */ node) => between(motion, column, node);
     // What touches is as short as a tool joint: it is marked.
-    return { value, range: isForce ? [0, largestShown(column)] : covered(sampled(column)), isMarked: isForce ? (node) => value(node) > 0 : undefined };
+    return {
+      value,
+      range: isForce ? [0, largestShown(column)] : covered(sampled(column)),
+      isMarked: isForce ? (node) => value(node) > 0 : undefined,
+    };
   }
 
   /** The name of what colours, and the ends of its scale, in words. */
   function scaleWords() {
     const [name] = colour();
     const { symbol } = unit(name);
-    const [least, largest] = shown(name, actors[0].colours.range).map((value) => String(Number(Number(value).toPrecision(3))));
+    const [least, largest] = shown(name, actors[0].colours.range).map((value) =>
+      String(Number(Number(value).toPrecision(3))),
+    );
     return { text: `${named(name)}${symbol ? ` [${symbol}]` : ""}`, least, largest };
   }
 
   function drawLegend() {
     const { text, least, largest } = scaleWords();
-    fill(legend, h("span", { class: "small" }, text), h("span", { class: "small number" }, least), h("span", { class: "gradient", style: `background:${GRADIENT}`, "aria-hidden": "true" }), h("span", { class: "small number" }, largest));
+    fill(
+      legend,
+      h("span", { class: "small" }, text),
+      h("span", { class: "small number" }, least),
+      h("span", { class: "gradient", style: `background:${GRADIENT}`, "aria-hidden": "true" }),
+      h("span", { class: "small number" }, largest),
+    );
     const counts = actors.map(({ motion, there, heading }) => {
       if (!motion) return "";
-      const all = motion.interval > 1.5 * there.interval ? `, every ${Math.round(motion.interval / there.interval)}th of them` : "";
+      const all =
+        motion.interval > 1.5 * there.interval
+          ? `, every ${Math.round(motion.interval / there.interval)}th of them`
+          : "";
       return `${heading && `${heading}: `}${motion.count} snapshots, ${say("time", motion.interval)} apart${all}`;
     });
-    fill(caption, `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole with marks of measured depth beside it, rings are where the string touches the wall; distances from the axis are drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}.${colour()[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to come nearer.`);
+    fill(
+      caption,
+      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole with marks of measured depth beside it, rings are where the string touches the wall; distances from the axis are drawn ${factor() === 1 ? "to scale" : `${factor()} times as large`}.${colour()[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to come nearer.`,
+    );
   }
 
   /** A value of a node at the present time, between two snapshots. @param {Frames} motion @param {Float32Array} column @param {number} node */
@@ -237,13 +332,19 @@ export function stringPlayer(strings, onLoad) {
     for (const { motion, statics, scene, geometry, colours } of actors) {
       if (!motion) continue;
       const depth = statics.measured_depth;
-      const upper = Math.max(0, depth.findLastIndex((/** @type {number} */ value) => value <= from));
+      const upper = Math.max(
+        0,
+        depth.findLastIndex((/** @type {number} */ value) => value <= from),
+      );
       const lower = depth.findIndex((/** @type {number} */ value) => value >= to);
       scene.show({
         frames: geometry,
         clearance: statics.clearance,
         depth: { values: shown("measured_depth", depth).map(Number), symbol: unit("measured_depth").symbol },
-        stretch: [Math.min(upper, depth.length - 2), lower < 0 ? depth.length - 1 : Math.max(lower, upper + 1)],
+        stretch: [
+          Math.min(upper, depth.length - 2),
+          lower < 0 ? depth.length - 1 : Math.max(lower, upper + 1),
+        ],
         factor: factor(),
         place: (node) => placeOf(motion, node),
         rest: (node) => [statics.u[node], statics.v[node]],
@@ -347,7 +448,20 @@ export function stringPlayer(strings, onLoad) {
   signal.addEventListener("abort", () => setPlaying(false), { once: true });
 
   return {
-    element: h("div", {}, controls, wrong, h("div", { class: "panel" }, h("div", { class: actors.length > 1 ? "half" : "" }, panels), h("div", { class: "controls player" }, play, slider, clock), legend, caption)),
+    element: h(
+      "div",
+      {},
+      controls,
+      wrong,
+      h(
+        "div",
+        { class: "panel" },
+        h("div", { class: actors.length > 1 ? "half" : "" }, panels),
+        h("div", { class: "controls player" }, play, slider, clock),
+        legend,
+        caption,
+      ),
+    ),
     load,
     span,
     /** Stops at a time. @param {number} to [s] */
@@ -375,7 +489,10 @@ function download(blob, name) {
  */
 function amplitudes({ nodes, count, columns: { u, v } }) {
   return Array.from({ length: nodes }, (_, node) => {
-    const [sums, squares] = [[0, 0], [0, 0]];
+    const [sums, squares] = [
+      [0, 0],
+      [0, 0],
+    ];
     [u, v].forEach((column, part) => {
       // About the first value, so that nothing cancels.
       const start = column[node];
@@ -385,7 +502,12 @@ function amplitudes({ nodes, count, columns: { u, v } }) {
         squares[part] += value * value;
       }
     });
-    return Math.sqrt(Math.max(0, [0, 1].reduce((sum, part) => sum + squares[part] / count - (sums[part] / count) ** 2, 0)));
+    return Math.sqrt(
+      Math.max(
+        0,
+        [0, 1].reduce((sum, part) => sum + squares[part] / count - (sums[part] / count) ** 2, 0),
+      ),
+    );
   });
 }
 

@@ -28,12 +28,19 @@ export function string(context) {
     if (!there) return drawWithout();
     const statics = (await context.table("statics")).columns;
     const map = contactMap(context, (time) => player?.stopAt(time));
-    names = ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"].filter((name) => there.names.includes(name));
+    names = ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"].filter((name) =>
+      there.names.includes(name),
+    );
     const hasForce = there.names.includes("normal_force");
     player = stringPlayer([{ context, heading: "", there, statics }], async ([{ motion }], span) => {
       await Promise.all([hasForce && motion && map.draw(motion, statics), turn(span)]);
     });
-    fill(element, player.element, h("div", { style: "height:1rem" }), h("div", { class: "half" }, hasForce && map.element, turning.element));
+    fill(
+      element,
+      player.element,
+      h("div", { style: "height:1rem" }),
+      h("div", { class: "half" }, hasForce && map.element, turning.element),
+    );
     await player.load();
   }
 
@@ -61,10 +68,18 @@ export function string(context) {
       if (!player) return ends.length ? endsRequest(ends) : null;
       const { from, to } = player.span();
       const turned = endsRequest(ends, { from, to });
-      const forces = names.includes("normal_force") ? ['forces = snapshots.pivot(index="node", columns="time", values="normal_force")'] : [];
+      const forces = names.includes("normal_force")
+        ? ['forces = snapshots.pivot(index="node", columns="time", values="normal_force")']
+        : [];
       return {
         asked: [{ table: "snapshots", query: { from, to, fields: names.join(",") } }, ...turned.asked],
-        python: [`snapshots = point.snapshots(time=(${from}, ${to}), fields=${python(names)}).to_pandas()`, ...forces, turned.python].filter(Boolean).join("\n"),
+        python: [
+          `snapshots = point.snapshots(time=(${from}, ${to}), fields=${python(names)}).to_pandas()`,
+          ...forces,
+          turned.python,
+        ]
+          .filter(Boolean)
+          .join("\n"),
       };
     },
   };

@@ -21,7 +21,8 @@ export function well(context) {
   const place = canvas("The well and the string in it", "well", "tall", "whole");
   const controls = h("div", { class: "controls" });
   const caption = h("figcaption", {});
-  const colour = () => (QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force");
+  const colour = () =>
+    QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force";
   const factor = () => exaggeration(query, USUAL);
   const begin = generations();
 
@@ -32,25 +33,81 @@ export function well(context) {
       context.keep({ [key]: value });
       attend(redraw(), context.signal);
     };
-    fill(controls, choice("Colour", QUANTITIES.map(([entry]) => [entry, label(entry)]), name, set("colour")), exaggerationChoice(factor(), set("exaggerate")));
+    fill(
+      controls,
+      choice(
+        "Colour",
+        QUANTITIES.map(([entry]) => [entry, label(entry)]),
+        name,
+        set("colour"),
+      ),
+      exaggerationChoice(factor(), set("exaggerate")),
+    );
     const statics = (await context.table("statics")).columns;
     const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
     if (!isNewest()) return;
     const values = onNodes(table, name, statics.measured_depth.length);
     const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
     const string = displaced(statics, axis, factor());
-    const line = (/** @type {typeof axis} */ path) => ({ x: shown("east", path.east), y: shown("north", path.north), z: shown("true_vertical_depth", path.down) });
+    const line = (/** @type {typeof axis} */ path) => ({
+      x: shown("east", path.east),
+      y: shown("north", path.north),
+      z: shown("true_vertical_depth", path.down),
+    });
     const { soft, line: faint } = inks();
-    const texts = values.map((value, index) => `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`);
-    const space = (/** @type {string} */ text) => ({ title: { text: `${text} [${unit("north").symbol}]` }, gridcolor: faint, zeroline: false, color: soft, backgroundcolor: "rgba(0,0,0,0)" });
-    fill(caption, `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`);
+    const texts = values.map(
+      (value, index) =>
+        `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`,
+    );
+    const space = (/** @type {string} */ text) => ({
+      title: { text: `${text} [${unit("north").symbol}]` },
+      gridcolor: faint,
+      zeroline: false,
+      color: soft,
+      backgroundcolor: "rgba(0,0,0,0)",
+    });
+    fill(
+      caption,
+      `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`,
+    );
     await draw(
       place,
       [
-        { type: "scatter3d", mode: "lines", ...line(axis), line: { color: soft, width: 2 }, hoverinfo: "skip", name: "axis of the hole" },
-        { type: "scatter3d", mode: "lines", ...line(string), line: { color: shown(name, values), colorscale: lineScale(), width: 9, colorbar: colourBar(title(name)), showscale: true }, text: texts, hoverinfo: "text", name: "string" },
+        {
+          type: "scatter3d",
+          mode: "lines",
+          ...line(axis),
+          line: { color: soft, width: 2 },
+          hoverinfo: "skip",
+          name: "axis of the hole",
+        },
+        {
+          type: "scatter3d",
+          mode: "lines",
+          ...line(string),
+          line: {
+            color: shown(name, values),
+            colorscale: lineScale(),
+            width: 9,
+            colorbar: colourBar(title(name)),
+            showscale: true,
+          },
+          text: texts,
+          hoverinfo: "text",
+          name: "string",
+        },
       ],
-      { showlegend: false, margin: { l: 0, r: 0, t: 0, b: 0 }, scene: { xaxis: space("east"), yaxis: space("north"), zaxis: { ...space("true vertical depth"), autorange: "reversed" }, aspectmode: "data", camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } } } },
+      {
+        showlegend: false,
+        margin: { l: 0, r: 0, t: 0, b: 0 },
+        scene: {
+          xaxis: space("east"),
+          yaxis: space("north"),
+          zaxis: { ...space("true vertical depth"), autorange: "reversed" },
+          aspectmode: "data",
+          camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
+        },
+      },
       context.signal,
     );
   }
@@ -62,9 +119,16 @@ export function well(context) {
       const [name, table] = [colour(), tableOf(colour())];
       const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
       const statics = [...space, ...(table === "statics" ? [name] : [])];
-      const depth = table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
-      const asked = [{ table: "statics", query: { fields: [...new Set(statics)].join(",") } }, ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }])];
-      return { asked, python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n") };
+      const depth =
+        table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
+      const asked = [
+        { table: "statics", query: { fields: [...new Set(statics)].join(",") } },
+        ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }]),
+      ];
+      return {
+        asked,
+        python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n"),
+      };
     },
   };
 }
@@ -80,7 +144,12 @@ export function exaggeration(query, usual) {
 
 /** @param {number} factor @param {(value: string) => void} onChange */
 export function exaggerationChoice(factor, onChange) {
-  return choice("Distance from the axis", EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]), String(factor), onChange);
+  return choice(
+    "Distance from the axis",
+    EXAGGERATIONS.map((entry) => [entry, entry === "1" ? "to scale" : `${entry} times`]),
+    String(factor),
+    onChange,
+  );
 }
 
 /** @param {string} whose @param {number} factor */
@@ -99,7 +168,10 @@ export function onNodes(columns, name, nodes) {
   const values = columns[name];
   if (values.length === nodes) return values;
   return Array.from({ length: nodes }, (_, node) => {
-    const [above, below] = [values[Math.max(0, node - 1)] ?? null, values[Math.min(values.length - 1, node)] ?? null];
+    const [above, below] = [
+      values[Math.max(0, node - 1)] ?? null,
+      values[Math.min(values.length - 1, node)] ?? null,
+    ];
     return above === null || below === null ? (above ?? below) : (above + below) / 2;
   });
 }

@@ -34,8 +34,14 @@ export function difference(context) {
   const empty = h("p", { class: "empty", hidden: true });
   const figure = h("figure", {}, place, caption);
   const begin = generations();
-  const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) => (options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other);
-  const search = h("input", { type: "search", size: 16, placeholder: "part of a name", oninput: debounced(() => attend(find(), signal), 250, signal) });
+  const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) =>
+    options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other;
+  const search = h("input", {
+    type: "search",
+    size: 16,
+    placeholder: "part of a name",
+    oninput: debounced(() => attend(find(), signal), 250, signal),
+  });
   const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);
   /** Those that can be chosen. @type {any[] | undefined} */
   let sweeps;
@@ -86,26 +92,50 @@ export function difference(context) {
     const id = query.get("with") ?? "";
     let lost = "";
     if (other?.sweep.id !== id) {
-      const loaded = id ? await load(id).catch((error) => {
-        if (!(error instanceof Problem) || error.status !== 404) throw error;
-        lost = `The sweep of the link was not found: ${error.message}. `;
-      }) : undefined;
+      const loaded = id
+        ? await load(id).catch((error) => {
+            if (!(error instanceof Problem) || error.status !== 404) throw error;
+            lost = `The sweep of the link was not found: ${error.message}. `;
+          })
+        : undefined;
       if (!isNewest()) return;
       other = loaded ?? undefined;
     }
     const offered = other && !sweeps.some((sweep) => sweep.id === id) ? [...sweeps, other.sweep] : sweeps;
-    const chooser = choice("Compared with", [["", "— choose a sweep"], ...offered.map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)]))], other ? id : "", set("with"));
+    const chooser = choice(
+      "Compared with",
+      [
+        ["", "— choose a sweep"],
+        ...offered.map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])),
+      ],
+      other ? id : "",
+      set("with"),
+    );
     const whom = [searched, chooser];
     if (!other) {
       choices(whom);
-      say_(`${lost}Choose the sweep whose results are compared with those of this one, at the points that both have.`);
+      say_(
+        `${lost}Choose the sweep whose results are compared with those of this one, at the points that both have.`,
+      );
       return;
     }
     const axes = context.axes.filter((axis) => other?.axes.includes(axis));
-    const results = context.table.results().filter((name) => other?.table.names.includes(name) && !context.axes.includes(name) && !other.axes.includes(name) && !["state", "error_time", "error_node"].includes(name));
+    const results = context.table
+      .results()
+      .filter(
+        (name) =>
+          other?.table.names.includes(name) &&
+          !context.axes.includes(name) &&
+          !other.axes.includes(name) &&
+          !["state", "error_time", "error_node"].includes(name),
+      );
     if (!axes.length || !results.length) {
       choices(whom);
-      say_(axes.length ? "The two sweeps have no result in common." : "The two sweeps have no parameter in common.");
+      say_(
+        axes.length
+          ? "The two sweeps have no result in common."
+          : "The two sweeps have no parameter in common.",
+      );
       return;
     }
     const x = pick("x", axes, axes[0]);
@@ -113,25 +143,58 @@ export function difference(context) {
     const y = others.length ? pick("y", others, others[0]) : undefined;
     const colour = pick("colour", results, preferred(results));
     const isRelative = query.get("difference") === "relative";
-    const options = (/** @type {string[]} */ names) => names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    const options = (/** @type {string[]} */ names) =>
+      names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
 
     const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
     if (!isNewest()) return;
     const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
     if (!isNewest()) return;
-    choices(whom, choice("Across", options(axes), x, set("x")), y && choice("Up", options(others), y, set("y")), choice("Result", options(results), colour, set("colour")), choice("Difference", [["absolute", "absolute"], ["relative", "relative to this sweep"]], isRelative ? "relative" : "absolute", set("difference")), mine.choices, theirs.choices);
+    choices(
+      whom,
+      choice("Across", options(axes), x, set("x")),
+      y && choice("Up", options(others), y, set("y")),
+      choice("Result", options(results), colour, set("colour")),
+      choice(
+        "Difference",
+        [
+          ["absolute", "absolute"],
+          ["relative", "relative to this sweep"],
+        ],
+        isRelative ? "relative" : "absolute",
+        set("difference"),
+      ),
+      mine.choices,
+      theirs.choices,
+    );
     fields = { mine: columnsOf(context.axes, colour), theirs: columnsOf(other.axes, colour) };
     context.drawn();
     const xs = classes([...mine.rows, ...theirs.rows].map((row) => row.x));
     const ys = classes([...mine.rows, ...theirs.rows].map((row) => row.y));
     const cell = (/** @type {{x: number, y: number}} */ row) => `${xs.get(row.x)} ${ys.get(row.y)}`;
     const partners = new Map(theirs.rows.map((row) => [cell(row), row]));
-    const pairs = mine.rows.flatMap((row) => {
-      const partner = partners.get(cell(row));
-      return partner ? [{ ...row, partner, change: isRelative ? (100 * (partner.value - row.value)) / Math.abs(row.value) : (partner.value - row.value) / unit(colour).size }] : [];
-    }).filter(({ change }) => Number.isFinite(change));
+    const pairs = mine.rows
+      .flatMap((row) => {
+        const partner = partners.get(cell(row));
+        return partner
+          ? [
+              {
+                ...row,
+                partner,
+                change: isRelative
+                  ? (100 * (partner.value - row.value)) / Math.abs(row.value)
+                  : (partner.value - row.value) / unit(colour).size,
+              },
+            ]
+          : [];
+      })
+      .filter(({ change }) => Number.isFinite(change));
     if (!pairs.length) {
-      say_(mine.rows.length && theirs.rows.length ? "No point of the one has the parameters of one of the other. Choose other values of what is held." : "One of the two has no results yet.");
+      say_(
+        mine.rows.length && theirs.rows.length
+          ? "No point of the one has the parameters of one of the other. Choose other values of what is held."
+          : "One of the two has no results yet.",
+      );
       return;
     }
     say_("");
@@ -141,13 +204,37 @@ export function difference(context) {
     const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
     const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
     const further = h("strong", {});
-    fill(caption, `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`, biasesOf(colour, first, second).map((found) => ` ${found}`), further);
+    fill(
+      caption,
+      `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`,
+      biasesOf(colour, first, second).map((found) => ` ${found}`),
+      further,
+    );
     attend(tellApart(further, pairs[0].ordinal, other, pairs[0].partner.ordinal, [x, y]), signal);
-    place.setAttribute("aria-label", `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+    place.setAttribute(
+      "aria-label",
+      `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`,
+    );
     const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
-    const text = pairs.map((pair) => [`${label(x)} ${say(x, pair.x)}`, y && `${label(y)} ${say(y, pair.y)}`, `this: ${say(colour, pair.value)}${context.biases.beside(colour, pair.ordinal)}`, `other: ${say(colour, pair.partner.value)}${other?.biases.beside(colour, pair.partner.ordinal) ?? ""}`, `difference: ${number(pair.change, 4)} ${unitOf}`].filter(Boolean).join("<br>"));
-    const keys = pairs.map((pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`);
-    const axisLayout = (/** @type {string} */ axis) => ({ title: title(axis), quantity: axis, type: context.spans[axis]?.scale === "log" ? "log" : "linear" });
+    const text = pairs.map((pair) =>
+      [
+        `${label(x)} ${say(x, pair.x)}`,
+        y && `${label(y)} ${say(y, pair.y)}`,
+        `this: ${say(colour, pair.value)}${context.biases.beside(colour, pair.ordinal)}`,
+        `other: ${say(colour, pair.partner.value)}${other?.biases.beside(colour, pair.partner.ordinal) ?? ""}`,
+        `difference: ${number(pair.change, 4)} ${unitOf}`,
+      ]
+        .filter(Boolean)
+        .join("<br>"),
+    );
+    const keys = pairs.map(
+      (pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`,
+    );
+    const axisLayout = (/** @type {string} */ axis) => ({
+      title: title(axis),
+      quantity: axis,
+      type: context.spans[axis]?.scale === "log" ? "log" : "linear",
+    });
     /** @type {any[]} */
     let traces;
     /** @type {any} */
@@ -155,23 +242,70 @@ export function difference(context) {
     if (y) {
       const across = distinct(pairs.map((pair) => pair.x));
       const up = distinct(pairs.map((pair) => pair.y));
-      const placeOf = (/** @type {(number | string)[]} */ values) => new Map(values.map((value, index) => [value, index]));
+      const placeOf = (/** @type {(number | string)[]} */ values) =>
+        new Map(values.map((value, index) => [value, index]));
       const [columns, lines] = [placeOf(across), placeOf(up)];
       const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
       const [cells, hover, points] = [grid(null), grid(""), grid(null)];
       pairs.forEach((pair, index) => {
         const [row, column] = [lines.get(pair.y) ?? 0, columns.get(pair.x) ?? 0];
-        [cells[row][column], hover[row][column], points[row][column]] = [pair.change, text[index], keys[index]];
+        [cells[row][column], hover[row][column], points[row][column]] = [
+          pair.change,
+          text[index],
+          keys[index],
+        ];
       });
       const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
-      traces = [{ type: "heatmap", x: across.map((value) => at(x, Number(value))), y: up.map((value) => at(y, Number(value))), z: cells, text: hover, customdata: points, hoverinfo: "text", colorscale: DIVERGING, reversescale: false, zmin: -largest, zmax: largest, colorbar: colourBar(name), xgap: 1, ygap: 1 }];
+      traces = [
+        {
+          type: "heatmap",
+          x: across.map((value) => at(x, Number(value))),
+          y: up.map((value) => at(y, Number(value))),
+          z: cells,
+          text: hover,
+          customdata: points,
+          hoverinfo: "text",
+          colorscale: DIVERGING,
+          reversescale: false,
+          zmin: -largest,
+          zmax: largest,
+          colorbar: colourBar(name),
+          xgap: 1,
+          ygap: 1,
+        },
+      ];
       layout = { xaxis: axisLayout(x), yaxis: axisLayout(y) };
     } else {
       const order = pairs.map((_, index) => index).sort((a, b) => pairs[a].x - pairs[b].x);
-      const line = (/** @type {string} */ called, /** @type {(index: number) => number} */ value, /** @type {number} */ number, /** @type {any} */ more = {}) => ({ type: "scatter", mode: "lines+markers", name: called, showlegend: true, x: order.map((index) => at(x, pairs[index].x)), y: order.map(value), text: order.map((index) => text[index]), customdata: order.map((index) => keys[index]), hoverinfo: "text", line: { color: LINES[number], dash: DASHES[number] }, ...more });
+      const line = (
+        /** @type {string} */ called,
+        /** @type {(index: number) => number} */ value,
+        /** @type {number} */ number,
+        /** @type {any} */ more = {},
+      ) => ({
+        type: "scatter",
+        mode: "lines+markers",
+        name: called,
+        showlegend: true,
+        x: order.map((index) => at(x, pairs[index].x)),
+        y: order.map(value),
+        text: order.map((index) => text[index]),
+        customdata: order.map((index) => keys[index]),
+        hoverinfo: "text",
+        line: { color: LINES[number], dash: DASHES[number] },
+        ...more,
+      });
       const { size } = unit(colour);
-      traces = [line(first, (index) => pairs[index].value / size, 0), line(second, (index) => pairs[index].partner.value / size, 1), line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" })];
-      layout = { xaxis: axisLayout(x), yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] }, yaxis2: { title: name, ...(isRelative ? {} : { quantity: colour }), domain: [0, 0.36] } };
+      traces = [
+        line(first, (index) => pairs[index].value / size, 0),
+        line(second, (index) => pairs[index].partner.value / size, 1),
+        line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" }),
+      ];
+      layout = {
+        xaxis: axisLayout(x),
+        yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] },
+        yaxis2: { title: name, ...(isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
+      };
     }
     const shape = await draw(place, traces, layout, signal);
     shape.removeAllListeners?.("plotly_click");
@@ -193,14 +327,34 @@ export function difference(context) {
    */
   async function sliced(table, axes, prefix, x, y, colour, elsewhere = new Map()) {
     const further = axes.filter((axis) => axis !== x && axis !== y);
-    const [ordinals, xs, ys, values, ...columns] = await table.columns("ordinal", x, y ?? x, colour, ...further);
-    const held = new Map(further.map((axis, index) => {
-      const all = distinct(columns[index]).map(Number);
-      const asked = query.has(prefix + axis) ? Number(query.get(prefix + axis)) : elsewhere.get(axis);
-      return [axis, all.find((value) => asked !== undefined && isSame(value, asked)) ?? all[0]];
-    }));
-    const choices = further.map((axis, index) => choice(prefix === "at." ? label(axis) : `${label(axis)}, other sweep`, distinct(columns[index]).map((value) => [String(value), say(axis, value)]), String(held.get(axis)), set(prefix + axis)));
-    const rows = ordinals.flatMap((ordinal, row) => (typeof values[row] === "number" && further.every((axis, index) => columns[index][row] === held.get(axis)) ? [{ ordinal: Number(ordinal), x: Number(xs[row]), y: Number(ys[row]), value: Number(values[row]) }] : []));
+    const [ordinals, xs, ys, values, ...columns] = await table.columns(
+      "ordinal",
+      x,
+      y ?? x,
+      colour,
+      ...further,
+    );
+    const held = new Map(
+      further.map((axis, index) => {
+        const all = distinct(columns[index]).map(Number);
+        const asked = query.has(prefix + axis) ? Number(query.get(prefix + axis)) : elsewhere.get(axis);
+        return [axis, all.find((value) => asked !== undefined && isSame(value, asked)) ?? all[0]];
+      }),
+    );
+    const choices = further.map((axis, index) =>
+      choice(
+        prefix === "at." ? label(axis) : `${label(axis)}, other sweep`,
+        distinct(columns[index]).map((value) => [String(value), say(axis, value)]),
+        String(held.get(axis)),
+        set(prefix + axis),
+      ),
+    );
+    const rows = ordinals.flatMap((ordinal, row) =>
+      typeof values[row] === "number" &&
+      further.every((axis, index) => columns[index][row] === held.get(axis))
+        ? [{ ordinal: Number(ordinal), x: Number(xs[row]), y: Number(ys[row]), value: Number(values[row]) }]
+        : [],
+    );
     return { held, choices, rows };
   }
 
@@ -214,12 +368,22 @@ export function difference(context) {
    * @param {(string | undefined)[]} shown what is across and up
    */
   async function tellApart(place, mine, whose, theirs, shown) {
-    const [here, there] = await Promise.all([scenarioOf(context.sweep.id, mine), scenarioOf(whose.sweep.id, theirs)]);
-    const differing = apart(here, there).filter(([path]) => !shown.some((axis) => axis === path || (axis && axis === SHORT[path])));
+    const [here, there] = await Promise.all([
+      scenarioOf(context.sweep.id, mine),
+      scenarioOf(whose.sweep.id, theirs),
+    ]);
+    const differing = apart(here, there).filter(
+      ([path]) => !shown.some((axis) => axis === path || (axis && axis === SHORT[path])),
+    );
     if (!differing.length) return;
-    const words = differing.slice(0, DIFFERENCES).map(([path, one, another]) => `${label(path)} ${say(path, another)} instead of ${say(path, one)}`);
+    const words = differing
+      .slice(0, DIFFERENCES)
+      .map(([path, one, another]) => `${label(path)} ${say(path, another)} instead of ${say(path, one)}`);
     const further = differing.length - words.length;
-    fill(place, ` ${nameOf(whose.sweep)} also has other parameters than ${nameOf(context.sweep)}: ${words.join(", ")}${further ? `, and ${further} more` : ""}.`);
+    fill(
+      place,
+      ` ${nameOf(whose.sweep)} also has other parameters than ${nameOf(context.sweep)}: ${words.join(", ")}${further ? `, and ${further} more` : ""}.`,
+    );
   }
 
   /** @param {string} sweep @param {number} ordinal @returns {Promise<any>} */
@@ -231,14 +395,22 @@ export function difference(context) {
 
   /** What was found of the biases of both. @param {string} colour @param {string} first @param {string} second */
   function biasesOf(colour, first, second) {
-    return [[first, context.biases.say(colour)], [second, other?.biases.say(colour)]].filter(([, found]) => found).map(([name, found]) => `${name}: ${found}`);
+    return [
+      [first, context.biases.say(colour)],
+      [second, other?.biases.say(colour)],
+    ]
+      .filter(([, found]) => found)
+      .map(([name, found]) => `${name}: ${found}`);
   }
 
   return {
     element: h("div", {}, controls, empty, figure),
     draw: undelayed(redraw, context),
     fields: () => fields.mine,
-    others: () => (other && query.get("with") === other.sweep.id ? [{ id: other.sweep.id, path: other.table.path, fields: fields.theirs }] : []),
+    others: () =>
+      other && query.get("with") === other.sweep.id
+        ? [{ id: other.sweep.id, path: other.table.path, fields: fields.theirs }]
+        : [],
   };
 }
 
@@ -252,11 +424,20 @@ export function difference(context) {
 function apart(one, another, path = "") {
   const isBoth = [one, another].every((value) => typeof value === "object" && value !== null);
   if (isBoth && Array.isArray(one) === Array.isArray(another)) {
-    const names = [...new Set([...Object.keys(one), ...Object.keys(another)])].filter((name) => path || !NAMES.has(name));
-    return names.flatMap((name) => apart(one[name], another[name], Array.isArray(one) ? `${path}[${name}]` : path ? `${path}.${name}` : name));
+    const names = [...new Set([...Object.keys(one), ...Object.keys(another)])].filter(
+      (name) => path || !NAMES.has(name),
+    );
+    return names.flatMap((name) =>
+      apart(
+        one[name],
+        another[name],
+        Array.isArray(one) ? `${path}[${name}]` : path ? `${path}.${name}` : name,
+      ),
+    );
   }
   const isSameNumber = typeof one === "number" && typeof another === "number" && isSame(one, another);
-  const inWords = (/** @type {unknown} */ value) => (value === null || value === undefined ? "none" : typeof value === "object" ? "another" : value);
+  const inWords = (/** @type {unknown} */ value) =>
+    value === null || value === undefined ? "none" : typeof value === "object" ? "another" : value;
   return one === another || isSameNumber ? [] : [[path, inWords(one), inWords(another)]];
 }
 

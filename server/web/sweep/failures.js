@@ -26,7 +26,11 @@ export function failures(context) {
   const element = h("div", {});
 
   async function redraw() {
-    const page = await get(`/v1/sweeps/${encodeURIComponent(sweep.id)}/points`, { state: "failed", limit: PAGE }, signal);
+    const page = await get(
+      `/v1/sweeps/${encodeURIComponent(sweep.id)}/points`,
+      { state: "failed", limit: PAGE },
+      signal,
+    );
     if (!page.points.length) {
       fill(element, h("p", { class: "empty" }, "No point of this sweep has failed."));
       return;
@@ -45,14 +49,73 @@ export function failures(context) {
         return h(
           "section",
           {},
-          h("h2", {}, h("span", { class: "state failed" }, error?.class ?? "unknown"), ` ${points.length} ${points.length === 1 ? "point" : "points"}`),
+          h(
+            "h2",
+            {},
+            h("span", { class: "state failed" }, error?.class ?? "unknown"),
+            ` ${points.length} ${points.length === 1 ? "point" : "points"}`,
+          ),
           h("p", { class: "soft small" }, MEANING[error?.class] ?? ""),
           h("p", {}, error?.reason ?? "No reason is known."),
-          h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}, "Point"), h("th", {}, "Parameters"), h("th", {}, "At"), h("th", { class: "number" }, "Attempts"))), h("tbody", {}, points.map((point) => h("tr", {}, h("td", {}, h("a", { href: link(["sweeps", sweep.id, "points", String(point.ordinal)]) }, point.ordinal)), h("td", {}, sayParameters(point.parameters)), h("td", { class: "small" }, [typeof point.error?.time === "number" && say("time", point.error.time), point.error?.node && `node ${point.error.node}`].filter(Boolean).join(", ")), h("td", { class: "number" }, point.attempts)))))),
+          h(
+            "div",
+            { class: "scroll" },
+            h(
+              "table",
+              {},
+              h(
+                "thead",
+                {},
+                h(
+                  "tr",
+                  {},
+                  h("th", {}, "Point"),
+                  h("th", {}, "Parameters"),
+                  h("th", {}, "At"),
+                  h("th", { class: "number" }, "Attempts"),
+                ),
+              ),
+              h(
+                "tbody",
+                {},
+                points.map((point) =>
+                  h(
+                    "tr",
+                    {},
+                    h(
+                      "td",
+                      {},
+                      h(
+                        "a",
+                        { href: link(["sweeps", sweep.id, "points", String(point.ordinal)]) },
+                        point.ordinal,
+                      ),
+                    ),
+                    h("td", {}, sayParameters(point.parameters)),
+                    h(
+                      "td",
+                      { class: "small" },
+                      [
+                        typeof point.error?.time === "number" && say("time", point.error.time),
+                        point.error?.node && `node ${point.error.node}`,
+                      ]
+                        .filter(Boolean)
+                        .join(", "),
+                    ),
+                    h("td", { class: "number" }, point.attempts),
+                  ),
+                ),
+              ),
+            ),
+          ),
         );
       }),
       page.next ? h("p", { class: "soft" }, `The first ${PAGE} failures are shown.`) : null,
     );
   }
-  return { element, draw: redraw, fields: () => ["ordinal", "state", ...context.axes, "error", "error_time", "error_node"] };
+  return {
+    element,
+    draw: redraw,
+    fields: () => ["ordinal", "state", ...context.axes, "error", "error_time", "error_node"],
+  };
 }

@@ -20,7 +20,19 @@ const COUNT = 5;
 /** A parameter that is not shown, and its value in the grid: that of the slice that is shown, or one to be chosen. @typedef {{name: string, value: number, isFree: boolean}} Held */
 
 /** What of a sweep's request says how its points are made, or how it is called: not of those that are added. */
-const OF_THE_SWEEP = new Set(["axes", "design", "points", "samples", "seed", "skip", "name", "tags", "verify", "owner", "priority"]);
+const OF_THE_SWEEP = new Set([
+  "axes",
+  "design",
+  "points",
+  "samples",
+  "seed",
+  "skip",
+  "name",
+  "tags",
+  "verify",
+  "owner",
+  "priority",
+]);
 
 /**
  * @param {import("./part.js").Context} context
@@ -40,7 +52,10 @@ export function finer(context) {
   let isSent = false;
 
   /** Keeps the region in the link, in the service's units. */
-  const keepRegion = () => context.keep({ finer: sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(",") });
+  const keepRegion = () =>
+    context.keep({
+      finer: sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(","),
+    });
 
   const path = () => `/v1/sweeps/${encodeURIComponent(context.sweep.id)}/points`;
 
@@ -48,32 +63,62 @@ export function finer(context) {
     const axes = context.axes.map((name) => {
       const side = sides.find((one) => one.name === name);
       const value = held.find((one) => one.name === name)?.value;
-      const span = side ? (side.count > 1 ? { from: side.from, to: side.to, count: side.count, ...(context.spans[name]?.scale === "log" ? { scale: "log" } : {}) } : { values: [side.from] }) : { values: [value] };
+      const span = side
+        ? side.count > 1
+          ? {
+              from: side.from,
+              to: side.to,
+              count: side.count,
+              ...(context.spans[name]?.scale === "log" ? { scale: "log" } : {}),
+            }
+          : { values: [side.from] }
+        : { values: [value] };
       return [context.paths[name] ?? name, span];
     });
     return { axes: Object.fromEntries(axes) };
   }
 
-  const rested = debounced(async () => {
-    const mine = ++generation;
-    taken.dispatchEvent(new Event("redraw"));
-    try {
-      const scene = Object.fromEntries(Object.entries(context.sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)));
-      const answer = await send("POST", "/v1/sweeps?dry_run=true", { ...scene, ...request() }, context.signal);
-      if (mine !== generation) return;
-      wrong.textContent = "";
-      const time = answer.known === answer.total ? "nothing is left to compute" : answer.wall_time ? `about ${duration(answer.wall_time)} on the workers there are` : answer.cpu_time ? `${duration(answer.cpu_time)} of processor time` : "how long is not known";
-      fill(planned, `${answer.total} points; ${answer.known} are known and not computed again; ${time}. Points that the sweep has already are skipped.`);
-      add.disabled = isSent || !maySubmit();
-      add.title = maySubmit() ? "" : MAY_NOT;
-      add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
-    } catch (error) {
-      if (context.signal.aborted || mine !== generation) return;
-      fill(planned);
-      const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
-      wrong.textContent = details || (error instanceof Error ? error.message : String(error));
-    }
-  }, 300, context.signal);
+  const rested = debounced(
+    async () => {
+      const mine = ++generation;
+      taken.dispatchEvent(new Event("redraw"));
+      try {
+        const scene = Object.fromEntries(
+          Object.entries(context.sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)),
+        );
+        const answer = await send(
+          "POST",
+          "/v1/sweeps?dry_run=true",
+          { ...scene, ...request() },
+          context.signal,
+        );
+        if (mine !== generation) return;
+        wrong.textContent = "";
+        const time =
+          answer.known === answer.total
+            ? "nothing is left to compute"
+            : answer.wall_time
+              ? `about ${duration(answer.wall_time)} on the workers there are`
+              : answer.cpu_time
+                ? `${duration(answer.cpu_time)} of processor time`
+                : "how long is not known";
+        fill(
+          planned,
+          `${answer.total} points; ${answer.known} are known and not computed again; ${time}. Points that the sweep has already are skipped.`,
+        );
+        add.disabled = isSent || !maySubmit();
+        add.title = maySubmit() ? "" : MAY_NOT;
+        add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
+      } catch (error) {
+        if (context.signal.aborted || mine !== generation) return;
+        fill(planned);
+        const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
+        wrong.textContent = details || (error instanceof Error ? error.message : String(error));
+      }
+    },
+    300,
+    context.signal,
+  );
 
   /** What is added is what was planned: a plan that is under way is of what was there before. */
   function plan() {
@@ -84,20 +129,33 @@ export function finer(context) {
 
   const taken = lines(() => {
     const body = request();
-    const axis = (/** @type {any} */ span) => (span.values ? python(span.values) : `Range(${span.from}, ${span.to}, ${span.count}${span.scale ? ', scale="log"' : ""})`);
+    const axis = (/** @type {any} */ span) =>
+      span.values
+        ? python(span.values)
+        : `Range(${span.from}, ${span.to}, ${span.count}${span.scale ? ', scale="log"' : ""})`;
     return {
       ...bodyLines(path(), body),
-      python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${context.sweep.id}")\nsweep.append({${Object.entries(body.axes).map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`).join(", ")}})`,
+      python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${context.sweep.id}")\nsweep.append({${Object.entries(
+        body.axes,
+      )
+        .map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`)
+        .join(", ")}})`,
     };
   }, "The same request");
 
   /** A field for a number. @param {string} text @param {number} value @param {(value: number) => void} set */
   function box(text, value, set) {
-    const input = h("input", { type: "number", step: "any", style: "width:8rem", value, oninput: () => {
-      if (input.value === "" || !Number.isFinite(Number(input.value))) return;
-      set(Number(input.value));
-      plan();
-    } });
+    const input = h("input", {
+      type: "number",
+      step: "any",
+      style: "width:8rem",
+      value,
+      oninput: () => {
+        if (input.value === "" || !Number.isFinite(Number(input.value))) return;
+        set(Number(input.value));
+        plan();
+      },
+    });
     return h("label", { class: "field" }, h("span", {}, text), input);
   }
 
@@ -117,7 +175,26 @@ export function finer(context) {
       keepRegion();
     };
     const shownAs = (/** @type {number} */ value) => Number((value / size).toPrecision(6));
-    return h("fieldset", { class: "controls" }, h("legend", {}, label(side.name)), box(symbol ? `From [${symbol}]` : "From", shownAs(side.from), kept((value) => (side.from = value * size))), box(symbol ? `To [${symbol}]` : "To", shownAs(side.to), kept((value) => (side.to = value * size))), box("Values", side.count, kept((value) => (side.count = Math.max(1, Math.round(value))))));
+    return h(
+      "fieldset",
+      { class: "controls" },
+      h("legend", {}, label(side.name)),
+      box(
+        symbol ? `From [${symbol}]` : "From",
+        shownAs(side.from),
+        kept((value) => (side.from = value * size)),
+      ),
+      box(
+        symbol ? `To [${symbol}]` : "To",
+        shownAs(side.to),
+        kept((value) => (side.to = value * size)),
+      ),
+      box(
+        "Values",
+        side.count,
+        kept((value) => (side.count = Math.max(1, Math.round(value)))),
+      ),
+    );
   }
 
   async function submit(/** @type {Event} */ event) {
@@ -128,7 +205,11 @@ export function finer(context) {
       const before = context.sweep.counts.total;
       const changed = await send("POST", path(), request());
       const added = changed.counts.total - before;
-      notice(added ? `${added} ${added === 1 ? "point is" : "points are"} added.` : "The sweep has all of these points already.");
+      notice(
+        added
+          ? `${added} ${added === 1 ? "point is" : "points are"} added.`
+          : "The sweep has all of these points already.",
+      );
       context.changed(changed);
       close();
     } catch (error) {
@@ -149,13 +230,33 @@ export function finer(context) {
     element,
     close,
     kept: (names) => {
-      const given = (context.query.get("finer") ?? "").split(",").map((text) => text.split(":")).map(([name, ...numbers]) => ({ name, numbers: numbers.map(Number) }));
-      const isWhole = given.length === names.length && given.every(({ name, numbers }) => names.includes(name) && numbers.length === 3 && numbers.every(Number.isFinite));
-      return isWhole ? given.map(({ name, numbers: [from, to, count] }) => ({ name, from, to, count: Math.max(1, Math.round(count)) })) : null;
+      const given = (context.query.get("finer") ?? "")
+        .split(",")
+        .map((text) => text.split(":"))
+        .map(([name, ...numbers]) => ({ name, numbers: numbers.map(Number) }));
+      const isWhole =
+        given.length === names.length &&
+        given.every(
+          ({ name, numbers }) =>
+            names.includes(name) && numbers.length === 3 && numbers.every(Number.isFinite),
+        );
+      return isWhole
+        ? given.map(({ name, numbers: [from, to, count] }) => ({
+            name,
+            from,
+            to,
+            count: Math.max(1, Math.round(count)),
+          }))
+        : null;
     },
     choose: (chosen, others) => {
       // To six digits: a pixel's width is less than that.
-      sides = chosen.map((side) => ({ ...side, count: side.count || COUNT, from: Number(side.from.toPrecision(6)), to: Number(side.to.toPrecision(6)) }));
+      sides = chosen.map((side) => ({
+        ...side,
+        count: side.count || COUNT,
+        from: Number(side.from.toPrecision(6)),
+        to: Number(side.to.toPrecision(6)),
+      }));
       held = others;
       const [free, sliced] = [held.filter((one) => one.isFree), held.filter((one) => !one.isFree)];
       keepRegion();
@@ -164,7 +265,27 @@ export function finer(context) {
         element,
         h("h2", {}, "A finer grid"),
         h("p", { class: "small soft" }, "Drag over a region of the map, or give its bounds."),
-        h("form", { novalidate: true, onsubmit: submit }, sides.map(fields), free.length > 0 && h("fieldset", { class: "controls" }, h("legend", {}, "Held, where the drawn points differ"), free.map(heldField)), sliced.length > 0 && h("p", { class: "small" }, `Held: ${sliced.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`), planned, wrong, h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close"))),
+        h(
+          "form",
+          { novalidate: true, onsubmit: submit },
+          sides.map(fields),
+          free.length > 0 &&
+            h(
+              "fieldset",
+              { class: "controls" },
+              h("legend", {}, "Held, where the drawn points differ"),
+              free.map(heldField),
+            ),
+          sliced.length > 0 &&
+            h(
+              "p",
+              { class: "small" },
+              `Held: ${sliced.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`,
+            ),
+          planned,
+          wrong,
+          h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close")),
+        ),
         taken,
       );
       plan();

@@ -7,7 +7,10 @@ import { number, title } from "../data/units.js";
 
 const SIDES = ["from", "to"];
 /** Where an axis is moved, and by how many places. @type {[string, number][]} */
-const MOVES = [["left", -1], ["right", 1]];
+const MOVES = [
+  ["left", -1],
+  ["right", 1],
+];
 
 /**
  * An axis in the unit in which it is shown: the ends of its values, and its stretches, whose ends may be infinite.
@@ -29,8 +32,15 @@ export function axisControls(onChange, onMove) {
 
   /** Takes what the fields of an axis say. @param {string} name */
   function take(name) {
-    const ranges = (inputs.get(name) ?? []).map(([from, to]) => [from.value ? from.valueAsNumber : -Infinity, to.value ? to.valueAsNumber : Infinity].sort((a, b) => a - b));
-    onChange(name, ranges.filter((range) => range.some(Number.isFinite)));
+    const ranges = (inputs.get(name) ?? []).map(([from, to]) =>
+      [from.value ? from.valueAsNumber : -Infinity, to.value ? to.valueAsNumber : Infinity].sort(
+        (a, b) => a - b,
+      ),
+    );
+    onChange(
+      name,
+      ranges.filter((range) => range.some(Number.isFinite)),
+    );
   }
 
   /** @param {Axis[]} axes */
@@ -43,7 +53,8 @@ export function axisControls(onChange, onMove) {
         range.forEach((end, side) => {
           const input = inputs.get(axis.name)?.[order][side];
           // What is being typed stays.
-          if (input && input !== document.activeElement) input.value = Number.isFinite(end) ? String(rounded(end)) : "";
+          if (input && input !== document.activeElement)
+            input.value = Number.isFinite(end) ? String(rounded(end)) : "";
         });
       });
     }
@@ -54,13 +65,31 @@ export function axisControls(onChange, onMove) {
     inputs.clear();
     const parts = axes.map((axis, place) => {
       const name = title(axis.name);
-      const pairs = rangesOf(axis).map((_, order) => SIDES.map((side, index) => h("input", { type: "number", step: "any", placeholder: number(axis.ends[index]), "aria-label": `${name}, ${side}${order ? `, stretch ${order + 1}` : ""}`, onchange: () => take(axis.name) })));
+      const pairs = rangesOf(axis).map((_, order) =>
+        SIDES.map((side, index) =>
+          h("input", {
+            type: "number",
+            step: "any",
+            placeholder: number(axis.ends[index]),
+            "aria-label": `${name}, ${side}${order ? `, stretch ${order + 1}` : ""}`,
+            onchange: () => take(axis.name),
+          }),
+        ),
+      );
       inputs.set(axis.name, pairs);
-      const fields = pairs.flatMap((pair) => pair.map((input, index) => h("label", { class: "field" }, h("span", {}, SIDES[index]), input)));
-      const moves = MOVES.map(([where, by]) => moveButton(`Move ${name} ${where}`, where, axes[place + by] ? () => onMove(axis.name, by) : null));
+      const fields = pairs.flatMap((pair) =>
+        pair.map((input, index) => h("label", { class: "field" }, h("span", {}, SIDES[index]), input)),
+      );
+      const moves = MOVES.map(([where, by]) =>
+        moveButton(`Move ${name} ${where}`, where, axes[place + by] ? () => onMove(axis.name, by) : null),
+      );
       return h("fieldset", {}, h("legend", {}, name), h("div", { class: "controls" }, fields, moves));
     });
-    fill(body, h("p", { class: "small soft" }, "An end that is left empty is that of the axis."), h("div", { class: "ranges" }, parts));
+    fill(
+      body,
+      h("p", { class: "small soft" }, "An end that is left empty is that of the axis."),
+      h("div", { class: "ranges" }, parts),
+    );
   }
 
   /**
@@ -68,7 +97,11 @@ export function axisControls(onChange, onMove) {
    * @param {string} name @param {string} where @param {(() => void) | null} move
    */
   function moveButton(name, where, move) {
-    return h("button", { type: "button", "aria-label": name, "aria-disabled": move ? null : "true", onclick: move }, `Move ${where}`);
+    return h(
+      "button",
+      { type: "button", "aria-label": name, "aria-disabled": move ? null : "true", onclick: move },
+      `Move ${where}`,
+    );
   }
 
   return { element: h("details", {}, h("summary", {}, "Keep points by numbers, move axes"), body), show };

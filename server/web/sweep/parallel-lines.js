@@ -20,20 +20,27 @@ export function followLines(place, told, signal) {
   mark.setAttribute("aria-hidden", "true");
   const stroke = mark.appendChild(document.createElementNS(SPACE, "polyline"));
   let isAsked = false;
-  place.addEventListener("pointermove", ({ clientX, clientY }) => {
-    if (isAsked) return;
-    isAsked = true;
-    requestAnimationFrame(() => {
-      isAsked = false;
-      const axes = axesOf(place);
-      const line = nearest(axes, clientX, clientY);
-      if (line === null) return mark.remove();
-      const { left, top } = place.getBoundingClientRect();
-      stroke.setAttribute("points", axes.map((axis) => `${axis.x - left},${heightOf(axis, line) - top}`).join(" "));
-      place.append(mark);
-      told(line);
-    });
-  }, { signal });
+  place.addEventListener(
+    "pointermove",
+    ({ clientX, clientY }) => {
+      if (isAsked) return;
+      isAsked = true;
+      requestAnimationFrame(() => {
+        isAsked = false;
+        const axes = axesOf(place);
+        const line = nearest(axes, clientX, clientY);
+        if (line === null) return mark.remove();
+        const { left, top } = place.getBoundingClientRect();
+        stroke.setAttribute(
+          "points",
+          axes.map((axis) => `${axis.x - left},${heightOf(axis, line) - top}`).join(" "),
+        );
+        place.append(mark);
+        told(line);
+      });
+    },
+    { signal },
+  );
   place.addEventListener("pointerleave", () => mark.remove(), { signal });
 }
 
@@ -46,10 +53,20 @@ function axesOf(place) {
   const drawn = [...place.querySelectorAll(".axis-brush")].map((element, index) => {
     const box = element.getBoundingClientRect();
     const { values } = dimensions[index];
-    const [least, largest] = [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+    const [least, largest] = [
+      values.reduce((a, b) => Math.min(a, b), Infinity),
+      values.reduce((a, b) => Math.max(a, b), -Infinity),
+    ];
     // Of one value alone an axis shows some that are near.
     const spare = largest > least ? 0 : Math.abs(least) / 10 || 1;
-    return { dimension: dimensions[index], x: box.left + box.width / 2, top: box.top, bottom: box.bottom, least: least - spare, largest: largest + spare };
+    return {
+      dimension: dimensions[index],
+      x: box.left + box.width / 2,
+      top: box.top,
+      bottom: box.bottom,
+      least: least - spare,
+      largest: largest + spare,
+    };
   });
   return drawn.sort((a, b) => a.x - b.x);
 }
@@ -71,18 +88,25 @@ function nearest(axes, x, y) {
   const filters = axes.filter(({ dimension }) => dimension.constraintrange?.length);
   let [best, least] = [/** @type {number | null} */ (null), NEAR];
   for (let line = 0; line < before.dimension.values.length; line += 1) {
-    const apart = Math.abs(heightOf(before, line) + part * (heightOf(after, line) - heightOf(before, line)) - y);
-    if (apart < least && filters.every(({ dimension }) => isKept(dimension, line))) [best, least] = [line, apart];
+    const apart = Math.abs(
+      heightOf(before, line) + part * (heightOf(after, line) - heightOf(before, line)) - y,
+    );
+    if (apart < least && filters.every(({ dimension }) => isKept(dimension, line)))
+      [best, least] = [line, apart];
   }
   return best;
 }
 
 /** @param {Dimension} dimension @param {number} line */
 export function isKept(dimension, line) {
-  return rangesOf(dimension).some(([from, to]) => dimension.values[line] >= from && dimension.values[line] <= to);
+  return rangesOf(dimension).some(
+    ([from, to]) => dimension.values[line] >= from && dimension.values[line] <= to,
+  );
 }
 
 /** The stretches of an axis to which points are kept; of one alone the drawing library has no list. @param {Dimension} dimension @returns {number[][]} */
 export function rangesOf({ constraintrange = [] }) {
-  return /** @type {number[][]} */ (constraintrange.length && !Array.isArray(constraintrange[0]) ? [constraintrange] : constraintrange);
+  return /** @type {number[][]} */ (
+    constraintrange.length && !Array.isArray(constraintrange[0]) ? [constraintrange] : constraintrange
+  );
 }

@@ -10,7 +10,8 @@ import { link, rounded } from "../ui/router.js";
 import { preferred, undelayed } from "./part.js";
 import { label, say, shown, title, unit } from "../data/units.js";
 
-const HOW = "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
+const HOW =
+  "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
 /**
  * Dragging along an axis keeps what passes there.
@@ -28,7 +29,9 @@ export function parallel(context) {
 
   function chosen() {
     const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
-    const colour = results.includes(query.get("colour") ?? "") ? (query.get("colour") ?? "") : preferred(results);
+    const colour = results.includes(query.get("colour") ?? "")
+      ? (query.get("colour") ?? "")
+      : preferred(results);
     const first = results.find((name) => name === "friction_coefficient_max") ?? colour;
     const beside = results.includes(query.get("beside") ?? "") ? (query.get("beside") ?? "") : first;
     return { results, colour, beside };
@@ -38,20 +41,27 @@ export function parallel(context) {
   let toldOf = () => {};
   followLines(place, (line) => toldOf(line), context.signal);
 
-  const fields = axisControls((name, ranges) => {
-    const others = (query.get("brush") ?? "").split(",").filter((part) => part && part.split(":")[0] !== name);
-    context.keep({ brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null });
-    attend(redraw(), context.signal);
-  }, (name, places) => {
-    const names = namesInOrder();
-    const at = names.indexOf(name);
-    const to = at + places;
-    // Pressed again before it is redrawn, a button may lead beyond the end of the row.
-    if (!names[to]) return;
-    [names[at], names[to]] = [names[to], name];
-    context.keep(inLink(names));
-    attend(redraw(), context.signal);
-  });
+  const fields = axisControls(
+    (name, ranges) => {
+      const others = (query.get("brush") ?? "")
+        .split(",")
+        .filter((part) => part && part.split(":")[0] !== name);
+      context.keep({
+        brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null,
+      });
+      attend(redraw(), context.signal);
+    },
+    (name, places) => {
+      const names = namesInOrder();
+      const at = names.indexOf(name);
+      const to = at + places;
+      // Pressed again before it is redrawn, a button may lead beyond the end of the row.
+      if (!names[to]) return;
+      [names[at], names[to]] = [names[to], name];
+      context.keep(inLink(names));
+      attend(redraw(), context.signal);
+    },
+  );
 
   /** The axes' names in their usual order. */
   function usualNames() {
@@ -74,10 +84,18 @@ export function parallel(context) {
 
   /** Says to which stretches points are kept in the picture, and how many are. @param {import("./parallel-lines.js").Dimension[]} dimensions */
   function tell(dimensions) {
-    fields.show(dimensions.map((dimension) => ({ name: dimension.name, ends: endsOf(dimension), ranges: opened(dimension) })));
+    fields.show(
+      dimensions.map((dimension) => ({
+        name: dimension.name,
+        ends: endsOf(dimension),
+        ranges: opened(dimension),
+      })),
+    );
     const filters = dimensions.filter((dimension) => rangesOf(dimension).length);
     const all = dimensions[0].values.length;
-    const kept = dimensions[0].values.filter((_, line) => filters.every((dimension) => isKept(dimension, line))).length;
+    const kept = dimensions[0].values.filter((_, line) =>
+      filters.every((dimension) => isKept(dimension, line)),
+    ).length;
     left.textContent = filters.length ? `${kept} of ${all} points are kept.` : "";
   }
 
@@ -89,38 +107,87 @@ export function parallel(context) {
       attend(redraw(), context.signal);
     };
     const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
-    fill(controls, choice("Colour and last axis", options, colour, set("colour")), choice("Further axis", options, beside, set("beside")));
+    fill(
+      controls,
+      choice("Colour and last axis", options, colour, set("colour")),
+      choice("Further axis", options, beside, set("beside")),
+    );
     const names = namesInOrder();
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
     if (!isNewest()) return;
-    const rows = columns[0].map((_, index) => index).filter((index) => columns.every((column) => typeof column[index] === "number"));
+    const rows = columns[0]
+      .map((_, index) => index)
+      .filter((index) => columns.every((column) => typeof column[index] === "number"));
     if (!rows.length) {
       fill(caption, "No point has all of these values yet.");
       return;
     }
     const kept = brushed(query.get("brush") ?? "");
     const dimensions = names.map((name, order) => {
-      const values = /** @type {number[]} */ (shown(name, rows.map((index) => /** @type {number} */ (columns[order][index]))));
+      const values = /** @type {number[]} */ (
+        shown(
+          name,
+          rows.map((index) => /** @type {number} */ (columns[order][index])),
+        )
+      );
       const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
-      return { name, label: title(name), constraintrange: ranges && closed({ name, values, constraintrange: ranges }), values };
+      return {
+        name,
+        label: title(name),
+        constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
+        values,
+      };
     });
     const last = dimensions[names.indexOf(colour)];
-    fill(caption, HOW, [...new Set([beside, colour])].map((name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`));
-    const shape = await draw(place, [{ type: "parcoords", dimensions, line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) }, labelangle: dimensions.length > 4 ? -12 : 0, labelfont: { size: 12 } }], { margin: { l: 80, r: 60, t: 70, b: 30 } }, context.signal);
-    toldOf = (line) => read(Number(ordinals[rows[line]]), names, columns.map((column) => column[rows[line]]));
+    fill(
+      caption,
+      HOW,
+      [...new Set([beside, colour])].map(
+        (name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`,
+      ),
+    );
+    const shape = await draw(
+      place,
+      [
+        {
+          type: "parcoords",
+          dimensions,
+          line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) },
+          labelangle: dimensions.length > 4 ? -12 : 0,
+          labelfont: { size: 12 },
+        },
+      ],
+      { margin: { l: 80, r: 60, t: 70, b: 30 } },
+      context.signal,
+    );
+    toldOf = (line) =>
+      read(
+        Number(ordinals[rows[line]]),
+        names,
+        columns.map((column) => column[rows[line]]),
+      );
     tell(dimensions);
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => {
       const { dimensions } = shape.data[0];
-      context.keep({ brush: written(dimensions) || null, ...inLink(dimensions.map((/** @type {{name: string}} */ { name }) => name)) });
+      context.keep({
+        brush: written(dimensions) || null,
+        ...inLink(dimensions.map((/** @type {{name: string}} */ { name }) => name)),
+      });
       tell(dimensions);
     });
   }
 
   /** Says which point a line is of. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
   function read(ordinal, names, values) {
-    const words = names.map((name, order) => `${label(name)} ${say(name, values[order])}${context.biases.beside(name, ordinal)}`);
-    fill(reading, h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, `Point ${ordinal}`), `: ${words.join(" · ")}`);
+    const words = names.map(
+      (name, order) => `${label(name)} ${say(name, values[order])}${context.biases.beside(name, ordinal)}`,
+    );
+    fill(
+      reading,
+      h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, `Point ${ordinal}`),
+      `: ${words.join(" · ")}`,
+    );
   }
 
   return {
@@ -148,28 +215,41 @@ function brushed(text) {
 
 /** The same of a picture. @param {import("./parallel-lines.js").Dimension[]} dimensions */
 function written(dimensions) {
-  return dimensions.flatMap((dimension) => opened(dimension).map((range) => writtenRange(dimension.name, range))).join(",");
+  return dimensions
+    .flatMap((dimension) => opened(dimension).map((range) => writtenRange(dimension.name, range)))
+    .join(",");
 }
 
 /** @param {string} name @param {number[]} range in the unit in which it is shown */
 function writtenRange(name, range) {
-  return [name, ...range.map((end) => (Number.isFinite(end) ? rounded(end * unit(name).size) : ""))].join(":");
+  return [name, ...range.map((end) => (Number.isFinite(end) ? rounded(end * unit(name).size) : ""))].join(
+    ":",
+  );
 }
 
 /** The least and the largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */
 function endsOf({ values }) {
-  return [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+  return [
+    values.reduce((a, b) => Math.min(a, b), Infinity),
+    values.reduce((a, b) => Math.max(a, b), -Infinity),
+  ];
 }
 
 /** The stretches of an axis whose ends are infinite where they are at or beyond those of the values, which so need not be written. @param {import("./parallel-lines.js").Dimension} dimension */
 function opened(dimension) {
   const [least, largest] = endsOf(dimension);
-  const ranges = rangesOf(dimension).map(([from, to]) => [from <= least ? -Infinity : from, to >= largest ? Infinity : to]);
+  const ranges = rangesOf(dimension).map(([from, to]) => [
+    from <= least ? -Infinity : from,
+    to >= largest ? Infinity : to,
+  ]);
   return ranges.filter((range) => range.some(Number.isFinite));
 }
 
 /** The same with finite ends, as the drawing library needs them. @param {import("./parallel-lines.js").Dimension} dimension */
 function closed(dimension) {
   const [least, largest] = endsOf(dimension);
-  return rangesOf(dimension).map(([from, to]) => [from === -Infinity ? Math.min(least, to) : from, to === Infinity ? Math.max(largest, from) : to]);
+  return rangesOf(dimension).map(([from, to]) => [
+    from === -Infinity ? Math.min(least, to) : from,
+    to === Infinity ? Math.max(largest, from) : to,
+  ]);
 }

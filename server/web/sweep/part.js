@@ -46,5 +46,10 @@ export function undelayed(redraw, context) {
 
 /** The result that an engineer asks for first. @param {string[]} results */
 export function preferred(results) {
-  return results.find((name) => name.startsWith("orbit_radius_rms")) ?? results.find((name) => name === "friction_coefficient_max") ?? results.find((name) => !["state", "error_time", "error_node"].includes(name)) ?? "state";
+  return (
+    results.find((name) => name.startsWith("orbit_radius_rms")) ??
+    results.find((name) => name === "friction_coefficient_max") ??
+    results.find((name) => !["state", "error_time", "error_node"].includes(name)) ??
+    "state"
+  );
 }

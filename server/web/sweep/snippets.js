@@ -24,7 +24,22 @@ export function sweepLines(sweeps) {
     curl: made.map(({ curl }) => curl).join("\n"),
     python: `from drillsweep import Client\n\nclient = Client("${location.origin}")\n${python.join("\n")}`,
     // The options are the same for each table.
-    matlab: made.map(({ matlab = "" }, index) => (index ? matlab.split("\n").slice(1).join("\n").replace(/^table/, "other_table") : matlab)).join("\n"),
-    cli: sweeps.map(({ id }, index) => `drillsweep fetch ${id} --server ${location.origin} --output ${name("results", index)}`).join("\n"),
+    matlab: made
+      .map(({ matlab = "" }, index) =>
+        index
+          ? matlab
+              .split("\n")
+              .slice(1)
+              .join("\n")
+              .replace(/^table/, "other_table")
+          : matlab,
+      )
+      .join("\n"),
+    cli: sweeps
+      .map(
+        ({ id }, index) =>
+          `drillsweep fetch ${id} --server ${location.origin} --output ${name("results", index)}`,
+      )
+      .join("\n"),
   };
 }

@@ -82,8 +82,15 @@ export async function show(main, route, signal) {
   };
   const part = make(context);
 
-  const tabs = PARTS.map(([name]) => h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }));
-  const drawTabs = () => PARTS.forEach(([name, text], index) => (tabs[index].textContent = name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text));
+  const tabs = PARTS.map(([name]) =>
+    h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }),
+  );
+  const drawTabs = () =>
+    PARTS.forEach(
+      ([name, text], index) =>
+        (tabs[index].textContent =
+          name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text),
+    );
   const head = h("div", {});
   const pace = new Pace();
   pace.note(sweep);
@@ -116,7 +123,8 @@ export async function show(main, route, signal) {
 
   /** @param {any} changed */
   function update(changed) {
-    const hasResults = changed.counts.succeeded !== sweep.counts.succeeded || changed.counts.failed !== sweep.counts.failed;
+    const hasResults =
+      changed.counts.succeeded !== sweep.counts.succeeded || changed.counts.failed !== sweep.counts.failed;
     const wasFinal = isFinal(sweep);
     // What is absent is not so any more.
     sweep = { ...sweep, waiting_for: undefined, ...changed };
@@ -125,7 +133,8 @@ export async function show(main, route, signal) {
     drawHead();
     drawTabs();
     attend(learnPace(), signal);
-    if (hasResults && waiting === undefined) waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
+    if (hasResults && waiting === undefined)
+      waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
     if (wasFinal && !isFinal(sweep)) follow(id, { sweep: update }, signal);
   }
 
@@ -148,11 +157,18 @@ export async function show(main, route, signal) {
     h("nav", { class: "crumbs", "aria-label": "Breadcrumb" }, h("a", { href: "#/sweeps" }, "Sweeps"), " / "),
     head,
     h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, tabs),
-    h("section", { class: "panel", "aria-label": PARTS.find(([name]) => name === view)?.[1] ?? "" }, part.element),
+    h(
+      "section",
+      { class: "panel", "aria-label": PARTS.find(([name]) => name === view)?.[1] ?? "" },
+      part.element,
+    ),
     taken,
   );
   await part.draw();
-  attend(deepened.then(() => (depths.isMissed && !signal.aborted ? part.draw() : undefined)), signal);
+  attend(
+    deepened.then(() => (depths.isMissed && !signal.aborted ? part.draw() : undefined)),
+    signal,
+  );
   attend(learnPace(), signal);
   if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
   return sweep.name ?? `Sweep ${id.slice(-8)}`;
@@ -163,8 +179,18 @@ export async function show(main, route, signal) {
  * @param {string[]} warnings each begins with the name of what it is of
  */
 function warningsPart([first, ...others]) {
-  const line = (/** @type {string} */ warning) => h("p", { class: "wrong" }, warning.replace(/^(\w+)(?=: )/, label));
-  return [first && line(first), others.length > 0 && h("details", {}, h("summary", {}, `${others.length} further ${others.length === 1 ? "warning" : "warnings"}`), others.map(line))];
+  const line = (/** @type {string} */ warning) =>
+    h("p", { class: "wrong" }, warning.replace(/^(\w+)(?=: )/, label));
+  return [
+    first && line(first),
+    others.length > 0 &&
+      h(
+        "details",
+        {},
+        h("summary", {}, `${others.length} further ${others.length === 1 ? "warning" : "warnings"}`),
+        others.map(line),
+      ),
+  ];
 }
 
 /**
@@ -188,9 +214,25 @@ async function secondsOfPoint(id, signal) {
  * @param {(changes: any) => void} change
  */
 function headPart(sweep, pace, act, change) {
-  const button = (/** @type {string} */ verb, /** @type {string} */ text, /** @type {boolean} */ isShown, kind = "") => isShown && h("button", { class: kind, disabled: !maySubmit(), title: !maySubmit() && MAY_NOT, onclick: () => act(verb) }, text);
+  const button = (
+    /** @type {string} */ verb,
+    /** @type {string} */ text,
+    /** @type {boolean} */ isShown,
+    kind = "",
+  ) =>
+    isShown &&
+    h(
+      "button",
+      { class: kind, disabled: !maySubmit(), title: !maySubmit() && MAY_NOT, onclick: () => act(verb) },
+      text,
+    );
   const canRetry = isFinal(sweep) && sweep.counts.failed + sweep.counts.cancelled > 0;
-  const priority = choice("Priority", Array.from({ length: 21 }, (_, index) => [String(10 - index), String(10 - index)]), String(sweep.priority), (value) => change({ priority: Number(value) }));
+  const priority = choice(
+    "Priority",
+    Array.from({ length: 21 }, (_, index) => [String(10 - index), String(10 - index)]),
+    String(sweep.priority),
+    (value) => change({ priority: Number(value) }),
+  );
   const { worst, warnings = [] } = sweep.verification ?? {};
   return [
     h(
@@ -200,14 +242,36 @@ function headPart(sweep, pace, act, change) {
         "div",
         {},
         h("h1", {}, sweep.name ?? `Sweep ${sweep.id.slice(-8)}`),
-        h("p", { class: "soft small" }, `${sweep.request?.preset ?? sweep.request?.scenario?.name ?? "own scenario"}, of ${sweep.owner}, `, when(sweep.created), " ", (sweep.tags ?? []).map((/** @type {string} */ tag) => h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag))),
+        h(
+          "p",
+          { class: "soft small" },
+          `${sweep.request?.preset ?? sweep.request?.scenario?.name ?? "own scenario"}, of ${sweep.owner}, `,
+          when(sweep.created),
+          " ",
+          (sweep.tags ?? []).map((/** @type {string} */ tag) =>
+            h("a", { class: "tag", href: link(["sweeps"], { tag }) }, tag),
+          ),
+        ),
       ),
       h(
         "div",
         { class: "controls" },
         button("pause", "Pause", sweep.state === "running"),
         button("resume", "Resume", sweep.state === "paused"),
-        !isFinal(sweep) && h("button", { class: "danger", disabled: !maySubmit(), title: !maySubmit() && MAY_NOT, onclick: () => confirm("Cancel this sweep? Queued points are not started, running ones are stopped. Results so far stay.") && act("cancel") }, "Cancel"),
+        !isFinal(sweep) &&
+          h(
+            "button",
+            {
+              class: "danger",
+              disabled: !maySubmit(),
+              title: !maySubmit() && MAY_NOT,
+              onclick: () =>
+                confirm(
+                  "Cancel this sweep? Queued points are not started, running ones are stopped. Results so far stay.",
+                ) && act("cancel"),
+            },
+            "Cancel",
+          ),
         button("retry", "Retry failed and cancelled", canRetry),
         !isFinal(sweep) && maySubmit() && priority,
         h("a", { class: "button", href: link(["new"], { from: sweep.id }) }, "New sweep like this"),
@@ -215,7 +279,13 @@ function headPart(sweep, pace, act, change) {
       ),
     ),
     h("div", { "aria-live": "off" }, progressPart(sweep, pace)),
-    worst && h("p", { class: "small" }, `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`, worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : "."),
+    worst &&
+      h(
+        "p",
+        { class: "small" },
+        `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`,
+        worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : ".",
+      ),
     warningsPart(warnings),
     sweep.waiting_for && h("p", { class: "wrong" }, `${sweep.waiting_for.reason}.`),
     h("div", { style: "height:.8rem" }),

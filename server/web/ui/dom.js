@@ -42,14 +42,21 @@ export function append(parent, children) {
  */
 export function fill(parent, ...children) {
   const focused = document.activeElement;
-  const before = focused && focused !== parent && parent.contains(focused) ? { name: nameOf(focused), all: [...parent.querySelectorAll(focused.localName)] } : null;
+  const before =
+    focused && focused !== parent && parent.contains(focused)
+      ? { name: nameOf(focused), all: [...parent.querySelectorAll(focused.localName)] }
+      : null;
   parent.replaceChildren();
   append(parent, children);
   if (!focused || !before) return;
   const after = [...parent.querySelectorAll(focused.localName)];
   const sameName = after.filter((element) => nameOf(element) === before.name);
   const samePlace = after.length === before.all.length ? after[before.all.indexOf(focused)] : undefined;
-  const equivalent = parent.contains(focused) ? focused : sameName.length === 1 ? sameName[0] : (samePlace ?? sameName[0]);
+  const equivalent = parent.contains(focused)
+    ? focused
+    : sameName.length === 1
+      ? sameName[0]
+      : (samePlace ?? sameName[0]);
   if (equivalent instanceof HTMLElement) equivalent.focus({ preventScroll: true });
 }
 
@@ -71,7 +78,8 @@ function nameOf(element) {
  */
 export function choice(label, options, chosen, onChange) {
   const select = h("select", { "aria-label": label, onchange: () => onChange(select.value) });
-  for (const [value, text] of options) select.append(h("option", { value, selected: value === chosen }, text));
+  for (const [value, text] of options)
+    select.append(h("option", { value, selected: value === chosen }, text));
   select.value = chosen;
   return h("label", { class: "field" }, h("span", {}, label), select);
 }

@@ -23,7 +23,10 @@ export function rememberComparison(query) {
  * @returns {string[]} such as `SWEEP:3`
  */
 export function comparedIn(query) {
-  return [...new Set((query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key)))].slice(0, MOST);
+  return [...new Set((query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key)))].slice(
+    0,
+    MOST,
+  );
 }
 
 /**
@@ -38,6 +41,12 @@ export function waysToCompare(key) {
   if (!keys.length || (keys.length === 1 && keys[0] === key)) return [fresh];
   const isIn = keys.includes(key);
   if (!isIn && keys.length >= MOST) return [{ ...fresh, text: "New comparison" }];
-  const added = link(["compare"], { ...Object.fromEntries(last), points: (isIn ? keys : [...keys, key]).join(",") });
-  return [{ text: isIn ? "Back to the comparison" : `Add to the comparison of ${keys.length}`, href: added }, { ...fresh, text: "New comparison" }];
+  const added = link(["compare"], {
+    ...Object.fromEntries(last),
+    points: (isIn ? keys : [...keys, key]).join(","),
+  });
+  return [
+    { text: isIn ? "Back to the comparison" : `Add to the comparison of ${keys.length}`, href: added },
+    { ...fresh, text: "New comparison" },
+  ];
 }

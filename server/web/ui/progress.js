@@ -19,13 +19,21 @@ export function progressPart(sweep, pace) {
   const isMarked = sweep.state === "completed" && counts.failed > 0;
   if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
   if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
-  if (sweep.state === "running") words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
+  if (sweep.state === "running")
+    words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
   const percent = Math.floor(100 * sweep.progress);
   return h(
     "div",
     {},
-    h("span", { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` }, isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state),
-    !isFinal(sweep) && [h("span", { class: "soft small" }, ` ${percent} %`), h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` })],
+    h(
+      "span",
+      { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` },
+      isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state,
+    ),
+    !isFinal(sweep) && [
+      h("span", { class: "soft small" }, ` ${percent} %`),
+      h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` }),
+    ],
     h("div", { class: "small soft" }, words.join(", ")),
   );
 }

@@ -36,7 +36,12 @@ export async function logOut() {
  */
 export function logIn(done) {
   if (document.querySelector("dialog[open]")) return;
-  const token = h("input", { type: "password", autocomplete: "current-password", required: true, name: "token" });
+  const token = h("input", {
+    type: "password",
+    autocomplete: "current-password",
+    required: true,
+    name: "token",
+  });
   const wrong = h("p", { class: "wrong", role: "alert" });
   const dialog = h("dialog", { "aria-labelledby": "login-title" });
   const submit = async (/** @type {Event} */ event) => {
@@ -57,7 +62,11 @@ export function logIn(done) {
       "form",
       { onsubmit: submit },
       h("h2", { id: "login-title" }, "Log in"),
-      h("p", { class: "soft" }, "This service needs a token. The browser keeps a session until the token ends or you log out."),
+      h(
+        "p",
+        { class: "soft" },
+        "This service needs a token. The browser keeps a session until the token ends or you log out.",
+      ),
       h("label", { class: "field wide" }, h("span", {}, "Token"), token),
       wrong,
       h("button", { class: "main", type: "submit" }, "Log in"),

@@ -12,7 +12,12 @@ import { session } from "./session.js";
  */
 
 /** @type {[keyof Lines, string][]} */
-const LANGUAGES = [["curl", "curl"], ["python", "Python"], ["matlab", "MATLAB"], ["cli", "Command line"]];
+const LANGUAGES = [
+  ["curl", "curl"],
+  ["python", "Python"],
+  ["matlab", "MATLAB"],
+  ["cli", "Command line"],
+];
 
 /**
  * @param {() => Lines} make called when the lines are opened, so that they follow the view
@@ -22,21 +27,35 @@ export function lines(make, about = "Lines that made this view") {
   const body = h("div", {});
   const draw = () => {
     const made = make();
-    const shown = LANGUAGES.flatMap(([key, name]) => (made[key] ? [h("h2", {}, name), snippet(made[key] ?? "", name)] : []));
+    const shown = LANGUAGES.flatMap(([key, name]) =>
+      made[key] ? [h("h2", {}, name), snippet(made[key] ?? "", name)] : [],
+    );
     fill(body, shown.length ? shown : h("p", { class: "soft" }, "This view shows no data."));
   };
-  const details = h("details", { class: "lines", ontoggle: () => details.open && draw() }, h("summary", {}, `${about}: curl, Python, MATLAB`), body);
+  const details = h(
+    "details",
+    { class: "lines", ontoggle: () => details.open && draw() },
+    h("summary", {}, `${about}: curl, Python, MATLAB`),
+    body,
+  );
   details.addEventListener("redraw", () => details.open && draw());
   return details;
 }
 
 /** @param {string} text @param {string} name */
 function snippet(text, name) {
-  const copy = h("button", { "aria-label": `Copy the lines for ${name}`, onclick: async () => {
-    await navigator.clipboard.writeText(text);
-    copy.textContent = "Copied";
-    setTimeout(() => (copy.textContent = "Copy"), 1500);
-  } }, "Copy");
+  const copy = h(
+    "button",
+    {
+      "aria-label": `Copy the lines for ${name}`,
+      onclick: async () => {
+        await navigator.clipboard.writeText(text);
+        copy.textContent = "Copied";
+        setTimeout(() => (copy.textContent = "Copy"), 1500);
+      },
+    },
+    "Copy",
+  );
   return h("div", { class: "snippet" }, h("pre", { tabindex: "0" }, text), copy);
 }
 
@@ -54,7 +73,10 @@ export function python(value) {
   if (value === true) return "True";
   if (value === false) return "False";
   if (Array.isArray(value)) return `[${value.map(python).join(", ")}]`;
-  if (typeof value === "object") return `{${Object.entries(value).map(([name, entry]) => `${JSON.stringify(name)}: ${python(entry)}`).join(", ")}}`;
+  if (typeof value === "object")
+    return `{${Object.entries(value)
+      .map(([name, entry]) => `${JSON.stringify(name)}: ${python(entry)}`)
+      .join(", ")}}`;
   return JSON.stringify(value);
 }
 
@@ -91,9 +113,17 @@ export function requestLines(asked, pythonLines) {
     return `curl -fsS ${curlToken()}${shell(`${location.origin}${one.path}${text && `?${text.replaceAll("%2C", ",")}`}`)}${file}`;
   });
   const kinds = [...new Set(asked.map(optionsOf))];
-  const options = kinds.map((kind) => `${kind} = weboptions(ContentType="${kind === "csv" ? "table" : "json"}", Timeout=90${matlabToken()});`);
+  const options = kinds.map(
+    (kind) =>
+      `${kind} = weboptions(ContentType="${kind === "csv" ? "table" : "json"}", Timeout=90${matlabToken()});`,
+  );
   const reads = asked.map((one) => {
-    const arguments_ = pairsOf(one).map(([name, value]) => `, "${name}", ${typeof value === "number" ? value : `"${String(value).replaceAll('"', '""')}"`}`).join("");
+    const arguments_ = pairsOf(one)
+      .map(
+        ([name, value]) =>
+          `, "${name}", ${typeof value === "number" ? value : `"${String(value).replaceAll('"', '""')}"`}`,
+      )
+      .join("");
     return `${one.name ?? "table"} = webread("${location.origin}${one.path}"${arguments_}, ${optionsOf(one)});`;
   });
   return { curl: curl.join("\n"), python: pythonLines, matlab: [...options, ...reads].join("\n") };
@@ -121,12 +151,16 @@ function curlToken() {
 
 /** The same among MATLAB's options. */
 function matlabToken() {
-  return session().tokens_required ? ', HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]' : "";
+  return session().tokens_required
+    ? ', HeaderFields=["Authorization", "Bearer " + getenv("DRILLSWEEP_TOKEN")]'
+    : "";
 }
 
 /** @param {Asked} one @returns {[string, any][]} */
 function pairsOf({ query = {}, isDocument }) {
-  const given = Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "");
+  const given = Object.entries(query).filter(
+    ([, value]) => value !== null && value !== undefined && value !== "",
+  );
   return isDocument ? given : [...given, ["format", "csv"]];
 }
 

@@ -38,7 +38,7 @@ test("every import leads to a module", () => {
 
 test("no module imports itself by way of others", () => {
   const left = new Map(imports);
-  for (let before = Infinity; left.size < before; ) {
+  for (let before = Infinity; left.size < before;) {
     before = left.size;
     for (const [path, targets] of left) if (!targets.some((target) => left.has(target))) left.delete(path);
   }

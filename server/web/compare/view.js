@@ -5,7 +5,7 @@ import { dragWindow } from "../draw/brush.js";
 import { endOf, rangeOf } from "./side-by-side.js";
 import { comparedRange, comparedRate, energyAccount, VIEWS, wellColour, wellFactor } from "./views.js";
 import { comparedIn, MOST, rememberComparison } from "../ui/last-comparison.js";
-import { depthCursor } from "../draw/depth-cursor.js";
+import { DepthCursor } from "../draw/depth-cursor.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { lines, python, pythonNode, requestLines } from "../ui/snippets.js";
 import { rangesOf } from "../data/motion-requests.js";
@@ -379,7 +379,7 @@ export async function show(main, route, signal) {
 
   /** What the points' profiles are at a depth. @type {NonNullable<import("./comparison.js").Comparison["profiled"]>["read"]} */
   let readAt = () => [];
-  const cursor = depthCursor(place, { query, keep: remember }, (depth, told) => readAt(depth, told));
+  const cursor = new DepthCursor(place, { query, keep: remember }, (depth, told) => readAt(depth, told));
 
   async function redraw() {
     latest.abort();

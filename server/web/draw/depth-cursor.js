@@ -17,21 +17,20 @@ const STEPS = {
   End: Infinity,
 };
 
-/**
- * @param {HTMLElement} place the picture
- * @param {{query: URLSearchParams, keep: (changes: Record<string, string | null>) => void}} link which holds where the cursor was moved to
- * @param {(depth: number, told: any[]) => import("../ui/dom.js").Child | import("../ui/dom.js").Child[]} read what is at a depth in the unit in which
- *   it is shown, with the points of the picture that the mouse is at
- * @returns {{element: HTMLElement, follow: (shape: any, depths: number[]) => void}} `follow` goes with the picture that has just been
- *   drawn, and moves by its nodes' depths
- */
-export function depthCursor(place, link, read) {
-  const reading = h(
+/** @typedef {import("../ui/dom.js").Child} Child */
+/** @typedef {(depth: number, told: any[]) => Child | Child[]} Read */
+
+/** A slider over the nodes of a picture of profiles, with the values at its depth in words. */
+export class DepthCursor {
+  #place;
+  #link;
+  #read;
+  #reading = h(
     "div",
     { class: "small soft", role: "status" },
     "Point at a depth, or move the cursor, to read all profiles there.",
   );
-  const slider = h("input", {
+  #slider = h("input", {
     type: "range",
     min: 0,
     max: 0,
@@ -39,95 +38,101 @@ export function depthCursor(place, link, read) {
     value: "0",
     disabled: true,
     "aria-label": "Depth cursor",
-    onkeydown: stepped,
-    oninput: () => move(slider.valueAsNumber),
+    onkeydown: (/** @type {KeyboardEvent} */ event) => this.#step(event),
+    oninput: () => this.#move(this.#slider.valueAsNumber),
   });
-  const cursor = h(
-    "label",
-    { class: "field wide" },
-    h(
-      "span",
-      {},
-      "Depth cursor: arrow keys move it by a node, Page Up and Page Down by ten, Home and End to the ends",
-    ),
-    slider,
-  );
   /** @type {number[]} */
-  let depths = [];
-  /** Whether the picture has a line where the cursor was moved to. */
-  let isMarked = false;
+  #depths = [];
+  /** Whether the picture has a line at the cursor's depth. */
+  #isMarked = false;
 
-  /** @param {any} shape @param {number[]} ofNodes */
-  function follow(shape, ofNodes) {
+  /**
+   * @param {HTMLElement} place the picture
+   * @param {{query: URLSearchParams, keep: (changes: Record<string, string | null>) => void}} link which holds the cursor's depth
+   * @param {Read} read values at a depth in the unit in which it is shown, and the points of the picture that the mouse is at
+   */
+  constructor(place, link, read) {
+    this.#place = place;
+    this.#link = link;
+    this.#read = read;
+    const cursor = h(
+      "label",
+      { class: "field wide" },
+      h(
+        "span",
+        {},
+        "Depth cursor: arrow keys move it by a node, Page Up and Page Down by ten, Home and End to the ends",
+      ),
+      this.#slider,
+    );
+    this.element = h("div", {}, cursor, this.#reading);
+  }
+
+  /** Follows the picture that has just been drawn. @param {any} shape @param {number[]} depths of its nodes */
+  follow(shape, depths) {
     shape.removeAllListeners?.("plotly_hover");
     shape.on?.("plotly_hover", (/** @type {any} */ event) => {
       const { y } = event.points[0];
-      slideTo(nearest(depths, y));
+      this.#slideTo(nearest(this.#depths, y));
       // The mouse has a line of its own.
-      if (isMarked) mark(null);
-      tell(y, event.points);
+      if (this.#isMarked) this.#mark(null);
+      this.#tell(y, event.points);
     });
-    depths = ofNodes;
-    Object.assign(slider, { max: String(Math.max(0, depths.length - 1)), disabled: !depths.length });
-    const asked = link.query.has("cursor") ? Number(link.query.get("cursor")) : NaN;
+    this.#depths = depths;
+    Object.assign(this.#slider, { max: String(Math.max(0, depths.length - 1)), disabled: !depths.length });
+    const { query } = this.#link;
+    const asked = query.has("cursor") ? Number(query.get("cursor")) : NaN;
     const isAsked = Number.isFinite(asked) && depths.length > 0;
-    slideTo(isAsked ? nearest(depths, asked / unit("measured_depth").size) : 0);
-    if (isAsked) show(slider.valueAsNumber);
+    this.#slideTo(isAsked ? nearest(depths, asked / unit("measured_depth").size) : 0);
+    if (isAsked) this.#show(this.#slider.valueAsNumber);
   }
 
   /** @param {KeyboardEvent} event */
-  function stepped(event) {
+  #step(event) {
     const step = STEPS[event.key];
     if (!step || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
-    move(Math.max(0, Math.min(depths.length - 1, slider.valueAsNumber + step)));
+    this.#move(Math.max(0, Math.min(this.#depths.length - 1, this.#slider.valueAsNumber + step)));
   }
 
   /** Moves the cursor to a node. @param {number} index */
-  function move(index) {
-    slideTo(index);
-    link.keep({ cursor: String(rounded(depths[index] * unit("measured_depth").size)) });
-    show(index);
+  #move(index) {
+    this.#slideTo(index);
+    this.#link.keep({ cursor: String(rounded(this.#depths[index] * unit("measured_depth").size)) });
+    this.#show(index);
   }
 
   /** @param {number} index of a node */
-  function slideTo(index) {
-    slider.value = String(index);
-    slider.setAttribute("aria-valuetext", depthOf(depths[index] ?? 0));
+  #slideTo(index) {
+    this.#slider.value = String(index);
+    this.#slider.setAttribute("aria-valuetext", depthOf(this.#depths[index] ?? 0));
   }
 
-  /** Shows and reads what is at a node. @param {number} index */
-  function show(index) {
-    mark(depths[index]);
-    tell(depths[index], []);
+  /** Shows and reads the values at a node. @param {number} index */
+  #show(index) {
+    this.#mark(this.#depths[index]);
+    this.#tell(this.#depths[index], []);
   }
 
   /** Draws a line at a depth, or none. @param {number | null} depth */
-  function mark(depth) {
-    isMarked = depth !== null;
-    void adjust(place, {
-      shapes: isMarked
-        ? [
-            {
-              type: "line",
-              xref: "paper",
-              x0: 0,
-              x1: 1,
-              y0: depth,
-              y1: depth,
-              line: { color: inks().text, width: 1 },
-            },
-          ]
-        : [],
-    });
+  #mark(depth) {
+    this.#isMarked = depth !== null;
+    const line = {
+      type: "line",
+      xref: "paper",
+      x0: 0,
+      x1: 1,
+      y0: depth,
+      y1: depth,
+      line: { color: inks().text, width: 1 },
+    };
+    void adjust(this.#place, { shapes: this.#isMarked ? [line] : [] });
   }
 
   /** @param {number} depth in the unit in which it is shown @param {any[]} told */
-  function tell(depth, told) {
-    fill(reading, `At ${depthOf(depth)}: `, read(depth, told));
+  #tell(depth, told) {
+    fill(this.#reading, `At ${depthOf(depth)}: `, this.#read(depth, told));
   }
-
-  return { element: h("div", {}, cursor, reading), follow };
 }
 
 /** @param {number} depth in the unit in which it is shown */

@@ -4,71 +4,22 @@ import { address, get } from "../data/api.js";
 import { fill, h } from "../ui/dom.js";
 import { bytes, duration, label, meaning, moment, number, say } from "../data/units.js";
 
+/** Files that are tables, which are served as CSV, too. */
+const TABLES = ["profile", "statics", "history", "contacts", "energy", "snapshots"];
+
 /**
  * @param {import("./part.js").PointContext} context
  * @returns {import("./part.js").PointPart}
  */
 export function about(context) {
   const { point, path, signal } = context;
-  const effects = h(
-    "section",
-    { class: "panel", "aria-label": "Effects" },
-    h("h2", {}, "Effects"),
-    h("p", { class: "soft" }, "Loading…"),
-  );
-  const files = h(
-    "section",
-    { class: "panel", "aria-label": "Downloads" },
-    h("h2", {}, "Downloads"),
-    h("p", { class: "soft" }, "Loading…"),
-  );
+  const effects = loadingPanel("Effects");
+  const files = loadingPanel("Downloads");
 
   async function drawEffects() {
     try {
       const plan = await get(`${path}/plan`, {}, signal);
-      const rows = plan.effects.map((/** @type {any} */ effect) =>
-        h(
-          "tr",
-          {},
-          h("td", {}, effect.effect.replaceAll("_", " ")),
-          h(
-            "td",
-            {},
-            h(
-              "span",
-              { class: `state ${effect.active ? "succeeded" : "cancelled"}` },
-              effect.active ? "on" : "off",
-            ),
-          ),
-          h("td", {}, effect.reason),
-          h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`),
-        ),
-      );
-      fill(
-        effects,
-        h("h2", {}, "Effects"),
-        h(
-          "div",
-          { class: "scroll" },
-          h(
-            "table",
-            {},
-            h(
-              "thead",
-              {},
-              h(
-                "tr",
-                {},
-                h("th", {}, "Effect"),
-                h("th", {}, "Is"),
-                h("th", {}, "Why"),
-                h("th", {}, "Switch"),
-              ),
-            ),
-            h("tbody", {}, rows),
-          ),
-        ),
-      );
+      fill(effects, h("h2", {}, "Effects"), effectsTable(plan));
     } catch (error) {
       if (signal.aborted) return;
       fill(
@@ -81,60 +32,11 @@ export function about(context) {
 
   async function drawFiles() {
     const { artifacts } = await get(`${path}/artifacts`, {}, signal);
-    const rows = artifacts.map((/** @type {any} */ file) => {
-      const hasView = ["profile", "statics", "history", "contacts", "energy", "snapshots"].includes(
-        file.name,
-      );
-      return h(
-        "tr",
-        {},
-        h(
-          "td",
-          {},
-          file.expired
-            ? `${file.name} (expired)`
-            : h(
-                "a",
-                { href: file.link, download: "" },
-                `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`,
-              ),
-        ),
-        h("td", { class: "number" }, file.rows),
-        h("td", { class: "number" }, bytes(file.bytes)),
-        h(
-          "td",
-          {},
-          hasView &&
-            !file.expired &&
-            h(
-              "a",
-              { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` },
-              "CSV",
-            ),
-        ),
-      );
-    });
     fill(
       files,
       h("h2", {}, "Downloads"),
-      rows.length
-        ? h(
-            "table",
-            {},
-            h(
-              "thead",
-              {},
-              h(
-                "tr",
-                {},
-                h("th", {}, "File"),
-                h("th", { class: "number" }, "Rows"),
-                h("th", { class: "number" }, "Size"),
-                h("th", {}, "As"),
-              ),
-            ),
-            h("tbody", {}, rows),
-          )
+      artifacts.length
+        ? filesTable(path, artifacts)
         : h("p", { class: "soft" }, "Of this point only its row of the table is stored."),
     );
   }
@@ -163,6 +65,80 @@ export function about(context) {
         'summary, provenance = point.summary, point.provenance\nplan = point.plan()\nprint(summary, provenance, plan["effects"], sep="\\n")',
     }),
   };
+}
+
+/** @param {string} heading */
+function loadingPanel(heading) {
+  return h(
+    "section",
+    { class: "panel", "aria-label": heading },
+    h("h2", {}, heading),
+    h("p", { class: "soft" }, "Loading…"),
+  );
+}
+
+/** @param {any} plan of the point */
+function effectsTable({ effects }) {
+  const rows = effects.map((/** @type {any} */ effect) =>
+    h(
+      "tr",
+      {},
+      h("td", {}, effect.effect.replaceAll("_", " ")),
+      h(
+        "td",
+        {},
+        h(
+          "span",
+          { class: `state ${effect.active ? "succeeded" : "cancelled"}` },
+          effect.active ? "on" : "off",
+        ),
+      ),
+      h("td", {}, effect.reason),
+      h("td", { class: "soft" }, effect.switch === "auto" ? "" : `set ${effect.switch}`),
+    ),
+  );
+  const heads = ["Effect", "Is", "Why", "Switch"].map((text) => h("th", {}, text));
+  return h(
+    "div",
+    { class: "scroll" },
+    h("table", {}, h("thead", {}, h("tr", {}, heads)), h("tbody", {}, rows)),
+  );
+}
+
+/** @param {string} path of the point @param {any[]} artifacts */
+function filesTable(path, artifacts) {
+  const rows = artifacts.map((file) => {
+    const name = file.expired
+      ? `${file.name} (expired)`
+      : h(
+          "a",
+          { href: file.link, download: "" },
+          `${file.name}${file.link.slice(file.link.lastIndexOf("."))}`,
+        );
+    const csv =
+      TABLES.includes(file.name) &&
+      !file.expired &&
+      h(
+        "a",
+        { href: address(`${path}/${file.name}`, { format: "csv" }), download: `${file.name}.csv` },
+        "CSV",
+      );
+    return h(
+      "tr",
+      {},
+      h("td", {}, name),
+      h("td", { class: "number" }, file.rows),
+      h("td", { class: "number" }, bytes(file.bytes)),
+      h("td", {}, csv),
+    );
+  });
+  const heads = [
+    h("th", {}, "File"),
+    h("th", { class: "number" }, "Rows"),
+    h("th", { class: "number" }, "Size"),
+    h("th", {}, "As"),
+  ];
+  return h("table", {}, h("thead", {}, h("tr", {}, heads)), h("tbody", {}, rows));
 }
 
 /** @param {string} heading @param {[string, string][]} facts @param {any[]} [more] */

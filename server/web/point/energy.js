@@ -28,6 +28,12 @@ export function ledger(columns) {
   };
 }
 
+/** Number of an account's group: supplied, dissipated or held. @param {string} name */
+function groupOf(name) {
+  if (SUPPLIED.includes(name)) return 0;
+  return DISSIPATED.includes(name) ? 1 : 2;
+}
+
 /**
  * @param {import("./part.js").PointContext} context
  * @returns {import("./part.js").PointPart}
@@ -40,75 +46,11 @@ export function energy(context) {
   async function redraw() {
     const { columns } = await context.table("energy");
     const last = columns.time.length - 1;
-    const { accounts, change } = ledger(columns);
-    const kind = (/** @type {string} */ name) =>
-      SUPPLIED.includes(name) ? 0 : DISSIPATED.includes(name) ? 1 : 2;
-    const backwards = accounts.toReversed();
-    const symbol = unit("kinetic").symbol;
     fill(
       caption,
       `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of what it moves: the error of the integration.`,
     );
-    const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
-      const names = backwards.filter((account) => kind(account) === group);
-      return {
-        type: "bar",
-        orientation: "h",
-        name,
-        y: names.map(label),
-        x: names.map((account) => shown(account, [change(account)])[0]),
-        marker: { color: LINES[group] },
-        showlegend: true,
-        text: names.map((account) => say(account, change(account), 3)),
-        textposition: "outside",
-        cliponaxis: false,
-        hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>`,
-      };
-    });
-    const values = accounts.map((account) => Number(shown(account, [change(account)])[0]));
-    const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
-    // Numbers stand beyond the ends of bars.
-    const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (bars.clientWidth || USUAL) - NAMES));
-    const room = (part / (1 - 2 * part)) * (largest - least || 1);
-    await Promise.all([
-      draw(
-        bars,
-        traces,
-        {
-          xaxis: {
-            title: `energy [${symbol}]`,
-            quantity: backwards[0],
-            range: [least < 0 ? least - room : 0, largest + room],
-          },
-          yaxis: { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) },
-          margin: { l: 20, r: 80, t: 30, b: 50 },
-        },
-        context.signal,
-      ),
-      draw(
-        curves,
-        accounts.map((name, order) => ({
-          type: "scatter",
-          mode: "lines",
-          name: label(name),
-          x: columns.time,
-          y: shown(name, columns[name]),
-          line: {
-            color: LINES[order % LINES.length],
-            dash: DASHES[Math.floor(order / LINES.length) + (kind(name) === 2 ? 1 : 0)],
-            width: 1.4,
-          },
-          showlegend: true,
-          hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>`,
-        })),
-        {
-          xaxis: { title: "time [s]" },
-          yaxis: { title: `energy since the start [${symbol}]`, quantity: backwards[0] },
-          hovermode: "x",
-        },
-        context.signal,
-      ),
-    ]);
+    await Promise.all([drawBars(bars, columns, context.signal), drawCurves(curves, columns, context.signal)]);
   }
 
   return {
@@ -123,4 +65,68 @@ export function energy(context) {
     draw: redraw,
     request: () => ({ asked: [{ table: "energy" }], python: "energy = point.energy().to_pandas()" }),
   };
+}
+
+/** Draws the change of each account over the run. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
+function drawBars(place, columns, signal) {
+  const { accounts, change } = ledger(columns);
+  const backwards = accounts.toReversed();
+  const { symbol } = unit("kinetic");
+  const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
+    const names = backwards.filter((account) => groupOf(account) === group);
+    return {
+      type: "bar",
+      orientation: "h",
+      name,
+      y: names.map(label),
+      x: names.map((account) => shown(account, [change(account)])[0]),
+      marker: { color: LINES[group] },
+      showlegend: true,
+      text: names.map((account) => say(account, change(account), 3)),
+      textposition: "outside",
+      cliponaxis: false,
+      hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>`,
+    };
+  });
+  const values = accounts.map((account) => Number(shown(account, [change(account)])[0]));
+  const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
+  // Numbers stand beyond the ends of bars.
+  const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (place.clientWidth || USUAL) - NAMES));
+  const room = (part / (1 - 2 * part)) * (largest - least || 1);
+  const xaxis = {
+    title: `energy [${symbol}]`,
+    quantity: backwards[0],
+    range: [least < 0 ? least - room : 0, largest + room],
+  };
+  const yaxis = { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) };
+  return draw(place, traces, { xaxis, yaxis, margin: { l: 20, r: 80, t: 30, b: 50 } }, signal);
+}
+
+/** Draws the accounts over time. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
+function drawCurves(place, columns, signal) {
+  const { accounts } = ledger(columns);
+  const { symbol } = unit("kinetic");
+  const traces = accounts.map((name, order) => {
+    const dash = DASHES[Math.floor(order / LINES.length) + (groupOf(name) === 2 ? 1 : 0)];
+    return {
+      type: "scatter",
+      mode: "lines",
+      name: label(name),
+      x: columns.time,
+      y: shown(name, columns[name]),
+      line: { color: LINES[order % LINES.length], dash, width: 1.4 },
+      showlegend: true,
+      hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>`,
+    };
+  });
+  return draw(
+    place,
+    traces,
+    {
+      xaxis: { title: "time [s]" },
+      yaxis: { title: `energy since the start [${symbol}]`, quantity: accounts.at(-1) },
+      hovermode: "x",
+    },
+    signal,
+  );
 }

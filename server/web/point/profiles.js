@@ -1,6 +1,6 @@
 // Quantities over depth, side by side with one depth cursor.
 
-import { depthCursor, nearest } from "../draw/depth-cursor.js";
+import { DepthCursor, nearest } from "../draw/depth-cursor.js";
 import { h } from "../ui/dom.js";
 import { python } from "../ui/snippets.js";
 import { generations } from "../ui/generations.js";
@@ -189,7 +189,7 @@ export function profiles(context) {
   });
   /** @type {Record<string, any>} */
   const tables = {};
-  const cursor = depthCursor(place, context, (depth, told) =>
+  const cursor = new DepthCursor(place, context, (depth, told) =>
     reading(ticks.names(), (name) => tables[tableOf(name)], depth, told),
   );
   const begin = generations();

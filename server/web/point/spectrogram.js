@@ -13,83 +13,80 @@ const LENGTHS = ["1", "2", "4", "8", "16"];
 /** Below this part of the highest amplitude a logarithmic scale ends. */
 const DEPTH = 1e-3;
 
+/** Choices of a spectrogram, as the link holds them. */
+class Choices {
+  #query;
+  #nodes;
+
+  /** @param {URLSearchParams} query @param {any[]} nodes that were recorded */
+  constructor(query, nodes) {
+    this.#query = query;
+    this.#nodes = nodes;
+  }
+
+  get node() {
+    return this.#query.get("node") ?? "0";
+  }
+
+  /** Highest frequency [Hz]. */
+  get range() {
+    return this.#offered("range", RANGES, "20");
+  }
+
+  /** Length of a window [s]; empty for the service's own. */
+  get length() {
+    return this.#offered("length", ["", ...LENGTHS], "");
+  }
+
+  get isLog() {
+    return this.#query.get("amplitude") !== "linear";
+  }
+
+  /** Query of the table. */
+  asks() {
+    const asked = this.#nodes[Number(this.#query.get("node") ?? 0)] ?? this.#nodes[0];
+    const selector =
+      asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+    return {
+      ...selector,
+      range_hz: Number(this.range),
+      ...(this.length ? { window_s: Number(this.length) } : {}),
+    };
+  }
+
+  /** @param {string} name @param {string[]} offered @param {string} usual */
+  #offered(name, offered, usual) {
+    const asked = this.#query.get(name);
+    return asked !== null && offered.includes(asked) ? asked : usual;
+  }
+}
+
 /**
  * @param {import("./part.js").PointContext} context
  * @returns {import("./part.js").PointPart}
  */
 export function spectrogram(context) {
-  const { point, query } = context;
-  const { recording } = point.scenario;
   /** @type {any[]} */
-  const nodes = recording.nodes;
+  const nodes = context.point.scenario.recording.nodes;
+  const choices = new Choices(context.query, nodes);
   const place = canvas("Spectrogram of the node", "spectrogram", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const wrong = h("p", { class: "wrong", role: "alert" });
   let generation = 0;
 
-  const of = (/** @type {string} */ name, /** @type {string[]} */ offered, /** @type {string} */ usual) =>
-    offered.includes(query.get(name) ?? "") ? (query.get(name) ?? usual) : usual;
-  const range = () => of("range", RANGES, "20");
-  const length = () => of("length", ["", ...LENGTHS], "");
-  const isLog = () => query.get("amplitude") !== "linear";
-  const selector = () => {
-    const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
-    return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+  const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
+    context.keep({ [name]: value || null });
+    attend(redraw(), context.signal);
   };
-  const asks = () => ({
-    ...selector(),
-    range_hz: Number(range()),
-    ...(length() ? { window_s: Number(length()) } : {}),
-  });
-
-  function drawControls() {
-    const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
-      context.keep({ [name]: value || null });
-      attend(redraw(), context.signal);
-    };
-    fill(
-      controls,
-      choice(
-        "Node",
-        nodes.map((node, index) => [
-          String(index),
-          node.node !== undefined ? String(node.node) : say("measured_depth", node.depth),
-        ]),
-        query.get("node") ?? "0",
-        set("node"),
-      ),
-      choice(
-        "Frequencies up to",
-        RANGES.map((text) => [text, `${text} Hz`]),
-        range(),
-        set("range"),
-      ),
-      choice(
-        "Length of a window",
-        [["", "by the run"], ...LENGTHS.map((text) => /** @type {[string, string]} */ ([text, `${text} s`]))],
-        length(),
-        set("length"),
-      ),
-      choice(
-        "Amplitude",
-        [
-          ["log", "logarithmic"],
-          ["linear", "linear"],
-        ],
-        isLog() ? "log" : "linear",
-        set("amplitude"),
-      ),
-    );
-  }
 
   async function redraw() {
-    drawControls();
+    fill(controls, controlsPart(nodes, choices, set));
     const mine = ++generation;
     wrong.textContent = "";
     let table;
     try {
-      table = await context.table("spectrogram", asks());
+      table = await context.table("spectrogram", choices.asks());
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       wrong.textContent = error.errors[0]?.detail ?? error.message;
@@ -101,11 +98,12 @@ export function spectrogram(context) {
       "aria-label",
       `Spectrogram of node ${node} at ${say("measured_depth", measured_depth)}`,
     );
-    fill(caption, describe(table, Number(range())));
+    const range = Number(choices.range);
+    fill(caption, describe(table, range));
     await drawSpectrogram(
       place,
       table,
-      { isLog: isLog(), range: Number(range()), most: largestOf(table) },
+      { isLog: choices.isLog, range, most: largestOf(table) },
       context.signal,
     );
   }
@@ -117,13 +115,49 @@ export function spectrogram(context) {
     draw: nodes.length ? redraw : async () => {},
     request: () => {
       if (!nodes.length) return null;
-      const { range_hz, window_s, ...which } = /** @type {any} */ (asks());
+      const { range_hz, window_s, ...which } = /** @type {any} */ (choices.asks());
       return {
-        asked: [{ table: "spectrogram", query: asks() }],
+        asked: [{ table: "spectrogram", query: choices.asks() }],
         python: `spectrogram = point.spectrogram(${pythonNode(which)}, range_hz=${range_hz}${window_s ? `, window_s=${window_s}` : ""}).to_pandas()`,
       };
     },
   };
+}
+
+/** @param {any[]} nodes @param {Choices} choices @param {(name: string) => (value: string) => void} set */
+function controlsPart(nodes, choices, set) {
+  return [
+    choice(
+      "Node",
+      nodes.map((node, index) => [
+        String(index),
+        node.node !== undefined ? String(node.node) : say("measured_depth", node.depth),
+      ]),
+      choices.node,
+      set("node"),
+    ),
+    choice(
+      "Frequencies up to",
+      RANGES.map((text) => [text, `${text} Hz`]),
+      choices.range,
+      set("range"),
+    ),
+    choice(
+      "Length of a window",
+      [["", "by the run"], ...LENGTHS.map((text) => /** @type {[string, string]} */ ([text, `${text} s`]))],
+      choices.length,
+      set("length"),
+    ),
+    choice(
+      "Amplitude",
+      [
+        ["log", "logarithmic"],
+        ["linear", "linear"],
+      ],
+      choices.isLog ? "log" : "linear",
+      set("amplitude"),
+    ),
+  ];
 }
 
 /**

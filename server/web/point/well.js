@@ -25,14 +25,14 @@ export function well(context) {
     QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force";
   const factor = () => exaggeration(query, USUAL);
   const begin = generations();
+  const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+    context.keep({ [key]: value });
+    attend(redraw(), context.signal);
+  };
 
   async function redraw() {
     const isNewest = begin();
     const name = colour();
-    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
-      context.keep({ [key]: value });
-      attend(redraw(), context.signal);
-    };
     fill(
       controls,
       choice(
@@ -47,67 +47,14 @@ export function well(context) {
     const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
     if (!isNewest()) return;
     const values = onNodes(table, name, statics.measured_depth.length);
-    const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
-    const string = displaced(statics, axis, factor());
-    const line = (/** @type {typeof axis} */ path) => ({
-      x: shown("east", path.east),
-      y: shown("north", path.north),
-      z: shown("true_vertical_depth", path.down),
-    });
-    const { soft, line: faint } = inks();
-    const texts = values.map(
-      (value, index) =>
-        `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`,
-    );
-    const space = (/** @type {string} */ text) => ({
-      title: { text: `${text} [${unit("north").symbol}]` },
-      gridcolor: faint,
-      zeroline: false,
-      color: soft,
-      backgroundcolor: "rgba(0,0,0,0)",
-    });
     fill(
       caption,
       `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`,
     );
     await draw(
       place,
-      [
-        {
-          type: "scatter3d",
-          mode: "lines",
-          ...line(axis),
-          line: { color: soft, width: 2 },
-          hoverinfo: "skip",
-          name: "axis of the hole",
-        },
-        {
-          type: "scatter3d",
-          mode: "lines",
-          ...line(string),
-          line: {
-            color: shown(name, values),
-            colorscale: lineScale(),
-            width: 9,
-            colorbar: colourBar(title(name)),
-            showscale: true,
-          },
-          text: texts,
-          hoverinfo: "text",
-          name: "string",
-        },
-      ],
-      {
-        showlegend: false,
-        margin: { l: 0, r: 0, t: 0, b: 0 },
-        scene: {
-          xaxis: space("east"),
-          yaxis: space("north"),
-          zaxis: { ...space("true vertical depth"), autorange: "reversed" },
-          aspectmode: "data",
-          camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
-        },
-      },
+      wellTraces(statics, name, values, factor()),
+      { showlegend: false, ...spaceLayout() },
       context.signal,
     );
   }
@@ -115,20 +62,89 @@ export function well(context) {
   return {
     element: h("div", {}, controls, h("figure", {}, place, caption)),
     draw: redraw,
-    request: () => {
-      const [name, table] = [colour(), tableOf(colour())];
-      const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
-      const statics = [...space, ...(table === "statics" ? [name] : [])];
-      const depth =
-        table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
-      const asked = [
-        { table: "statics", query: { fields: [...new Set(statics)].join(",") } },
-        ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }]),
-      ];
-      return {
-        asked,
-        python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n"),
-      };
+    request: () => requestOf(colour()),
+  };
+}
+
+/** Requests behind the well. @param {string} name of the quantity that colours the string @returns {import("./part.js").PartRequest} */
+function requestOf(name) {
+  const table = tableOf(name);
+  const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
+  const statics = [...space, ...(table === "statics" ? [name] : [])];
+  const depth = table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
+  const asked = [
+    { table: "statics", query: { fields: [...new Set(statics)].join(",") } },
+    ...(table === "statics" ? [] : [{ table, query: { fields: [...depth, name].join(",") } }]),
+  ];
+  return {
+    asked,
+    python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n"),
+  };
+}
+
+/**
+ * Axis of the hole and the string, coloured by values at its nodes.
+ * @param {any} statics columns of the table
+ * @param {string} name of the values
+ * @param {(number | null)[]} values
+ * @param {number} factor by which the distance from the axis is multiplied
+ */
+function wellTraces(statics, name, values, factor) {
+  const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
+  const line = (/** @type {typeof axis} */ path) => ({
+    x: shown("east", path.east),
+    y: shown("north", path.north),
+    z: shown("true_vertical_depth", path.down),
+  });
+  const text = values.map(
+    (value, index) =>
+      `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`,
+  );
+  return [
+    {
+      type: "scatter3d",
+      mode: "lines",
+      ...line(axis),
+      line: { color: inks().soft, width: 2 },
+      hoverinfo: "skip",
+      name: "axis of the hole",
+    },
+    {
+      type: "scatter3d",
+      mode: "lines",
+      ...line(displaced(statics, axis, factor)),
+      line: {
+        color: shown(name, values),
+        colorscale: lineScale(),
+        width: 9,
+        colorbar: colourBar(title(name)),
+        showscale: true,
+      },
+      text,
+      hoverinfo: "text",
+      name: "string",
+    },
+  ];
+}
+
+/** Layout of a picture of wells in space. */
+export function spaceLayout() {
+  const { soft, line } = inks();
+  const axis = (/** @type {string} */ text) => ({
+    title: { text: `${text} [${unit("north").symbol}]` },
+    gridcolor: line,
+    zeroline: false,
+    color: soft,
+    backgroundcolor: "rgba(0,0,0,0)",
+  });
+  return {
+    margin: { l: 0, r: 0, t: 0, b: 0 },
+    scene: {
+      xaxis: axis("east"),
+      yaxis: axis("north"),
+      zaxis: { ...axis("true vertical depth"), autorange: "reversed" },
+      aspectmode: "data",
+      camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
     },
   };
 }

@@ -35,81 +35,10 @@ export function failures(context) {
       fill(element, h("p", { class: "empty" }, "No point of this sweep has failed."));
       return;
     }
-    /** @type {Map<string, any[]>} */
-    const causes = new Map();
-    for (const point of page.points) {
-      const key = `${point.error?.class ?? "unknown"}\n${(point.error?.reason ?? "no reason is known").replace(/-?\d+(\.\d+)?([eE][+-]?\d+)?/g, "…")}`;
-      causes.set(key, [...(causes.get(key) ?? []), point]);
-    }
-    const groups = [...causes.values()].sort((a, b) => b.length - a.length);
+    const sections = byCause(page.points).map((points) => causePart(sweep.id, points));
     fill(
       element,
-      groups.map((points) => {
-        const { error } = points[0];
-        return h(
-          "section",
-          {},
-          h(
-            "h2",
-            {},
-            h("span", { class: "state failed" }, error?.class ?? "unknown"),
-            ` ${points.length} ${points.length === 1 ? "point" : "points"}`,
-          ),
-          h("p", { class: "soft small" }, MEANING[error?.class] ?? ""),
-          h("p", {}, error?.reason ?? "No reason is known."),
-          h(
-            "div",
-            { class: "scroll" },
-            h(
-              "table",
-              {},
-              h(
-                "thead",
-                {},
-                h(
-                  "tr",
-                  {},
-                  h("th", {}, "Point"),
-                  h("th", {}, "Parameters"),
-                  h("th", {}, "At"),
-                  h("th", { class: "number" }, "Attempts"),
-                ),
-              ),
-              h(
-                "tbody",
-                {},
-                points.map((point) =>
-                  h(
-                    "tr",
-                    {},
-                    h(
-                      "td",
-                      {},
-                      h(
-                        "a",
-                        { href: link(["sweeps", sweep.id, "points", String(point.ordinal)]) },
-                        point.ordinal,
-                      ),
-                    ),
-                    h("td", {}, sayParameters(point.parameters)),
-                    h(
-                      "td",
-                      { class: "small" },
-                      [
-                        typeof point.error?.time === "number" && say("time", point.error.time),
-                        point.error?.node && `node ${point.error.node}`,
-                      ]
-                        .filter(Boolean)
-                        .join(", "),
-                    ),
-                    h("td", { class: "number" }, point.attempts),
-                  ),
-                ),
-              ),
-            ),
-          ),
-        );
-      }),
+      sections,
       page.next ? h("p", { class: "soft" }, `The first ${PAGE} failures are shown.`) : null,
     );
   }
@@ -118,4 +47,72 @@ export function failures(context) {
     draw: redraw,
     fields: () => ["ordinal", "state", ...context.axes, "error", "error_time", "error_node"],
   };
+}
+
+/**
+ * Failed points grouped by class and reason, in which numbers do not count; the largest group first.
+ * @param {any[]} points
+ * @returns {any[][]}
+ */
+function byCause(points) {
+  /** @type {Map<string, any[]>} */
+  const causes = new Map();
+  for (const point of points) {
+    const key = `${point.error?.class ?? "unknown"}\n${(point.error?.reason ?? "no reason is known").replace(/-?\d+(\.\d+)?([eE][+-]?\d+)?/g, "…")}`;
+    causes.set(key, [...(causes.get(key) ?? []), point]);
+  }
+  return [...causes.values()].sort((a, b) => b.length - a.length);
+}
+
+/** @param {string} id of the sweep @param {any[]} points that failed by one cause */
+function causePart(id, points) {
+  const { error } = points[0];
+  const heads = [
+    h("th", {}, "Point"),
+    h("th", {}, "Parameters"),
+    h("th", {}, "At"),
+    h("th", { class: "number" }, "Attempts"),
+  ];
+  return h(
+    "section",
+    {},
+    h(
+      "h2",
+      {},
+      h("span", { class: "state failed" }, error?.class ?? "unknown"),
+      ` ${points.length} ${points.length === 1 ? "point" : "points"}`,
+    ),
+    h("p", { class: "soft small" }, MEANING[error?.class] ?? ""),
+    h("p", {}, error?.reason ?? "No reason is known."),
+    h(
+      "div",
+      { class: "scroll" },
+      h(
+        "table",
+        {},
+        h("thead", {}, h("tr", {}, heads)),
+        h(
+          "tbody",
+          {},
+          points.map((point) => pointRow(id, point)),
+        ),
+      ),
+    ),
+  );
+}
+
+/** @param {string} id of the sweep @param {any} point */
+function pointRow(id, point) {
+  const place = [
+    typeof point.error?.time === "number" && say("time", point.error.time),
+    point.error?.node && `node ${point.error.node}`,
+  ];
+  return h(
+    "tr",
+    {},
+    h("td", {}, h("a", { href: link(["sweeps", id, "points", String(point.ordinal)]) }, point.ordinal)),
+    h("td", {}, sayParameters(point.parameters)),
+    h("td", { class: "small" }, place.filter(Boolean).join(", ")),
+    h("td", { class: "number" }, point.attempts),
+  );
 }

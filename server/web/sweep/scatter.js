@@ -6,14 +6,23 @@ import { attend } from "../ui/notices.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { MANY, preferred, undelayed } from "./part.js";
 import { isText } from "../data/sweep-table.js";
-import { label, say, shown, title, unit } from "../data/units.js";
+import { label, say, shown, title } from "../data/units.js";
+
+/** @typedef {import("./part.js").Context} Context */
+/** @typedef {{names: string[], x: string, y: string, colour: string, isLogX: boolean, isLogY: boolean}} Chosen */
+/** @typedef {import("../data/sweep-table.js").Values} Values */
+
+/** @type {[string, string][]} */
+const SCALES = [
+  ["linear", "linear"],
+  ["log", "logarithmic"],
+];
 
 /**
- * @param {import("./part.js").Context} context
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function scatter(context) {
-  const { table, query } = context;
   const place = canvas(
     "Scatter of the points",
     "scatter",
@@ -23,90 +32,18 @@ export function scatter(context) {
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const begin = generations();
-
-  function chosen() {
-    const names = table.results();
-    const pick = (/** @type {string} */ key, /** @type {string | undefined} */ other) =>
-      names.includes(query.get(key) ?? "") ? (query.get(key) ?? "") : (other ?? names[0]);
-    return {
-      names,
-      x: pick("x", context.axes[0]),
-      y: pick("y", preferred(names)),
-      colour: pick("colour", context.axes[1] ?? context.axes[0]),
-      isLogX: query.get("xscale") === "log",
-      isLogY: query.get("yscale") === "log",
-    };
-  }
+  const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+    context.keep({ [key]: value });
+    attend(redraw(), context.signal);
+  };
 
   async function redraw() {
     const isNewest = begin();
-    const { names, x, y, colour, isLogX, isLogY } = chosen();
-    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
-      context.keep({ [key]: value });
-      attend(redraw(), context.signal);
-    };
-    const options = names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
-    /** @type {[string, string][]} */
-    const scales = [
-      ["linear", "linear"],
-      ["log", "logarithmic"],
-    ];
-    fill(
-      controls,
-      choice("Across", options, x, set("x")),
-      choice("Scale across", scales, isLogX ? "log" : "linear", set("xscale")),
-      choice("Up", options, y, set("y")),
-      choice("Scale up", scales, isLogY ? "log" : "linear", set("yscale")),
-      choice("Colour", options, colour, set("colour")),
-    );
-    const [ordinals, xs, ys, colours] = await table.columns("ordinal", x, y, colour);
+    const chosen = chosenIn(context);
+    const { x, y, colour } = chosen;
+    fill(controls, controlsPart(chosen, set));
+    const [ordinals, xs, ys, colours] = await context.table.columns("ordinal", x, y, colour);
     if (!isNewest()) return;
-    const words = isText(colours) ? [...new Set(colours)].filter((word) => word !== null) : null;
-    const at = (/** @type {string} */ name, /** @type {any[]} */ values) =>
-      isText(values) ? values : shown(name, values);
-    const [atX, atY] = [at(x, xs), at(y, ys)];
-    const text =
-      ordinals.length > MANY
-        ? undefined
-        : ordinals.map(
-            (ordinal, index) =>
-              `point ${ordinal}<br>${label(x)} ${say(x, xs[index])}${context.biases.beside(x, Number(ordinal))}<br>${label(y)} ${say(y, ys[index])}${context.biases.beside(y, Number(ordinal))}<br>${label(colour)} ${say(colour, colours[index])}${context.biases.beside(colour, Number(ordinal))}`,
-          );
-    const base = {
-      type: ordinals.length > MANY ? "scattergl" : "scatter",
-      mode: "markers",
-      hoverinfo: text ? "text" : "x+y",
-    };
-    const size = ordinals.length > MANY ? 4 : 8;
-    const traces = words
-      ? words.map((word, order) => {
-          const rows = ordinals.map((_, index) => index).filter((index) => colours[index] === word);
-          return {
-            ...base,
-            name: String(word),
-            x: rows.map((index) => atX[index]),
-            y: rows.map((index) => atY[index]),
-            text: text && rows.map((index) => text[index]),
-            customdata: rows.map((index) => ordinals[index]),
-            marker: { size, color: LINES[order % LINES.length], symbol: order },
-            showlegend: true,
-          };
-        })
-      : [
-          {
-            ...base,
-            x: atX,
-            y: atY,
-            text,
-            customdata: ordinals,
-            marker: {
-              size,
-              color: shown(colour, /** @type {(number | null)[]} */ (colours)),
-              colorscale: lineScale(),
-              colorbar: colourBar(title(colour)),
-            },
-          },
-        ];
     const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
     fill(
       caption,
@@ -116,13 +53,20 @@ export function scatter(context) {
       ),
     );
     place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);
+    const axis = (
+      /** @type {string} */ name,
+      /** @type {Values} */ values,
+      /** @type {boolean} */ isLog,
+    ) => ({
+      title: title(name),
+      quantity: name,
+      type: isText(values) ? "category" : isLog ? "log" : "linear",
+    });
+    const layout = { xaxis: axis(x, xs, chosen.isLogX), yaxis: axis(y, ys, chosen.isLogY) };
     const shape = await draw(
       place,
-      traces,
-      {
-        xaxis: { title: title(x), quantity: x, type: isText(xs) ? "category" : isLogX ? "log" : "linear" },
-        yaxis: { title: title(y), quantity: y, type: isText(ys) ? "category" : isLogY ? "log" : "linear" },
-      },
+      tracesOf(context, chosen, { ordinals, xs, ys, colours }),
+      layout,
       context.signal,
     );
     shape.removeAllListeners?.("plotly_click");
@@ -133,8 +77,86 @@ export function scatter(context) {
     element: h("div", {}, controls, h("figure", {}, place, caption)),
     draw: undelayed(redraw, context),
     fields: () => {
-      const { x, y, colour } = chosen();
+      const { x, y, colour } = chosenIn(context);
       return [...new Set(["ordinal", x, y, colour])];
     },
   };
+}
+
+/** Choices of the link, or the usual ones. @param {Context} context @returns {Chosen} */
+function chosenIn({ table, query, axes }) {
+  const names = table.results();
+  const pick = (/** @type {string} */ key, /** @type {string | undefined} */ other) =>
+    names.includes(query.get(key) ?? "") ? (query.get(key) ?? "") : (other ?? names[0]);
+  return {
+    names,
+    x: pick("x", axes[0]),
+    y: pick("y", preferred(names)),
+    colour: pick("colour", axes[1] ?? axes[0]),
+    isLogX: query.get("xscale") === "log",
+    isLogY: query.get("yscale") === "log",
+  };
+}
+
+/** @param {Chosen} chosen @param {(key: string) => (value: string) => void} set */
+function controlsPart({ names, x, y, colour, isLogX, isLogY }, set) {
+  const options = names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+  return [
+    choice("Across", options, x, set("x")),
+    choice("Scale across", SCALES, isLogX ? "log" : "linear", set("xscale")),
+    choice("Up", options, y, set("y")),
+    choice("Scale up", SCALES, isLogY ? "log" : "linear", set("yscale")),
+    choice("Colour", options, colour, set("colour")),
+  ];
+}
+
+/**
+ * One trace coloured by numbers, or one for each word.
+ * @param {Context} context
+ * @param {Chosen} chosen
+ * @param {{ordinals: Values, xs: Values, ys: Values, colours: Values}} columns
+ */
+function tracesOf({ biases }, { x, y, colour }, { ordinals, xs, ys, colours }) {
+  const isMany = ordinals.length > MANY;
+  const at = (/** @type {string} */ name, /** @type {any[]} */ values) =>
+    isText(values) ? values : shown(name, values);
+  const [atX, atY] = [at(x, xs), at(y, ys)];
+  const part = (/** @type {string} */ name, /** @type {Values} */ values, /** @type {number} */ index) =>
+    `${label(name)} ${say(name, values[index])}${biases.beside(name, Number(ordinals[index]))}`;
+  const text = isMany
+    ? undefined
+    : ordinals.map((ordinal, index) =>
+        [`point ${ordinal}`, part(x, xs, index), part(y, ys, index), part(colour, colours, index)].join(
+          "<br>",
+        ),
+      );
+  const base = { type: isMany ? "scattergl" : "scatter", mode: "markers", hoverinfo: text ? "text" : "x+y" };
+  const size = isMany ? 4 : 8;
+  if (!isText(colours)) {
+    const color = shown(colour, /** @type {(number | null)[]} */ (colours));
+    return [
+      {
+        ...base,
+        x: atX,
+        y: atY,
+        text,
+        customdata: ordinals,
+        marker: { size, color, colorscale: lineScale(), colorbar: colourBar(title(colour)) },
+      },
+    ];
+  }
+  const words = [...new Set(colours)].filter((word) => word !== null);
+  return words.map((word, order) => {
+    const rows = ordinals.map((_, index) => index).filter((index) => colours[index] === word);
+    return {
+      ...base,
+      name: String(word),
+      x: rows.map((index) => atX[index]),
+      y: rows.map((index) => atY[index]),
+      text: text && rows.map((index) => text[index]),
+      customdata: rows.map((index) => ordinals[index]),
+      marker: { size, color: LINES[order % LINES.length], symbol: order },
+      showlegend: true,
+    };
+  });
 }

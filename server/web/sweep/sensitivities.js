@@ -8,12 +8,15 @@ import { LEAST_POINTS, shares } from "../data/sensitivity.js";
 import { preferred, undelayed } from "./part.js";
 import { label, title, unit } from "../data/units.js";
 
+/** @typedef {import("./part.js").Context} Context */
+/** @typedef {import("../data/sensitivity.js").Share} Share */
+
 /**
- * @param {import("./part.js").Context} context
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function effects(context) {
-  const { table, axes, query } = context;
+  const { table, axes } = context;
   const bars = canvas("Shares of the variance", "shares", "low");
   const curves = canvas("Main effects", "effects");
   const caption = h("figcaption", {});
@@ -29,23 +32,9 @@ export function effects(context) {
     h("figure", {}, curves, h("figcaption", {}, "Bars are standard errors of the means.")),
   );
 
-  function chosen() {
-    const results = table
-      .results()
-      .filter(
-        (name) =>
-          !axes.includes(name) &&
-          !["state", "error_time", "error_node", "stable", "instability"].includes(name),
-      );
-    return {
-      results,
-      result: results.includes(query.get("result") ?? "") ? (query.get("result") ?? "") : preferred(results),
-    };
-  }
-
   async function redraw() {
     const isNewest = begin();
-    const { results, result } = chosen();
+    const { results, result } = chosenIn(context);
     fill(
       controls,
       choice(
@@ -77,109 +66,16 @@ export function effects(context) {
       columns.map((column) => rows.map((row) => Number(column[row]))),
       rows.map((row) => Number(values[row]) / size),
     );
-    const order = found.map((_, index) => index).sort((a, b) => found[a].first - found[b].first);
-    const names = order.map((index) => label(axes[index]));
-    const firsts = order.map((index) => found[index].first);
-    const hasTotals = found.every((share) => share.total !== null);
-    const intervals = order.map((index) => found[index].interval);
-    const shownEnds = hasTotals ? [] : intervals.flatMap((interval) => interval ?? []);
-    const traces = [
-      hasTotals && {
-        type: "bar",
-        orientation: "h",
-        name: "total index (with interactions)",
-        y: names,
-        x: order.map((index) => found[index].total),
-        marker: { color: LINES[5] },
-      },
-      {
-        type: "bar",
-        orientation: "h",
-        name: "first-order index (alone)",
-        y: names,
-        x: firsts,
-        marker: { color: LINES[0] },
-        ...(hasTotals
-          ? {}
-          : {
-              error_x: {
-                type: "data",
-                symmetric: false,
-                array: intervals.map((one, at) => (one ? Math.max(0, one[1] - firsts[at]) : 0)),
-                arrayminus: intervals.map((one, at) => (one ? Math.max(0, firsts[at] - one[0]) : 0)),
-                color: LINES[1],
-                thickness: 2,
-              },
-            }),
-      },
-    ].filter(Boolean);
     fill(
       caption,
       `Of the variance of ${label(result)} over ${rows.length} points. `,
-      hasTotals
-        ? "The points are a full grid: the shares are its exact decomposition, over the values that it has."
-        : "The points are no full grid: first-order indices are estimated from the points as they are, by ratios of correlation within groups along each parameter, less what groups of unrelated points would show. Lines are 95 % intervals (jackknife).",
+      sayMethod(found),
       ` ${context.biases.say(result)}`,
     );
-    bars.setAttribute(
-      "aria-label",
-      `Shares of the variance of ${label(result)}: ${order
-        .toReversed()
-        .map((index) => `${label(axes[index])} ${Math.round(100 * found[index].first)} %`)
-        .join(", ")}`,
-    );
-    const layout = {
-      grid: { rows: 1, columns: axes.length, pattern: "independent" },
-      showlegend: false,
-      ...Object.fromEntries(
-        axes.flatMap((axis, index) => [
-          [
-            `xaxis${index || ""}`.replace(/^xaxis(\d+)$/, (_, at) => `xaxis${Number(at) + 1}`),
-            {
-              title: title(axis),
-              quantity: axis,
-              type: context.spans[axis]?.scale === "log" ? "log" : "linear",
-            },
-          ],
-          [
-            `yaxis${index ? index + 1 : ""}`,
-            { title: index ? "" : title(result), quantity: result, matches: index ? "y" : undefined },
-          ],
-        ]),
-      ),
-    };
+    bars.setAttribute("aria-label", `Shares of the variance of ${label(result)}: ${sayShares(axes, found)}`);
     await Promise.all([
-      draw(
-        bars,
-        traces,
-        {
-          xaxis: {
-            title: "share of the variance (Sobol index)",
-            range: [Math.min(0, ...firsts, ...shownEnds) - 0.01, Math.max(1, ...shownEnds) + 0.02],
-          },
-          yaxis: { title: "", gridcolor: "rgba(0,0,0,0)", automargin: true },
-          barmode: "group",
-          margin: { l: 20, r: 16, t: 30, b: 50 },
-        },
-        context.signal,
-      ),
-      draw(
-        curves,
-        axes.map((axis, index) => ({
-          type: "scatter",
-          mode: "lines+markers",
-          x: found[index].levels.map((level) => level.value / unit(axis).size),
-          y: found[index].levels.map((level) => level.mean),
-          error_y: { type: "data", array: found[index].levels.map((level) => level.error), thickness: 1.2 },
-          line: { color: LINES[index % LINES.length] },
-          xaxis: `x${index ? index + 1 : ""}`,
-          yaxis: `y${index ? index + 1 : ""}`,
-          name: label(axis),
-          hoverinfo: "x+y",
-        })),
-        layout,
-        context.signal,
-      ),
+      drawShares(bars, axes, found, context.signal),
+      drawCurves(curves, context, result, found),
     ]);
   }
 
@@ -189,6 +85,145 @@ export function effects(context) {
   return {
     element,
     draw: axes.length ? undelayed(redraw, context) : async () => {},
-    fields: () => (axes.length ? ["ordinal", ...axes, chosen().result] : []),
+    fields: () => (axes.length ? ["ordinal", ...axes, chosenIn(context).result] : []),
   };
+}
+
+/** Results that can be chosen, and the chosen one. @param {Context} context */
+function chosenIn({ table, axes, query }) {
+  const results = table
+    .results()
+    .filter(
+      (name) =>
+        !axes.includes(name) &&
+        !["state", "error_time", "error_node", "stable", "instability"].includes(name),
+    );
+  return {
+    results,
+    result: results.includes(query.get("result") ?? "") ? (query.get("result") ?? "") : preferred(results),
+  };
+}
+
+/** Whether all shares have a total index. @param {Share[]} found */
+function haveTotals(found) {
+  return found.every((share) => share.total !== null);
+}
+
+/** Places of the shares, from the smallest first-order index up. @param {Share[]} found */
+function inOrder(found) {
+  return found.map((_, index) => index).sort((a, b) => found[a].first - found[b].first);
+}
+
+/** @param {string[]} axes @param {Share[]} found */
+function sayShares(axes, found) {
+  return inOrder(found)
+    .toReversed()
+    .map((index) => `${label(axes[index])} ${Math.round(100 * found[index].first)} %`)
+    .join(", ");
+}
+
+/** @param {Share[]} found */
+function sayMethod(found) {
+  if (haveTotals(found))
+    return "The points are a full grid: the shares are its exact decomposition, over the values that it has.";
+  return "The points are no full grid: first-order indices are estimated from the points as they are, by ratios of correlation within groups along each parameter, less what groups of unrelated points would show. Lines are 95 % intervals (jackknife).";
+}
+
+/**
+ * Draws the shares of the variance as bars, with intervals where they are estimates.
+ * @param {HTMLElement} place
+ * @param {string[]} axes
+ * @param {Share[]} found
+ * @param {AbortSignal} signal
+ */
+function drawShares(place, axes, found, signal) {
+  const order = inOrder(found);
+  const names = order.map((index) => label(axes[index]));
+  const firsts = order.map((index) => found[index].first);
+  const hasTotals = haveTotals(found);
+  const intervals = order.map((index) => found[index].interval);
+  const shownEnds = hasTotals ? [] : intervals.flatMap((interval) => interval ?? []);
+  const beyond = (/** @type {(interval: [number, number], first: number) => number} */ reach) =>
+    intervals.map((one, at) => (one ? Math.max(0, reach(one, firsts[at])) : 0));
+  const error_x = {
+    type: "data",
+    symmetric: false,
+    array: beyond((one, first) => one[1] - first),
+    arrayminus: beyond((one, first) => first - one[0]),
+    color: LINES[1],
+    thickness: 2,
+  };
+  const traces = [
+    hasTotals && {
+      type: "bar",
+      orientation: "h",
+      name: "total index (with interactions)",
+      y: names,
+      x: order.map((index) => found[index].total),
+      marker: { color: LINES[5] },
+    },
+    {
+      type: "bar",
+      orientation: "h",
+      name: "first-order index (alone)",
+      y: names,
+      x: firsts,
+      marker: { color: LINES[0] },
+      ...(hasTotals ? {} : { error_x }),
+    },
+  ].filter(Boolean);
+  const xaxis = {
+    title: "share of the variance (Sobol index)",
+    range: [Math.min(0, ...firsts, ...shownEnds) - 0.01, Math.max(1, ...shownEnds) + 0.02],
+  };
+  const yaxis = { title: "", gridcolor: "rgba(0,0,0,0)", automargin: true };
+  return draw(
+    place,
+    traces,
+    { xaxis, yaxis, barmode: "group", margin: { l: 20, r: 16, t: 30, b: 50 } },
+    signal,
+  );
+}
+
+/**
+ * Draws the mean result over each parameter, side by side on one scale.
+ * @param {HTMLElement} place
+ * @param {Context} context
+ * @param {string} result
+ * @param {Share[]} found
+ */
+function drawCurves(place, { axes, spans, signal }, result, found) {
+  const numbered = (/** @type {string} */ name, /** @type {number} */ index) =>
+    `${name}${index ? index + 1 : ""}`;
+  const layouts = axes.flatMap((axis, index) => [
+    [
+      numbered("xaxis", index),
+      { title: title(axis), quantity: axis, type: spans[axis]?.scale === "log" ? "log" : "linear" },
+    ],
+    [
+      numbered("yaxis", index),
+      { title: index ? "" : title(result), quantity: result, matches: index ? "y" : undefined },
+    ],
+  ]);
+  const traces = axes.map((axis, index) => {
+    const { levels } = found[index];
+    return {
+      type: "scatter",
+      mode: "lines+markers",
+      x: levels.map((level) => level.value / unit(axis).size),
+      y: levels.map((level) => level.mean),
+      error_y: { type: "data", array: levels.map((level) => level.error), thickness: 1.2 },
+      line: { color: LINES[index % LINES.length] },
+      xaxis: numbered("x", index),
+      yaxis: numbered("y", index),
+      name: label(axis),
+      hoverinfo: "x+y",
+    };
+  });
+  const layout = {
+    grid: { rows: 1, columns: axes.length, pattern: "independent" },
+    showlegend: false,
+    ...Object.fromEntries(layouts),
+  };
+  return draw(place, traces, layout, signal);
 }

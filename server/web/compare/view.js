@@ -7,7 +7,7 @@ import { comparedRange, comparedRate, energyAccount, VIEWS, wellColour, wellFact
 import { comparedIn, MOST, rememberComparison } from "../ui/last-comparison.js";
 import { DepthCursor } from "../draw/depth-cursor.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
-import { lines, python, pythonNode, requestLines } from "../ui/snippets.js";
+import { python, pythonNode, requestLines, snippets } from "../ui/snippets.js";
 import { rangesOf } from "../data/motion-requests.js";
 import { attend } from "../ui/notices.js";
 import { canvas, DASHES, LINES } from "../draw/plots.js";
@@ -511,7 +511,7 @@ export async function show(main, route, signal) {
         .join("\n");
     return `tables = [point.${shownTable}(${window}).to_pandas() for point in points]`;
   }
-  const taken = lines(() => {
+  const taken = snippets(() => {
     const asked = points.flatMap((point) =>
       requestsOf(point).map(({ table, query: asks }, _, { length }) => ({
         path: table ? `${point.path}/${table}` : point.path,

@@ -2,7 +2,7 @@
 
 import { followAll, get, isFinal } from "../data/api.js";
 import { debounced, choice, fill, h } from "../ui/dom.js";
-import { lines, requestLines, shell } from "../ui/snippets.js";
+import { requestLines, shell, snippets } from "../ui/snippets.js";
 import { attend } from "../ui/notices.js";
 import { Pace } from "../data/pace.js";
 import { go, keep, link } from "../ui/router.js";
@@ -346,7 +346,7 @@ export async function show(main, route, signal) {
     clearTimeout(serviceWaits);
   });
 
-  const taken = lines(() => {
+  const taken = snippets(() => {
     const chosen = Object.entries(filters()).filter(([, value]) => value);
     return {
       ...requestLines(

@@ -4,7 +4,7 @@ import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { fill, h } from "../ui/dom.js";
-import { lines, requestLines } from "../ui/snippets.js";
+import { requestLines, snippets } from "../ui/snippets.js";
 import { keep, link } from "../ui/router.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
@@ -29,6 +29,11 @@ const PARTS = [
 /** How often a point that is not final yet is looked at. */
 const POLL_MS = 3000;
 
+/** Views whose element is not made of panels. */
+const IN_PANEL = ["profiles", "well", "energy"];
+
+/** Sweep, number and path of a point. @typedef {{sweep: any, ordinal: string, path: string, query: URLSearchParams}} Place */
+
 /** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const [, id, , ordinal] = route.path;
@@ -42,148 +47,37 @@ export async function show(main, route, signal) {
   ]);
   const biases = new Biases();
   await biases.load(sweep, signal);
-  const here = ["sweeps", id, "points", ordinal];
+  const place = { sweep, ordinal, path, query: route.query };
   const heading = h("div", {});
-  const neighbour = (/** @type {number} */ step, /** @type {string} */ text) => {
-    const to = Number(ordinal) + step;
-    return (
-      to >= 1 &&
-      to <= sweep.counts.total &&
-      h(
-        "a",
-        {
-          class: "button",
-          href: link(["sweeps", id, "points", String(to)], Object.fromEntries(route.query)),
-        },
-        text,
-      )
-    );
-  };
-  const drawHeading = (/** @type {any} */ current) =>
-    fill(
-      heading,
-      h(
-        "nav",
-        { class: "crumbs", "aria-label": "Breadcrumb" },
-        h("a", { href: "#/sweeps" }, "Sweeps"),
-        " / ",
-        h("a", { href: link(["sweeps", id]) }, sweep.name ?? `Sweep ${id.slice(-8)}`),
-        " / ",
-      ),
-      h(
-        "div",
-        { class: "head" },
-        h(
-          "div",
-          {},
-          h("h1", {}, `Point ${ordinal}`),
-          h("p", {}, sayParameters(current.parameters)),
-          h(
-            "p",
-            {},
-            h("span", { class: `state ${current.state}` }, current.state),
-            current.state === "running" ? ` ${Math.floor(100 * current.progress)} %` : "",
-            isUnsettled(current.summary?.motion_regime, current.summary?.growing_mode_hz) &&
-              h("span", { class: "wrong" }, " not settled: its statistics may be those of the start"),
-          ),
-        ),
-        h(
-          "div",
-          { class: "controls" },
-          neighbour(-1, "← Previous"),
-          neighbour(1, "Next →"),
-          waysToCompare(`${id}:${ordinal}`).map(({ text, href }) => h("a", { class: "button", href }, text)),
-        ),
-      ),
-      current.error &&
-        h(
-          "div",
-          { class: "panel", role: "alert" },
-          h("h2", { class: "wrong" }, `Failed: ${current.error.class}`),
-          h("p", {}, current.error.reason),
-          h(
-            "p",
-            { class: "soft" },
-            [
-              typeof current.error.time === "number" && `at ${say("time", current.error.time)}`,
-              current.error.node && `node ${current.error.node}`,
-            ]
-              .filter(Boolean)
-              .join(", "),
-          ),
-        ),
-    );
-  drawHeading(point);
-
+  fill(heading, headingPart(place, point));
   if (!point.summary) {
-    const isWaiting = point.state === "queued" || point.state === "running";
-    fill(
-      main,
-      heading,
-      h(
-        "p",
-        { class: "empty", role: "status" },
-        isWaiting ? "Results appear here when the point is complete." : "This point has no result.",
-      ),
-    );
-    const timer = setInterval(async () => {
-      const current = await get(path, {}, signal).catch(() => null);
-      if (!current) return;
-      drawHeading(current);
-      if (current.state !== "queued" && current.state !== "running") {
-        clearInterval(timer);
-        dispatchEvent(new HashChangeEvent("hashchange"));
-      }
-    }, POLL_MS);
-    if (!isWaiting) clearInterval(timer);
-    signal.addEventListener("abort", () => clearInterval(timer));
+    showWaiting(main, heading, place, point, signal);
     return `Point ${ordinal}`;
   }
 
-  const query = new URLSearchParams(route.query);
-  const taken = lines(() => {
+  const taken = snippets(() => {
     const request = part.request();
     if (!request) return {};
     const start = `from drillsweep import Client, plot\n\npoint = Client("${location.origin}").sweep("${id}").point(${ordinal})\n`;
     return requestLines(askedOf(path, request), start + request.python);
   });
-  /** @type {PointContext} */
-  const context = {
-    point,
-    path,
-    query,
-    keep: (changes) => {
-      for (const [key, value] of Object.entries(changes)) {
-        if (value === null) query.delete(key);
-        else query.set(key, value);
-      }
-      keep(changes);
-      taken.dispatchEvent(new Event("redraw"));
-    },
-    bias: (name) => biases.beside(name, Number(ordinal)),
-    table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
-    drawn: () => taken.dispatchEvent(new Event("redraw")),
-    signal,
-  };
-  const part = make(context);
+  const drawn = () => taken.dispatchEvent(new Event("redraw"));
+  const part = make(contextOf(place, point, biases, drawn, signal));
+  const tabs = PARTS.map(([entry, text]) =>
+    h(
+      "a",
+      {
+        href: link(["sweeps", id, "points", ordinal], { view: entry }),
+        "aria-current": entry === view && "page",
+      },
+      text,
+    ),
+  );
   fill(
     main,
     heading,
-    h(
-      "nav",
-      { class: "tabs", "aria-label": "Views of the point" },
-      PARTS.map(([entry, text]) =>
-        h("a", { href: link(here, { view: entry }), "aria-current": entry === view && "page" }, text),
-      ),
-    ),
-    h(
-      "section",
-      {
-        class: view === "profiles" || view === "well" || view === "energy" ? "panel" : "",
-        "aria-label": name,
-      },
-      part.element,
-    ),
+    h("nav", { class: "tabs", "aria-label": "Views of the point" }, tabs),
+    h("section", { class: IN_PANEL.includes(view) ? "panel" : "", "aria-label": name }, part.element),
     taken,
   );
   // Pictures wait for their place in the page, which the view takes when it is complete.
@@ -196,4 +90,130 @@ export async function show(main, route, signal) {
     );
   });
   return `Point ${ordinal}`;
+}
+
+/**
+ * @param {Place} place
+ * @param {any} point
+ * @param {Biases} biases
+ * @param {() => void} drawn
+ * @param {AbortSignal} signal
+ * @returns {PointContext}
+ */
+function contextOf({ ordinal, path, query: asked }, point, biases, drawn, signal) {
+  const query = new URLSearchParams(asked);
+  return {
+    point,
+    path,
+    query,
+    keep: (changes) => {
+      for (const [key, value] of Object.entries(changes)) {
+        if (value === null) query.delete(key);
+        else query.set(key, value);
+      }
+      keep(changes);
+      drawn();
+    },
+    bias: (name) => biases.beside(name, Number(ordinal)),
+    table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
+    drawn,
+    signal,
+  };
+}
+
+/** Shows a point without a result, and loads the view again once the point is final. @param {HTMLElement} main @param {HTMLElement} heading @param {Place} place @param {any} point @param {AbortSignal} signal */
+function showWaiting(main, heading, place, point, signal) {
+  const isWaiting = point.state === "queued" || point.state === "running";
+  fill(
+    main,
+    heading,
+    h(
+      "p",
+      { class: "empty", role: "status" },
+      isWaiting ? "Results appear here when the point is complete." : "This point has no result.",
+    ),
+  );
+  if (!isWaiting) return;
+  const timer = setInterval(async () => {
+    const current = await get(place.path, {}, signal).catch(() => null);
+    if (!current) return;
+    fill(heading, headingPart(place, current));
+    if (current.state !== "queued" && current.state !== "running") {
+      clearInterval(timer);
+      dispatchEvent(new HashChangeEvent("hashchange"));
+    }
+  }, POLL_MS);
+  signal.addEventListener("abort", () => clearInterval(timer));
+}
+
+/** @param {Place} place @param {any} point as it is now */
+function headingPart({ sweep, ordinal, query }, point) {
+  const neighbour = (/** @type {number} */ step, /** @type {string} */ text) => {
+    const to = Number(ordinal) + step;
+    return (
+      to >= 1 &&
+      to <= sweep.counts.total &&
+      h(
+        "a",
+        {
+          class: "button",
+          href: link(["sweeps", sweep.id, "points", String(to)], Object.fromEntries(query)),
+        },
+        text,
+      )
+    );
+  };
+  const compare = waysToCompare(`${sweep.id}:${ordinal}`).map(({ text, href }) =>
+    h("a", { class: "button", href }, text),
+  );
+  return [
+    h(
+      "nav",
+      { class: "crumbs", "aria-label": "Breadcrumb" },
+      h("a", { href: "#/sweeps" }, "Sweeps"),
+      " / ",
+      h("a", { href: link(["sweeps", sweep.id]) }, sweep.name ?? `Sweep ${sweep.id.slice(-8)}`),
+      " / ",
+    ),
+    h(
+      "div",
+      { class: "head" },
+      h(
+        "div",
+        {},
+        h("h1", {}, `Point ${ordinal}`),
+        h("p", {}, sayParameters(point.parameters)),
+        statePart(point),
+      ),
+      h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), compare),
+    ),
+    point.error && errorPart(point.error),
+  ];
+}
+
+/** @param {any} point */
+function statePart({ state, progress, summary }) {
+  const isUncertain = isUnsettled(summary?.motion_regime, summary?.growing_mode_hz);
+  return h(
+    "p",
+    {},
+    h("span", { class: `state ${state}` }, state),
+    state === "running" ? ` ${Math.floor(100 * progress)} %` : "",
+    isUncertain && h("span", { class: "wrong" }, " not settled: its statistics may be those of the start"),
+  );
+}
+
+/** @param {any} error of a point */
+function errorPart(error) {
+  const place = [
+    typeof error.time === "number" && `at ${say("time", error.time)}`,
+    error.node && `node ${error.node}`,
+  ];
+  return h(
+    "div",
+    { class: "panel", role: "alert" },
+    h("h2", { class: "wrong" }, `Failed: ${error.class}`),
+    h("p", {}, error.reason),
+    h("p", { class: "soft" }, place.filter(Boolean).join(", ")),
+  );
 }

@@ -2,7 +2,7 @@
 
 import { connection, get, Problem, send } from "../data/api.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
-import { bodyLines, lines, python, shell } from "../ui/snippets.js";
+import { bodyLines, python, shell, snippets } from "../ui/snippets.js";
 import { attend } from "../ui/notices.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
 import { go, held, hold, keep, link } from "../ui/router.js";
@@ -486,7 +486,7 @@ export async function show(main, route, signal) {
     );
   }
 
-  const taken = lines(() => {
+  const taken = snippets(() => {
     try {
       return requestLines(request());
     } catch {

@@ -13,319 +13,233 @@ import { label, number, say, title, unit } from "../data/units.js";
 
 /** Blue below, red above, apart by lightness as well for those who cannot tell them. */
 const DIVERGING = "RdBu";
-/** Of further parameters that differ, how many are told. */
+/** Further parameters that are named, at most, if they differ. */
 const DIFFERENCES = 6;
-/** What tells scenarios apart, but not what they simulate. */
+/** Fields of a scenario that do not change what is simulated. */
 const NAMES = new Set(["name", "description"]);
 /** Coordinates this near to each other, relative to their size, are one. */
 const SAME = 1e-9;
 
+/** Columns that are no results. */
+const OF_POINTS = ["state", "error_time", "error_node"];
+
+/** @typedef {import("./part.js").Context} Context */
 /** @typedef {{sweep: any, table: SweepTable, axes: string[], biases: Biases}} Other */
+/** Names of columns: across, up if there are two parameters, and the result. @typedef {{x: string, y: string | undefined, colour: string}} Shown */
+/** A point of one sweep. @typedef {{ordinal: number, x: number, y: number, value: number}} Row */
+/** A point of this sweep with its partner in the other one, and their difference as it is shown. @typedef {Row & {partner: Row, change: number}} Pair */
 
 /**
- * @param {import("./part.js").Context} context
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function difference(context) {
-  const { query, signal } = context;
-  const place = canvas("Difference of two sweeps", "difference", "tall");
-  const caption = h("figcaption", {});
-  const controls = h("div", { class: "controls" });
-  const empty = h("p", { class: "empty", hidden: true });
-  const figure = h("figure", {}, place, caption);
-  const begin = generations();
-  const pick = (/** @type {string} */ name, /** @type {string[]} */ options, /** @type {string} */ other) =>
-    options.includes(query.get(name) ?? "") ? (query.get(name) ?? "") : other;
-  const search = h("input", {
-    type: "search",
-    size: 16,
-    placeholder: "part of a name",
-    oninput: debounced(() => attend(find(), signal), 250, signal),
-  });
-  const searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), search);
-  /** Those that can be chosen. @type {any[] | undefined} */
-  let sweeps;
-  /** The columns that are shown, of this sweep and of the other one. */
-  let fields = { mine: ["ordinal"], theirs: ["ordinal"] };
+  const shown = new Difference(context);
+  return {
+    element: shown.element,
+    draw: undelayed(() => shown.redraw(), context),
+    fields: () => shown.fields.mine,
+    others: () => shown.others(),
+  };
+}
+
+class Difference {
+  #context;
+  #place = canvas("Difference of two sweeps", "difference", "tall");
+  #caption = h("figcaption", {});
+  #controls = h("div", { class: "controls" });
+  #empty = h("p", { class: "empty", hidden: true });
+  #figure = h("figure", {}, this.#place, this.#caption);
+  #search;
+  #searched;
+  #begin = generations();
+  /** Sweeps that can be chosen. @type {any[] | undefined} */
+  #sweeps;
   /** @type {Other | undefined} */
-  let other;
-  /** Points whose scenarios were asked for, by address. @type {Map<string, Promise<any>>} */
-  const scenarios = new Map();
+  #other;
+  /** Points whose scenarios were requested, by address. @type {Map<string, Promise<any>>} */
+  #points = new Map();
+  /** Columns that are shown, of this sweep and of the other one. */
+  fields = { mine: ["ordinal"], theirs: ["ordinal"] };
 
-  const nameOf = (/** @type {any} */ sweep) => sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
-  const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
-    context.keep({ [name]: value || null });
-    attend(redraw(), signal);
-  };
-  /** The search is kept, with what is typed in it, while the choices beside it change. @param {HTMLElement[]} whom @param {(import("../ui/dom.js").Child | import("../ui/dom.js").Child[])[]} chosen */
-  const choices = (whom, ...chosen) => {
-    const hadFocus = document.activeElement === search;
-    fill(controls, whom, ...chosen);
-    if (hadFocus) search.focus();
-  };
-  const say_ = (/** @type {string} */ text) => {
-    empty.hidden = text === "";
-    figure.hidden = text !== "";
-    empty.textContent = text;
-  };
-
-  /** @param {string} id @returns {Promise<Other>} */
-  async function load(id) {
-    const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
-    const [table, biases] = [new SweepTable(sweep, signal), new Biases()];
-    await Promise.all([table.load(), biases.load(sweep, signal)]);
-    return { sweep, table, biases, axes: sweptBy(sweep, table.names).axes };
+  /** @param {Context} context */
+  constructor(context) {
+    this.#context = context;
+    this.#search = h("input", {
+      type: "search",
+      size: 16,
+      placeholder: "part of a name",
+      oninput: debounced(() => attend(this.#find(), context.signal), 250, context.signal),
+    });
+    this.#searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), this.#search);
+    this.element = h("div", {}, this.#controls, this.#empty, this.#figure);
   }
 
-  /** Offers the newest sweeps whose name has what is searched. */
-  async function find() {
-    const name = search.value.trim();
-    const answer = await get("/v1/sweeps", { limit: 100, name }, signal);
-    if (name !== search.value.trim()) return;
-    sweeps = answer.sweeps.filter((/** @type {any} */ sweep) => sweep.id !== context.sweep.id);
-    await redraw();
+  /** The other sweep with its columns that are shown. */
+  others() {
+    const other = this.#other;
+    if (!other || this.#context.query.get("with") !== other.sweep.id) return [];
+    return [{ id: other.sweep.id, path: other.table.path, fields: this.fields.theirs }];
   }
 
-  async function redraw() {
-    if (!sweeps) return find();
-    const isNewest = begin();
-    const id = query.get("with") ?? "";
-    let lost = "";
-    if (other?.sweep.id !== id) {
-      const loaded = id
-        ? await load(id).catch((error) => {
-            if (!(error instanceof Problem) || error.status !== 404) throw error;
-            lost = `The sweep of the link was not found: ${error.message}. `;
-          })
-        : undefined;
-      if (!isNewest()) return;
-      other = loaded ?? undefined;
-    }
-    const offered = other && !sweeps.some((sweep) => sweep.id === id) ? [...sweeps, other.sweep] : sweeps;
-    const chooser = choice(
-      "Compared with",
-      [
-        ["", "— choose a sweep"],
-        ...offered.map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)])),
-      ],
-      other ? id : "",
-      set("with"),
-    );
-    const whom = [searched, chooser];
-    if (!other) {
-      choices(whom);
-      say_(
+  /** @param {string} name of a choice in the link */
+  #set(name) {
+    return (/** @type {string} */ value) => {
+      this.#context.keep({ [name]: value || null });
+      attend(this.redraw(), this.#context.signal);
+    };
+  }
+
+  /** @param {string} name of a choice in the link @param {string[]} options @param {string} other the usual one */
+  #pick(name, options, other) {
+    const asked = this.#context.query.get(name);
+    return asked !== null && options.includes(asked) ? asked : other;
+  }
+
+  /** Offers the newest sweeps whose names have the text of the search. */
+  async #find() {
+    const name = this.#search.value.trim();
+    const answer = await get("/v1/sweeps", { limit: 100, name }, this.#context.signal);
+    if (name !== this.#search.value.trim()) return;
+    this.#sweeps = answer.sweeps.filter((/** @type {any} */ sweep) => sweep.id !== this.#context.sweep.id);
+    await this.redraw();
+  }
+
+  async redraw() {
+    if (!this.#sweeps) return this.#find();
+    const isNewest = this.#begin();
+    const lost = await this.#load(isNewest);
+    if (lost === null) return undefined;
+    const other = this.#other;
+    const whom = [this.#searched, this.#chooser()];
+    if (!other)
+      return this.#refuse(
+        whom,
         `${lost}Choose the sweep whose results are compared with those of this one, at the points that both have.`,
       );
-      return;
-    }
-    const axes = context.axes.filter((axis) => other?.axes.includes(axis));
-    const results = context.table
-      .results()
-      .filter(
-        (name) =>
-          other?.table.names.includes(name) &&
-          !context.axes.includes(name) &&
-          !other.axes.includes(name) &&
-          !["state", "error_time", "error_node"].includes(name),
-      );
-    if (!axes.length || !results.length) {
-      choices(whom);
-      say_(
-        axes.length
-          ? "The two sweeps have no result in common."
-          : "The two sweeps have no parameter in common.",
-      );
-      return;
-    }
-    const x = pick("x", axes, axes[0]);
+    const context = this.#context;
+    const { axes, results } = inCommon(context, other);
+    if (!axes.length) return this.#refuse(whom, "The two sweeps have no parameter in common.");
+    if (!results.length) return this.#refuse(whom, "The two sweeps have no result in common.");
+    const x = this.#pick("x", axes, axes[0]);
     const others = axes.filter((axis) => axis !== x);
-    const y = others.length ? pick("y", others, others[0]) : undefined;
-    const colour = pick("colour", results, preferred(results));
-    const isRelative = query.get("difference") === "relative";
+    const shown = {
+      x,
+      y: others.length ? this.#pick("y", others, others[0]) : undefined,
+      colour: this.#pick("colour", results, preferred(results)),
+    };
+    const mine = await this.#slice(context.table, context.axes, "at.", shown);
+    if (!isNewest()) return undefined;
+    const theirs = await this.#slice(other.table, other.axes, "with.", shown, mine.held);
+    if (!isNewest()) return undefined;
+    this.#fillControls([whom, this.#columnChoices(shown, axes, results), mine.choices, theirs.choices]);
+    this.fields = {
+      mine: columnsOf(context.axes, shown.colour),
+      theirs: columnsOf(other.axes, shown.colour),
+    };
+    context.drawn();
+    const pairs = pairsOf(mine.rows, theirs.rows, this.#isRelative ? null : unit(shown.colour).size);
+    if (!pairs.length) {
+      this.#say(
+        mine.rows.length && theirs.rows.length
+          ? "No point of the one has the parameters of one of the other. Choose other values of what is held."
+          : "One of the two has no results yet.",
+      );
+      return undefined;
+    }
+    this.#say("");
+    return this.#draw(pairs, shown, other);
+  }
+
+  get #isRelative() {
+    return this.#context.query.get("difference") === "relative";
+  }
+
+  /**
+   * Loads the other sweep of the link, unless it is loaded.
+   * @param {() => boolean} isNewest
+   * @returns {Promise<string | null>} why it could not be found, empty if it was; `null` if another drawing has begun since
+   */
+  async #load(isNewest) {
+    const { query, signal } = this.#context;
+    const id = query.get("with") ?? "";
+    if (this.#other?.sweep.id === id) return "";
+    let lost = "";
+    const loaded = id
+      ? await loadOther(id, signal).catch((error) => {
+          if (!(error instanceof Problem) || error.status !== 404) throw error;
+          lost = `The sweep of the link was not found: ${error.message}. `;
+        })
+      : undefined;
+    if (!isNewest()) return null;
+    this.#other = loaded ?? undefined;
+    return lost;
+  }
+
+  /** The choice of the other sweep. */
+  #chooser() {
+    const [sweeps, other] = [this.#sweeps ?? [], this.#other];
+    const offered =
+      other && !sweeps.some((sweep) => sweep.id === other.sweep.id) ? [...sweeps, other.sweep] : sweeps;
+    const options = offered.map((sweep) => /** @type {[string, string]} */ ([sweep.id, nameOf(sweep)]));
+    return choice(
+      "Compared with",
+      [["", "— choose a sweep"], ...options],
+      other?.sweep.id ?? "",
+      this.#set("with"),
+    );
+  }
+
+  /** @param {Shown} shown @param {string[]} axes @param {string[]} results */
+  #columnChoices({ x, y, colour }, axes, results) {
     const options = (/** @type {string[]} */ names) =>
       names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
-
-    const mine = await sliced(context.table, context.axes, "at.", x, y, colour);
-    if (!isNewest()) return;
-    const theirs = await sliced(other.table, other.axes, "with.", x, y, colour, mine.held);
-    if (!isNewest()) return;
-    choices(
-      whom,
-      choice("Across", options(axes), x, set("x")),
-      y && choice("Up", options(others), y, set("y")),
-      choice("Result", options(results), colour, set("colour")),
+    return [
+      choice("Across", options(axes), x, this.#set("x")),
+      y && choice("Up", options(axes.filter((axis) => axis !== x)), y, this.#set("y")),
+      choice("Result", options(results), colour, this.#set("colour")),
       choice(
         "Difference",
         [
           ["absolute", "absolute"],
           ["relative", "relative to this sweep"],
         ],
-        isRelative ? "relative" : "absolute",
-        set("difference"),
+        this.#isRelative ? "relative" : "absolute",
+        this.#set("difference"),
       ),
-      mine.choices,
-      theirs.choices,
-    );
-    fields = { mine: columnsOf(context.axes, colour), theirs: columnsOf(other.axes, colour) };
-    context.drawn();
-    const xs = classes([...mine.rows, ...theirs.rows].map((row) => row.x));
-    const ys = classes([...mine.rows, ...theirs.rows].map((row) => row.y));
-    const cell = (/** @type {{x: number, y: number}} */ row) => `${xs.get(row.x)} ${ys.get(row.y)}`;
-    const partners = new Map(theirs.rows.map((row) => [cell(row), row]));
-    const pairs = mine.rows
-      .flatMap((row) => {
-        const partner = partners.get(cell(row));
-        return partner
-          ? [
-              {
-                ...row,
-                partner,
-                change: isRelative
-                  ? (100 * (partner.value - row.value)) / Math.abs(row.value)
-                  : (partner.value - row.value) / unit(colour).size,
-              },
-            ]
-          : [];
-      })
-      .filter(({ change }) => Number.isFinite(change));
-    if (!pairs.length) {
-      say_(
-        mine.rows.length && theirs.rows.length
-          ? "No point of the one has the parameters of one of the other. Choose other values of what is held."
-          : "One of the two has no results yet.",
-      );
-      return;
-    }
-    say_("");
-    const unitOf = isRelative ? "%" : unit(colour).symbol;
-    const name = `difference of ${context.depths.label(colour)}${unitOf ? ` [${unitOf}]` : ""}`;
-    const [first, second] = [nameOf(context.sweep), nameOf(other.sweep)];
-    const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
-    const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
-    const further = h("strong", {});
-    fill(
-      caption,
-      `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${unitOf}, root mean square ${number(rms, 3)} ${unitOf}. Select a point to compare both in full.`,
-      biasesOf(colour, first, second).map((found) => ` ${found}`),
-      further,
-    );
-    attend(tellApart(further, pairs[0].ordinal, other, pairs[0].partner.ordinal, [x, y]), signal);
-    place.setAttribute(
-      "aria-label",
-      `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`,
-    );
-    const at = (/** @type {string} */ axis, /** @type {number} */ value) => value / unit(axis).size;
-    const text = pairs.map((pair) =>
-      [
-        `${label(x)} ${say(x, pair.x)}`,
-        y && `${label(y)} ${say(y, pair.y)}`,
-        `this: ${say(colour, pair.value)}${context.biases.beside(colour, pair.ordinal)}`,
-        `other: ${say(colour, pair.partner.value)}${other?.biases.beside(colour, pair.partner.ordinal) ?? ""}`,
-        `difference: ${number(pair.change, 4)} ${unitOf}`,
-      ]
-        .filter(Boolean)
-        .join("<br>"),
-    );
-    const keys = pairs.map(
-      (pair) => `${context.sweep.id}:${pair.ordinal},${other?.sweep.id}:${pair.partner.ordinal}`,
-    );
-    const axisLayout = (/** @type {string} */ axis) => ({
-      title: title(axis),
-      quantity: axis,
-      type: context.spans[axis]?.scale === "log" ? "log" : "linear",
-    });
-    /** @type {any[]} */
-    let traces;
-    /** @type {any} */
-    let layout;
-    if (y) {
-      const across = distinct(pairs.map((pair) => pair.x));
-      const up = distinct(pairs.map((pair) => pair.y));
-      const placeOf = (/** @type {(number | string)[]} */ values) =>
-        new Map(values.map((value, index) => [value, index]));
-      const [columns, lines] = [placeOf(across), placeOf(up)];
-      const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
-      const [cells, hover, points] = [grid(null), grid(""), grid(null)];
-      pairs.forEach((pair, index) => {
-        const [row, column] = [lines.get(pair.y) ?? 0, columns.get(pair.x) ?? 0];
-        [cells[row][column], hover[row][column], points[row][column]] = [
-          pair.change,
-          text[index],
-          keys[index],
-        ];
-      });
-      const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
-      traces = [
-        {
-          type: "heatmap",
-          x: across.map((value) => at(x, Number(value))),
-          y: up.map((value) => at(y, Number(value))),
-          z: cells,
-          text: hover,
-          customdata: points,
-          hoverinfo: "text",
-          colorscale: DIVERGING,
-          reversescale: false,
-          zmin: -largest,
-          zmax: largest,
-          colorbar: colourBar(name),
-          xgap: 1,
-          ygap: 1,
-        },
-      ];
-      layout = { xaxis: axisLayout(x), yaxis: axisLayout(y) };
-    } else {
-      const order = pairs.map((_, index) => index).sort((a, b) => pairs[a].x - pairs[b].x);
-      const line = (
-        /** @type {string} */ called,
-        /** @type {(index: number) => number} */ value,
-        /** @type {number} */ number,
-        /** @type {any} */ more = {},
-      ) => ({
-        type: "scatter",
-        mode: "lines+markers",
-        name: called,
-        showlegend: true,
-        x: order.map((index) => at(x, pairs[index].x)),
-        y: order.map(value),
-        text: order.map((index) => text[index]),
-        customdata: order.map((index) => keys[index]),
-        hoverinfo: "text",
-        line: { color: LINES[number], dash: DASHES[number] },
-        ...more,
-      });
-      const { size } = unit(colour);
-      traces = [
-        line(first, (index) => pairs[index].value / size, 0),
-        line(second, (index) => pairs[index].partner.value / size, 1),
-        line("difference", (index) => pairs[index].change, 2, { yaxis: "y2" }),
-      ];
-      layout = {
-        xaxis: axisLayout(x),
-        yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] },
-        yaxis2: { title: name, ...(isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
-      };
-    }
-    const shape = await draw(place, traces, layout, signal);
-    shape.removeAllListeners?.("plotly_click");
-    shape.on?.("plotly_click", (/** @type {any} */ event) => {
-      const points = event.points[0]?.customdata;
-      if (typeof points === "string") go(link(["compare"], { points, view: "profiles" }));
-    });
+    ];
+  }
+
+  /** Fills the controls; the search keeps the focus. @param {any[]} controls */
+  #fillControls(controls) {
+    const hadFocus = document.activeElement === this.#search;
+    fill(this.#controls, controls);
+    if (hadFocus) this.#search.focus();
+  }
+
+  /** Shows a sentence in place of the picture. @param {HTMLElement[]} whom the choice of the other sweep @param {string} text */
+  #refuse(whom, text) {
+    this.#fillControls(whom);
+    this.#say(text);
+  }
+
+  /** Shows a sentence in place of the picture; the picture if it is empty. @param {string} text */
+  #say(text) {
+    this.#empty.hidden = text === "";
+    this.#figure.hidden = text !== "";
+    this.#empty.textContent = text;
   }
 
   /**
-   * The rows of a slice that have a value, and a choice for each further parameter, which the link keeps under `prefix`.
+   * Rows of a slice that have a value, and a choice for each further parameter, which the link keeps under `prefix`.
    * @param {SweepTable} table
    * @param {string[]} axes
    * @param {string} prefix
-   * @param {string} x
-   * @param {string | undefined} y
-   * @param {string} colour
-   * @param {Map<string, number>} [elsewhere] what the other sweep holds, which is taken where there is that value
+   * @param {Shown} shown
+   * @param {Map<string, number>} [elsewhere] values that the other sweep holds, taken if they exist here
    */
-  async function sliced(table, axes, prefix, x, y, colour, elsewhere = new Map()) {
+  async #slice(table, axes, prefix, { x, y, colour }, elsewhere = new Map()) {
+    const { query } = this.#context;
     const further = axes.filter((axis) => axis !== x && axis !== y);
     const [ordinals, xs, ys, values, ...columns] = await table.columns(
       "ordinal",
@@ -346,31 +260,93 @@ export function difference(context) {
         prefix === "at." ? label(axis) : `${label(axis)}, other sweep`,
         distinct(columns[index]).map((value) => [String(value), say(axis, value)]),
         String(held.get(axis)),
-        set(prefix + axis),
+        this.#set(prefix + axis),
       ),
     );
-    const rows = ordinals.flatMap((ordinal, row) =>
+    const isHeld = (/** @type {number} */ row) =>
       typeof values[row] === "number" &&
-      further.every((axis, index) => columns[index][row] === held.get(axis))
+      further.every((axis, index) => columns[index][row] === held.get(axis));
+    const rows = ordinals.flatMap((ordinal, row) =>
+      isHeld(row)
         ? [{ ordinal: Number(ordinal), x: Number(xs[row]), y: Number(ys[row]), value: Number(values[row]) }]
         : [],
     );
     return { held, choices, rows };
   }
 
+  /** @param {Pair[]} pairs @param {Shown} shown @param {Other} other */
+  async #draw(pairs, shown, other) {
+    const { x, y, colour } = shown;
+    const context = this.#context;
+    const symbol = this.#isRelative ? "%" : unit(colour).symbol;
+    this.#describe(pairs, shown, other, symbol);
+    this.#place.setAttribute(
+      "aria-label",
+      `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`,
+    );
+    const name = `difference of ${context.depths.label(colour)}${symbol ? ` [${symbol}]` : ""}`;
+    const told = {
+      text: pairs.map((pair) => hoverText(pair, shown, symbol, context.biases, other.biases)),
+      keys: pairs.map(
+        (pair) => `${context.sweep.id}:${pair.ordinal},${other.sweep.id}:${pair.partner.ordinal}`,
+      ),
+    };
+    const axis = (/** @type {string} */ of) => ({
+      title: title(of),
+      quantity: of,
+      type: context.spans[of]?.scale === "log" ? "log" : "linear",
+    });
+    const traces = y
+      ? [cellTrace(pairs, x, y, name, told)]
+      : lineTraces(pairs, x, colour, [nameOf(context.sweep), nameOf(other.sweep)], told);
+    const layout = y
+      ? { xaxis: axis(x), yaxis: axis(y) }
+      : {
+          xaxis: axis(x),
+          yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] },
+          yaxis2: { title: name, ...(this.#isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
+        };
+    const shape = await draw(this.#place, traces, layout, context.signal);
+    shape.removeAllListeners?.("plotly_click");
+    shape.on?.("plotly_click", (/** @type {any} */ event) => {
+      const points = event.points[0]?.customdata;
+      if (typeof points === "string") go(link(["compare"], { points, view: "profiles" }));
+    });
+  }
+
+  /** Writes the caption. @param {Pair[]} pairs @param {Shown} shown @param {Other} other @param {string} symbol of the difference */
+  #describe(pairs, { x, y, colour }, other, symbol) {
+    const context = this.#context;
+    const [first, second] = [nameOf(context.sweep), nameOf(other.sweep)];
+    const mean = pairs.reduce((sum, { change }) => sum + change, 0) / pairs.length;
+    const rms = Math.sqrt(pairs.reduce((sum, { change }) => sum + change ** 2, 0) / pairs.length);
+    const biases = [
+      [first, context.biases.say(colour)],
+      [second, other.biases.say(colour)],
+    ].filter(([, found]) => found);
+    const further = h("strong", {});
+    fill(
+      this.#caption,
+      `${second} less ${first}, at ${pairs.length} points that both have: mean ${number(mean, 3)} ${symbol}, root mean square ${number(rms, 3)} ${symbol}. Select a point to compare both in full.`,
+      biases.map(([name, found]) => ` ${name}: ${found}`),
+      further,
+    );
+    attend(this.#tellApart(further, pairs[0], other, [x, y]), context.signal);
+  }
+
   /**
-   * Says what else differs between the points of both than their results: across and up they are the same, and all else of a slice is that
-   * of any of its points.
+   * Names the parameters that differ besides the results: across and up they are the same, and all others of a slice are the same at any
+   * of its points.
    * @param {HTMLElement} place
-   * @param {number} mine a point of this sweep
+   * @param {Pair} pair any of the pairs
    * @param {Other} whose the other sweep
-   * @param {number} theirs its partner there
-   * @param {(string | undefined)[]} shown what is across and up
+   * @param {(string | undefined)[]} shown the parameters across and up
    */
-  async function tellApart(place, mine, whose, theirs, shown) {
+  async #tellApart(place, pair, whose, shown) {
+    const { sweep } = this.#context;
     const [here, there] = await Promise.all([
-      scenarioOf(context.sweep.id, mine),
-      scenarioOf(whose.sweep.id, theirs),
+      this.#scenarioOf(sweep.id, pair.ordinal),
+      this.#scenarioOf(whose.sweep.id, pair.partner.ordinal),
     ]);
     const differing = apart(here, there).filter(
       ([path]) => !shown.some((axis) => axis === path || (axis && axis === SHORT[path])),
@@ -382,40 +358,152 @@ export function difference(context) {
     const further = differing.length - words.length;
     fill(
       place,
-      ` ${nameOf(whose.sweep)} also has other parameters than ${nameOf(context.sweep)}: ${words.join(", ")}${further ? `, and ${further} more` : ""}.`,
+      ` ${nameOf(whose.sweep)} also has other parameters than ${nameOf(sweep)}: ${words.join(", ")}${further ? `, and ${further} more` : ""}.`,
     );
   }
 
   /** @param {string} sweep @param {number} ordinal @returns {Promise<any>} */
-  async function scenarioOf(sweep, ordinal) {
+  async #scenarioOf(sweep, ordinal) {
     const path = `/v1/sweeps/${encodeURIComponent(sweep)}/points/${ordinal}`;
-    const point = await (scenarios.get(path) ?? scenarios.set(path, get(path, {}, signal)).get(path));
-    return point.scenario;
+    const known = this.#points.get(path) ?? get(path, {}, this.#context.signal);
+    this.#points.set(path, known);
+    return (await known).scenario;
   }
+}
 
-  /** What was found of the biases of both. @param {string} colour @param {string} first @param {string} second */
-  function biasesOf(colour, first, second) {
-    return [
-      [first, context.biases.say(colour)],
-      [second, other?.biases.say(colour)],
-    ]
-      .filter(([, found]) => found)
-      .map(([name, found]) => `${name}: ${found}`);
-  }
+/** @param {any} sweep @returns {string} */
+function nameOf(sweep) {
+  return sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
+}
 
+/** @param {string} id @param {AbortSignal} signal @returns {Promise<Other>} */
+async function loadOther(id, signal) {
+  const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
+  const [table, biases] = [new SweepTable(sweep, signal), new Biases()];
+  await Promise.all([table.load(), biases.load(sweep, signal)]);
+  return { sweep, table, biases, axes: sweptBy(sweep, table.names).axes };
+}
+
+/** Parameters and results that both sweeps have. @param {Context} context @param {Other} other */
+function inCommon(context, other) {
+  const isResult = (/** @type {string} */ name) =>
+    other.table.names.includes(name) &&
+    !context.axes.includes(name) &&
+    !other.axes.includes(name) &&
+    !OF_POINTS.includes(name);
   return {
-    element: h("div", {}, controls, empty, figure),
-    draw: undelayed(redraw, context),
-    fields: () => fields.mine,
-    others: () =>
-      other && query.get("with") === other.sweep.id
-        ? [{ id: other.sweep.id, path: other.table.path, fields: fields.theirs }]
-        : [],
+    axes: context.axes.filter((axis) => other.axes.includes(axis)),
+    results: context.table.results().filter(isResult),
   };
 }
 
 /**
- * The fields in which two scenarios differ, each with both values.
+ * The points of both sweeps at the same parameters.
+ * @param {Row[]} mine
+ * @param {Row[]} theirs
+ * @param {number | null} size served units in one of the shown unit; `null` for differences in per cent
+ * @returns {Pair[]}
+ */
+function pairsOf(mine, theirs, size) {
+  const xs = classes([...mine, ...theirs].map((row) => row.x));
+  const ys = classes([...mine, ...theirs].map((row) => row.y));
+  const cell = (/** @type {Row} */ row) => `${xs.get(row.x)} ${ys.get(row.y)}`;
+  const partners = new Map(theirs.map((row) => [cell(row), row]));
+  const change = (/** @type {number} */ from, /** @type {number} */ to) =>
+    size === null ? (100 * (to - from)) / Math.abs(from) : (to - from) / size;
+  const pairs = mine.flatMap((row) => {
+    const partner = partners.get(cell(row));
+    return partner ? [{ ...row, partner, change: change(row.value, partner.value) }] : [];
+  });
+  return pairs.filter((pair) => Number.isFinite(pair.change));
+}
+
+/** @param {Pair} pair @param {Shown} shown @param {string} symbol of the difference @param {Biases} mine @param {Biases} theirs */
+function hoverText(pair, { x, y, colour }, symbol, mine, theirs) {
+  return [
+    `${label(x)} ${say(x, pair.x)}`,
+    y && `${label(y)} ${say(y, pair.y)}`,
+    `this: ${say(colour, pair.value)}${mine.beside(colour, pair.ordinal)}`,
+    `other: ${say(colour, pair.partner.value)}${theirs.beside(colour, pair.partner.ordinal)}`,
+    `difference: ${number(pair.change, 4)} ${symbol}`,
+  ]
+    .filter(Boolean)
+    .join("<br>");
+}
+
+/**
+ * Differences over two parameters as cells.
+ * @param {Pair[]} pairs @param {string} x @param {string} y @param {string} name of the difference
+ * @param {{text: string[], keys: string[]}} told
+ */
+function cellTrace(pairs, x, y, name, { text, keys }) {
+  const across = distinct(pairs.map((pair) => pair.x));
+  const up = distinct(pairs.map((pair) => pair.y));
+  const placeOf = (/** @type {(number | string)[]} */ values) =>
+    new Map(values.map((value, index) => [value, index]));
+  const [columns, lines] = [placeOf(across), placeOf(up)];
+  const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
+  const [cells, hover, points] = [grid(null), grid(""), grid(null)];
+  pairs.forEach((pair, index) => {
+    const [row, column] = [lines.get(pair.y) ?? 0, columns.get(pair.x) ?? 0];
+    [cells[row][column], hover[row][column], points[row][column]] = [pair.change, text[index], keys[index]];
+  });
+  const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
+  const at = (/** @type {string} */ axis, /** @type {(number | string)[]} */ values) =>
+    values.map((value) => Number(value) / unit(axis).size);
+  return {
+    type: "heatmap",
+    x: at(x, across),
+    y: at(y, up),
+    z: cells,
+    text: hover,
+    customdata: points,
+    hoverinfo: "text",
+    colorscale: DIVERGING,
+    reversescale: false,
+    zmin: -largest,
+    zmax: largest,
+    colorbar: colourBar(name),
+    xgap: 1,
+    ygap: 1,
+  };
+}
+
+/**
+ * Both results over one parameter, and their difference below.
+ * @param {Pair[]} pairs @param {string} x @param {string} colour @param {string[]} names of the sweeps
+ * @param {{text: string[], keys: string[]}} told
+ */
+function lineTraces(pairs, x, colour, [first, second], { text, keys }) {
+  const order = pairs.map((_, index) => index).sort((a, b) => pairs[a].x - pairs[b].x);
+  const { size } = unit(colour);
+  const line = (
+    /** @type {string} */ name,
+    /** @type {(pair: Pair) => number} */ value,
+    /** @type {number} */ place,
+    /** @type {any} */ more = {},
+  ) => ({
+    type: "scatter",
+    mode: "lines+markers",
+    name,
+    showlegend: true,
+    x: order.map((index) => pairs[index].x / unit(x).size),
+    y: order.map((index) => value(pairs[index])),
+    text: order.map((index) => text[index]),
+    customdata: order.map((index) => keys[index]),
+    hoverinfo: "text",
+    line: { color: LINES[place], dash: DASHES[place] },
+    ...more,
+  });
+  return [
+    line(first, (pair) => pair.value / size, 0),
+    line(second, (pair) => pair.partner.value / size, 1),
+    line("difference", (pair) => pair.change, 2, { yaxis: "y2" }),
+  ];
+}
+
+/**
+ * Fields in which two scenarios differ, each with both values.
  * @param {any} one
  * @param {any} another
  * @param {string} [path] where both stand

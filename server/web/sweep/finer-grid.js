@@ -2,7 +2,7 @@
 
 import { Problem, send } from "../data/api.js";
 import { debounced, fill, h } from "../ui/dom.js";
-import { bodyLines, lines, python } from "../ui/snippets.js";
+import { bodyLines, python, snippets } from "../ui/snippets.js";
 import { notice } from "../ui/notices.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { duration, label, say, title, unit } from "../data/units.js";
@@ -19,7 +19,7 @@ const COUNT = 5;
 
 /** A parameter that is not shown, and its value in the grid: that of the slice that is shown, or one to be chosen. @typedef {{name: string, value: number, isFree: boolean}} Held */
 
-/** What of a sweep's request says how its points are made, or how it is called: not of those that are added. */
+/** Members of a sweep's request that say how its points are made or what it is called; added points do not take them over. */
 const OF_THE_SWEEP = new Set([
   "axes",
   "design",
@@ -34,117 +34,174 @@ const OF_THE_SWEEP = new Set([
   "priority",
 ]);
 
-/**
- * @param {import("./part.js").Context} context
- * @returns {{element: HTMLElement, choose: (sides: Side[], held: Held[]) => void, close: () => void, kept: (names: string[]) => Side[] | null}}
- *   `kept` is the region that the link has of these parameters
- */
-export function finer(context) {
-  const element = h("section", { class: "panel finer", "aria-label": "Finer grid", hidden: true });
-  const planned = h("p", { role: "status" });
-  const wrong = h("p", { class: "wrong", role: "alert" });
-  const add = h("button", { class: "main", type: "submit", disabled: true }, "Add");
+/** Side of a region: the members of an axis of a request. @param {Side} side @param {any} given how the sweep's request gives the values */
+function spanOf({ from, to, count }, given) {
+  if (count <= 1) return { values: [from] };
+  return { from, to, count, ...(given?.scale === "log" ? { scale: "log" } : {}) };
+}
+
+/** @typedef {import("./part.js").Context} Context */
+
+/** A form for a finer grid; its element has an event `closed`. */
+export class FinerGrid {
+  #context;
+  #planned = h("p", { role: "status" });
+  #wrong = h("p", { class: "wrong", role: "alert" });
+  #add = h("button", { class: "main", type: "submit", disabled: true }, "Add");
+  #snippets = snippets(() => this.#lines(), "The same request");
+  #rested;
   /** @type {Side[]} */
-  let sides = [];
+  #sides = [];
   /** @type {Held[]} */
-  let held = [];
-  let generation = 0;
-  let isSent = false;
+  #held = [];
+  #generation = 0;
+  #isSent = false;
+  element = h("section", { class: "panel finer", "aria-label": "Finer grid", hidden: true });
+
+  /** @param {Context} context */
+  constructor(context) {
+    this.#context = context;
+    this.#rested = debounced(() => void this.#dryRun(), 300, context.signal);
+  }
+
+  get isOpen() {
+    return !this.element.hidden;
+  }
+
+  /** The region of these parameters in the link, if it has one. @param {string[]} names @returns {Side[] | null} */
+  kept(names) {
+    const given = (this.#context.query.get("finer") ?? "")
+      .split(",")
+      .map((text) => text.split(":"))
+      .map(([name, ...numbers]) => ({ name, numbers: numbers.map(Number) }));
+    const isWhole =
+      given.length === names.length &&
+      given.every(
+        ({ name, numbers }) => names.includes(name) && numbers.length === 3 && numbers.every(Number.isFinite),
+      );
+    return isWhole
+      ? given.map(({ name, numbers: [from, to, count] }) => ({
+          name,
+          from,
+          to,
+          count: Math.max(1, Math.round(count)),
+        }))
+      : null;
+  }
+
+  /** Shows the form for a region, and plans its points. @param {Side[]} sides @param {Held[]} held */
+  choose(sides, held) {
+    // To six digits: a pixel's width is less than that.
+    this.#sides = sides.map((side) => ({
+      ...side,
+      count: side.count || COUNT,
+      from: Number(side.from.toPrecision(6)),
+      to: Number(side.to.toPrecision(6)),
+    }));
+    this.#held = held;
+    this.#keepRegion();
+    this.element.hidden = false;
+    fill(
+      this.element,
+      h("h2", {}, "A finer grid"),
+      h("p", { class: "small soft" }, "Drag over a region of the map, or give its bounds."),
+      h(
+        "form",
+        { novalidate: true, onsubmit: (/** @type {Event} */ event) => this.#submit(event) },
+        this.#sides.map((side) => this.#sideFields(side)),
+        this.#heldPart(),
+        this.#planned,
+        this.#wrong,
+        h(
+          "div",
+          { class: "controls" },
+          this.#add,
+          h("button", { type: "button", onclick: () => this.close() }, "Close"),
+        ),
+      ),
+      this.#snippets,
+    );
+    this.#plan();
+  }
+
+  close() {
+    this.element.hidden = true;
+    this.#context.keep({ finer: null });
+    this.element.dispatchEvent(new Event("closed"));
+  }
 
   /** Keeps the region in the link, in the service's units. */
-  const keepRegion = () =>
-    context.keep({
-      finer: sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(","),
+  #keepRegion() {
+    this.#context.keep({
+      finer: this.#sides.map(({ name, from, to, count }) => [name, from, to, count].join(":")).join(","),
     });
-
-  const path = () => `/v1/sweeps/${encodeURIComponent(context.sweep.id)}/points`;
-
-  function request() {
-    const axes = context.axes.map((name) => {
-      const side = sides.find((one) => one.name === name);
-      const value = held.find((one) => one.name === name)?.value;
-      const span = side
-        ? side.count > 1
-          ? {
-              from: side.from,
-              to: side.to,
-              count: side.count,
-              ...(context.spans[name]?.scale === "log" ? { scale: "log" } : {}),
-            }
-          : { values: [side.from] }
-        : { values: [value] };
-      return [context.paths[name] ?? name, span];
-    });
-    return { axes: Object.fromEntries(axes) };
   }
 
-  const rested = debounced(
-    async () => {
-      const mine = ++generation;
-      taken.dispatchEvent(new Event("redraw"));
-      try {
-        const scene = Object.fromEntries(
-          Object.entries(context.sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)),
-        );
-        const answer = await send(
-          "POST",
-          "/v1/sweeps?dry_run=true",
-          { ...scene, ...request() },
-          context.signal,
-        );
-        if (mine !== generation) return;
-        wrong.textContent = "";
-        const time =
-          answer.known === answer.total
-            ? "nothing is left to compute"
-            : answer.wall_time
-              ? `about ${duration(answer.wall_time)} on the workers there are`
-              : answer.cpu_time
-                ? `${duration(answer.cpu_time)} of processor time`
-                : "how long is not known";
-        fill(
-          planned,
-          `${answer.total} points; ${answer.known} are known and not computed again; ${time}. Points that the sweep has already are skipped.`,
-        );
-        add.disabled = isSent || !maySubmit();
-        add.title = maySubmit() ? "" : MAY_NOT;
-        add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
-      } catch (error) {
-        if (context.signal.aborted || mine !== generation) return;
-        fill(planned);
-        const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
-        wrong.textContent = details || (error instanceof Error ? error.message : String(error));
-      }
-    },
-    300,
-    context.signal,
-  );
-
-  /** What is added is what was planned: a plan that is under way is of what was there before. */
-  function plan() {
-    generation += 1;
-    add.disabled = true;
-    rested();
+  get #path() {
+    return `/v1/sweeps/${encodeURIComponent(this.#context.sweep.id)}/points`;
   }
 
-  const taken = lines(() => {
-    const body = request();
+  /** The request that adds the points. */
+  #request() {
+    const { axes, spans, paths } = this.#context;
+    const given = axes.map((name) => {
+      const side = this.#sides.find((one) => one.name === name);
+      const value = this.#held.find((one) => one.name === name)?.value;
+      return [paths[name] ?? name, side ? spanOf(side, spans[name]) : { values: [value] }];
+    });
+    return { axes: Object.fromEntries(given) };
+  }
+
+  /** Plans what is entered; only what was planned can be added, so that an older plan is void. */
+  #plan() {
+    this.#generation += 1;
+    this.#add.disabled = true;
+    this.#rested();
+  }
+
+  async #dryRun() {
+    const { sweep, signal } = this.#context;
+    const mine = ++this.#generation;
+    this.#snippets.dispatchEvent(new Event("redraw"));
+    try {
+      const scene = Object.fromEntries(
+        Object.entries(sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)),
+      );
+      const answer = await send("POST", "/v1/sweeps?dry_run=true", { ...scene, ...this.#request() }, signal);
+      if (mine !== this.#generation) return;
+      this.#wrong.textContent = "";
+      fill(
+        this.#planned,
+        `${answer.total} points; ${answer.known} are known and not computed again; ${sayTime(answer)}. Points that the sweep has already are skipped.`,
+      );
+      this.#add.disabled = this.#isSent || !maySubmit();
+      this.#add.title = maySubmit() ? "" : MAY_NOT;
+      this.#add.textContent = `Add ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
+    } catch (error) {
+      if (signal.aborted || mine !== this.#generation) return;
+      fill(this.#planned);
+      const details = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(" ") : "";
+      this.#wrong.textContent = details || (error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  #lines() {
+    const body = this.#request();
     const axis = (/** @type {any} */ span) =>
       span.values
         ? python(span.values)
         : `Range(${span.from}, ${span.to}, ${span.count}${span.scale ? ', scale="log"' : ""})`;
+    const axes = Object.entries(body.axes)
+      .map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`)
+      .join(", ");
     return {
-      ...bodyLines(path(), body),
-      python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${context.sweep.id}")\nsweep.append({${Object.entries(
-        body.axes,
-      )
-        .map(([name, span]) => `${JSON.stringify(name)}: ${axis(span)}`)
-        .join(", ")}})`,
+      ...bodyLines(this.#path, body),
+      python: `from drillsweep import Client, Range\n\nsweep = Client("${location.origin}").sweep("${this.#context.sweep.id}")\nsweep.append({${axes}})`,
     };
-  }, "The same request");
+  }
 
   /** A field for a number. @param {string} text @param {number} value @param {(value: number) => void} set */
-  function box(text, value, set) {
+  #box(text, value, set) {
     const input = h("input", {
       type: "number",
       step: "any",
@@ -153,142 +210,90 @@ export function finer(context) {
       oninput: () => {
         if (input.value === "" || !Number.isFinite(Number(input.value))) return;
         set(Number(input.value));
-        plan();
+        this.#plan();
       },
     });
     return h("label", { class: "field" }, h("span", {}, text), input);
   }
 
+  /** Parameters that are not shown: fields for free ones, and the values of the slice. */
+  #heldPart() {
+    const [free, sliced] = [this.#held.filter((one) => one.isFree), this.#held.filter((one) => !one.isFree)];
+    return [
+      free.length > 0 &&
+        h(
+          "fieldset",
+          { class: "controls" },
+          h("legend", {}, "Held, where the drawn points differ"),
+          free.map((one) => this.#heldField(one)),
+        ),
+      sliced.length > 0 &&
+        h(
+          "p",
+          { class: "small" },
+          `Held: ${sliced.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`,
+        ),
+    ];
+  }
+
   /** @param {Held} one */
-  function heldField(one) {
-    return box(title(one.name), Number((one.value / unit(one.name).size).toPrecision(6)), (value) => {
-      one.value = value * unit(one.name).size;
-      context.keep({ [`at.${one.name}`]: String(one.value) });
+  #heldField(one) {
+    const { size } = unit(one.name);
+    return this.#box(title(one.name), Number((one.value / size).toPrecision(6)), (value) => {
+      this.#held = this.#held.map((other) =>
+        other.name === one.name ? { ...other, value: value * size } : other,
+      );
+      this.#context.keep({ [`at.${one.name}`]: String(value * size) });
     });
   }
 
   /** @param {Side} side */
-  function fields(side) {
-    const { size, symbol } = unit(side.name);
-    const kept = (/** @type {(value: number) => void} */ set) => (/** @type {number} */ value) => {
-      set(value);
-      keepRegion();
+  #sideFields({ name, from, to, count }) {
+    const { size, symbol } = unit(name);
+    const change = (/** @type {Partial<Side>} */ changes) => {
+      this.#sides = this.#sides.map((side) => (side.name === name ? { ...side, ...changes } : side));
+      this.#keepRegion();
     };
     const shownAs = (/** @type {number} */ value) => Number((value / size).toPrecision(6));
+    const titled = (/** @type {string} */ text) => (symbol ? `${text} [${symbol}]` : text);
     return h(
       "fieldset",
       { class: "controls" },
-      h("legend", {}, label(side.name)),
-      box(
-        symbol ? `From [${symbol}]` : "From",
-        shownAs(side.from),
-        kept((value) => (side.from = value * size)),
-      ),
-      box(
-        symbol ? `To [${symbol}]` : "To",
-        shownAs(side.to),
-        kept((value) => (side.to = value * size)),
-      ),
-      box(
-        "Values",
-        side.count,
-        kept((value) => (side.count = Math.max(1, Math.round(value)))),
-      ),
+      h("legend", {}, label(name)),
+      this.#box(titled("From"), shownAs(from), (value) => change({ from: value * size })),
+      this.#box(titled("To"), shownAs(to), (value) => change({ to: value * size })),
+      this.#box("Values", count, (value) => change({ count: Math.max(1, Math.round(value)) })),
     );
   }
 
-  async function submit(/** @type {Event} */ event) {
+  /** @param {Event} event */
+  async #submit(event) {
     event.preventDefault();
-    add.disabled = true;
-    isSent = true;
+    this.#add.disabled = true;
+    this.#isSent = true;
     try {
-      const before = context.sweep.counts.total;
-      const changed = await send("POST", path(), request());
+      const before = this.#context.sweep.counts.total;
+      const changed = await send("POST", this.#path, this.#request());
       const added = changed.counts.total - before;
       notice(
         added
           ? `${added} ${added === 1 ? "point is" : "points are"} added.`
           : "The sweep has all of these points already.",
       );
-      context.changed(changed);
-      close();
+      this.#context.changed(changed);
+      this.close();
     } catch (error) {
-      wrong.textContent = error instanceof Error ? error.message : String(error);
-      add.disabled = false;
+      this.#wrong.textContent = error instanceof Error ? error.message : String(error);
+      this.#add.disabled = false;
     } finally {
-      isSent = false;
+      this.#isSent = false;
     }
   }
+}
 
-  function close() {
-    element.hidden = true;
-    context.keep({ finer: null });
-    element.dispatchEvent(new Event("closed"));
-  }
-
-  return {
-    element,
-    close,
-    kept: (names) => {
-      const given = (context.query.get("finer") ?? "")
-        .split(",")
-        .map((text) => text.split(":"))
-        .map(([name, ...numbers]) => ({ name, numbers: numbers.map(Number) }));
-      const isWhole =
-        given.length === names.length &&
-        given.every(
-          ({ name, numbers }) =>
-            names.includes(name) && numbers.length === 3 && numbers.every(Number.isFinite),
-        );
-      return isWhole
-        ? given.map(({ name, numbers: [from, to, count] }) => ({
-            name,
-            from,
-            to,
-            count: Math.max(1, Math.round(count)),
-          }))
-        : null;
-    },
-    choose: (chosen, others) => {
-      // To six digits: a pixel's width is less than that.
-      sides = chosen.map((side) => ({
-        ...side,
-        count: side.count || COUNT,
-        from: Number(side.from.toPrecision(6)),
-        to: Number(side.to.toPrecision(6)),
-      }));
-      held = others;
-      const [free, sliced] = [held.filter((one) => one.isFree), held.filter((one) => !one.isFree)];
-      keepRegion();
-      element.hidden = false;
-      fill(
-        element,
-        h("h2", {}, "A finer grid"),
-        h("p", { class: "small soft" }, "Drag over a region of the map, or give its bounds."),
-        h(
-          "form",
-          { novalidate: true, onsubmit: submit },
-          sides.map(fields),
-          free.length > 0 &&
-            h(
-              "fieldset",
-              { class: "controls" },
-              h("legend", {}, "Held, where the drawn points differ"),
-              free.map(heldField),
-            ),
-          sliced.length > 0 &&
-            h(
-              "p",
-              { class: "small" },
-              `Held: ${sliced.map(({ name, value }) => `${label(name)} ${say(name, value)}`).join(", ")}.`,
-            ),
-          planned,
-          wrong,
-          h("div", { class: "controls" }, add, h("button", { type: "button", onclick: close }, "Close")),
-        ),
-        taken,
-      );
-      plan();
-    },
-  };
+/** How long the points of a dry run take, in words. @param {any} answer */
+function sayTime(answer) {
+  if (answer.known === answer.total) return "nothing is left to compute";
+  if (answer.wall_time) return `about ${duration(answer.wall_time)} on the workers there are`;
+  return answer.cpu_time ? `${duration(answer.cpu_time)} of processor time` : "how long is not known";
 }

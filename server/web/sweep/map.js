@@ -7,7 +7,7 @@ import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCAL
 import { link } from "../ui/router.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { keyboard } from "../draw/point-cursor.js";
-import { finer } from "./finer-grid.js";
+import { FinerGrid } from "./finer-grid.js";
 import { MANY, preferred, undelayed } from "./part.js";
 import { ends, layered } from "../data/grid-layers.js";
 import { distinct, isText } from "../data/sweep-table.js";
@@ -18,109 +18,127 @@ const DRAWN = ["latin_hypercube", "sobol"];
 /** Colours of words, such as states. */
 const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
 
+/** @typedef {import("./part.js").Context} Context */
+/** @typedef {import("../data/sweep-table.js").Values} Values */
+
 /**
- * @param {import("./part.js").Context} context
+ * Choices of the link: names of columns, further parameters, and how the picture is drawn.
+ * @typedef {{x: string, y: string | undefined, colour: string, results: string[], held: string[], isLog: boolean, style: string}} Chosen
+ */
+
+/** A further parameter: its values, and the value of the slice. @typedef {{axis: string, all: (number | string)[], value: number | string, column: Values}} HeldAxis */
+
+/**
+ * A slice of the table that is drawn.
+ * @typedef {object} Slice
+ * @property {Values} ordinals
+ * @property {Values} states
+ * @property {Values} xs
+ * @property {Values} ys
+ * @property {Values} values
+ * @property {HeldAxis[]} held further parameters
+ * @property {boolean} isGrid whether the points form a grid, of which a slice is shown
+ * @property {number[]} rows places of the shown points in the columns
+ * @property {(index: number) => boolean} doubts whether a point has not settled
+ */
+
+/**
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function map(context) {
-  const { axes, table, query } = context;
-  const place = canvas("Map of the sweep", "map", "tall");
-  const caption = h("figcaption", {});
-  const controls = h("div", { class: "controls" });
-  const region = finer(context);
-  const cursor = keyboard(place, context.open);
-  const empty = h("p", { class: "empty", hidden: true });
-  const figure = h("figure", {}, place, caption, cursor.element);
-  const element = h("div", {}, controls, empty, figure, region.element);
-  /** What the button opens is chosen by what is drawn last. @type {(range?: any) => void} */
-  let chooseRegion = () => {};
-  const finerButton = h(
-    "button",
-    {
-      onclick: () => {
-        chooseRegion();
-        void adjust(place, { dragmode: "select" });
-      },
+  const shown = new SweepMap(context);
+  return {
+    element: shown.element,
+    draw: undelayed(() => shown.redraw(), context),
+    fields: () => {
+      const { x, y, colour, held } = chosenIn(context);
+      return ["ordinal", x, y, ...held, colour].filter((name) => name !== undefined);
     },
-    "Finer grid",
-  );
-  const sayRegion = () => finerButton.setAttribute("aria-expanded", String(!region.element.hidden));
-  region.element.addEventListener("closed", () => {
-    sayRegion();
-    void adjust(place, { dragmode: "zoom", selections: [] });
-  });
-  const begin = generations();
-  /** What the slice that was drawn last holds: a finer grid is of the slice that is shown. */
-  let sliceBefore = "";
-  const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
+  };
+}
 
-  function chosen() {
-    const x = axes.includes(get("x", "")) ? get("x", "") : axes[0];
-    const others = axes.filter((axis) => axis !== x);
-    const y = others.includes(get("y", "")) ? get("y", "") : others[0];
-    const results = table.results().filter((name) => !axes.includes(name));
-    const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
-    return {
-      x,
-      y,
-      colour,
-      results,
-      held: others.filter((axis) => axis !== y),
-      isLog: get("scale", "linear") === "log",
-      style: get("style", "cells"),
-    };
+class SweepMap {
+  #context;
+  #place = canvas("Map of the sweep", "map", "tall");
+  #caption = h("figcaption", {});
+  #controls = h("div", { class: "controls" });
+  #empty = h("p", { class: "empty", hidden: true });
+  #finerButton = h("button", { onclick: () => this.#openRegion() }, "Finer grid");
+  #region;
+  #cursor;
+  #figure;
+  #begin = generations();
+  /** Opens the form for a finer grid; each drawing sets it. @type {(range?: any) => void} */
+  #chooseRegion = () => {};
+  /** Values that the slice drawn last holds: a finer grid belongs to the slice that is shown. */
+  #sliceBefore = "";
+
+  /** @param {Context} context */
+  constructor(context) {
+    this.#context = context;
+    this.#region = new FinerGrid(context);
+    this.#cursor = keyboard(this.#place, context.open);
+    this.#figure = h("figure", {}, this.#place, this.#caption, this.#cursor.element);
+    this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
+    this.#region.element.addEventListener("closed", () => {
+      this.#sayRegion();
+      void adjust(this.#place, { dragmode: "zoom", selections: [] });
+    });
   }
 
-  async function redraw() {
-    const isNewest = begin();
-    const { x, y, colour, results, held, isLog, style } = chosen();
-    if (!x) {
-      fill(element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
+  #openRegion() {
+    this.#chooseRegion();
+    void adjust(this.#place, { dragmode: "select" });
+  }
+
+  #sayRegion() {
+    this.#finerButton.setAttribute("aria-expanded", String(this.#region.isOpen));
+  }
+
+  async redraw() {
+    const isNewest = this.#begin();
+    const context = this.#context;
+    const chosen = chosenIn(context);
+    if (!chosen.x) {
+      fill(this.element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
       return;
     }
-    const present = SETTLING.filter((name) => table.names.includes(name));
-    const [ordinals, states, xs, ys, values, ...others] = await table.columns(
-      "ordinal",
-      "state",
-      x,
-      y ?? x,
-      colour,
-      ...held,
-      ...present,
-    );
+    const slice = await readSlice(context, chosen);
     if (!isNewest()) return;
-    const settling = others.slice(held.length);
-    const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) =>
-      settling[present.indexOf(name)]?.[index];
-    const doubts = (/** @type {number} */ index) =>
-      isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
+    fill(this.#controls, this.#controlsPart(chosen, slice));
+    this.#updateRegion(chosen, slice);
+    const { states } = slice;
+    const isAllFailed =
+      !context.query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
+    this.#empty.hidden = !isAllFailed;
+    this.#figure.hidden = isAllFailed;
+    if (isAllFailed) {
+      fill(
+        this.#empty,
+        "All points of this sweep failed: why is told under ",
+        h("a", { href: link(["sweeps", context.sweep.id], { view: "failures" }) }, "Failures"),
+        ".",
+      );
+      return;
+    }
+    this.#describe(chosen, slice);
+    await (chosen.y === undefined
+      ? this.#drawLine(chosen, slice)
+      : this.#drawArea({ ...chosen, y: chosen.y }, slice));
+  }
+
+  /** @param {Chosen} chosen @param {Slice} slice */
+  #controlsPart({ x, y, colour, results, isLog, style }, { values, held, isGrid }) {
+    const { axes } = this.#context;
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => {
-      context.keep({ [name]: value });
-      attend(redraw(), context.signal);
+      this.#context.keep({ [name]: value });
+      attend(this.redraw(), this.#context.signal);
     };
     const named = (/** @type {string[]} */ names) =>
       names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
     const words = isText(values);
-    const heldValues = held.map((axis, index) => {
-      const all = distinct(others[index]);
-      const asked = Number(get(`at.${axis}`, ""));
-      return {
-        axis,
-        all,
-        value: query.has(`at.${axis}`) && all.includes(asked) ? asked : all[0],
-        column: others[index],
-      };
-    });
-    const { axes: spans, design = "grid" } = context.sweep.request ?? {};
-    const isDrawn = DRAWN.includes(design);
-    const isGrid =
-      !y ||
-      (spans && design === "grid") ||
-      (!isDrawn && distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16);
-    // A design that draws its points has no slices: all of them are shown.
-    const slices = isGrid ? heldValues : [];
-    fill(
-      controls,
+    return [
       choice("Across", named(axes), x, set("x")),
       y && choice("Up", named(axes.filter((axis) => axis !== x)), y, set("y")),
       choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
@@ -146,8 +164,8 @@ export function map(context) {
           style,
           set("style"),
         ),
-      finerButton,
-      slices.map(({ axis, all, value }) =>
+      this.#finerButton,
+      ...(isGrid ? held : []).map(({ axis, all, value }) =>
         choice(
           label(axis),
           all.map((entry) => [String(entry), say(axis, entry)]),
@@ -155,254 +173,116 @@ export function map(context) {
           set(`at.${axis}`),
         ),
       ),
-    );
+    ];
+  }
+
+  /** Binds the finer grid to the slice that is shown, and opens it for the region of the link. @param {Chosen} chosen @param {Slice} slice */
+  #updateRegion({ x, y }, slice) {
     const sides = y ? [x, y] : [x];
-    /** What a finer grid holds: the slice that is shown, or values to be chosen where all points are. */
-    const further = () =>
-      heldValues.map(({ axis, all, value }) => ({
-        name: axis,
-        value: isGrid ? Number(value) : chosenOr(axis, middle(all.map(Number), context.spans[axis])),
-        isFree: !isGrid,
-      }));
-    const chosenOr = (/** @type {string} */ axis, /** @type {number} */ other) => {
-      const asked = Number(query.get(`at.${axis}`) || NaN);
-      return Number.isFinite(asked) ? asked : other;
+    this.#chooseRegion = (range) => {
+      this.#region.choose(regionSides(sides, range, slice), furtherOf(this.#context, slice));
+      this.#sayRegion();
     };
-    // Of a region, as shown; without one of the whole map.
-    chooseRegion = (range) => {
-      const chosenSides = sides.map((name, order) => {
-        const values = distinct(order ? ys : xs).map(Number);
-        const shownRange = range?.[order ? "y" : "x"]
-          ?.map((/** @type {number} */ end) => end * unit(name).size)
-          .sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
-        // Cells reach beyond the values that they stand for.
-        const [from, to] =
-          shownRange && (order === 0 || y) ? shownRange : [values[0], values.at(-1) ?? values[0]];
-        return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
-      });
-      region.choose(chosenSides, further());
-      sayRegion();
-    };
-    const kept = region.kept(sides);
-    const slice = slices.map(({ value }) => value).join(",");
-    if (kept && (region.element.hidden || slice !== sliceBefore)) region.choose(kept, further());
-    sliceBefore = slice;
-    sayRegion();
-    const isAllFailed =
-      !query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
-    empty.hidden = !isAllFailed;
-    figure.hidden = isAllFailed;
-    if (isAllFailed) {
-      fill(
-        empty,
-        "All points of this sweep failed: why is told under ",
-        h("a", { href: link(["sweeps", context.sweep.id], { view: "failures" }) }, "Failures"),
-        ".",
-      );
-      return;
-    }
-    const rows = ordinals
-      .map((_, index) => index)
-      .filter((index) => slices.every(({ column, value }) => column[index] === value));
+    const kept = this.#region.kept(sides);
+    const key = (slice.isGrid ? slice.held : []).map(({ value }) => value).join(",");
+    if (kept && (!this.#region.isOpen || key !== this.#sliceBefore))
+      this.#region.choose(kept, furtherOf(this.#context, slice));
+    this.#sliceBefore = key;
+    this.#sayRegion();
+  }
+
+  /** @param {Chosen} chosen @param {Slice} slice */
+  #describe({ x, y, colour, isLog }, { rows, values }) {
+    const { depths, biases } = this.#context;
     const done = rows.filter((index) => values[index] !== null).length;
-    const logged = (/** @type {any} */ value) =>
-      typeof value === "number" && value > 0 ? Math.log10(value) : null;
     const hidden =
-      isLog && !words
+      isLog && !isText(values)
         ? rows.filter((index) => typeof values[index] === "number" && Number(values[index]) <= 0).length
         : 0;
     fill(
-      caption,
-      `${context.depths.label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it, or go over them by arrow keys and open by Enter. `,
-      context.biases.say(colour),
+      this.#caption,
+      `${depths.label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it, or go over them by arrow keys and open by Enter. `,
+      biases.say(colour),
       hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "",
     );
-    place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+    this.#place.setAttribute("aria-label", `${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`);
+  }
 
-    // What a name stands for is looked up once, and not for each of a hundred thousand points.
-    const sizes = new Map([...sides, colour].map((name) => [name, unit(name).size]));
-    const at = (/** @type {string} */ name, /** @type {any} */ value) =>
-      typeof value === "number" ? value / (sizes.get(name) ?? 1) : value;
-    const part = (/** @type {string} */ name) => {
-      const [called, words] = [context.depths.label(name), sayer(name)];
-      return (/** @type {any} */ value) => `${called} ${words(value)}`;
-    };
-    const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
-    const texts = rows.map(
-      (index) =>
-        `point ${ordinals[index]}: ${states[index]}${doubts(index) ? ", not settled" : ""}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${typeof values[index] === "number" ? context.biases.beside(colour, Number(ordinals[index])) : ""}`,
-    );
-    const axisLayout = (/** @type {string} */ name) => ({
+  /** @param {string} name of a parameter */
+  #axisLayout(name) {
+    return {
       title: title(name),
       quantity: name,
-      type: context.spans[name]?.scale === "log" ? "log" : "linear",
-    });
+      type: this.#context.spans[name]?.scale === "log" ? "log" : "linear",
+    };
+  }
 
-    if (!y) {
-      const order = rows
-        .map((_, position) => position)
-        .sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
-      const trace = {
-        type: "scatter",
-        mode: "lines+markers",
-        x: order.map((position) => at(x, xs[rows[position]])),
-        y: order.map((position) => at(colour, values[rows[position]])),
-        text: order.map((position) => texts[position]),
-        customdata: order.map((position) => ordinals[rows[position]]),
-        hoverinfo: "text",
-        marker: {
-          size: 8,
-          color: LINES[0],
-          symbol: order.map((position) => (doubts(rows[position]) ? "x" : "circle")),
-        },
-        line: { color: LINES[0] },
-      };
-      cursor.over(
-        order
-          .map((position, column) => ({
-            x: at(x, xs[rows[position]]),
-            y: at(colour, values[rows[position]]),
-            column,
-            row: 0,
-            ordinal: Number(ordinals[rows[position]]),
-            text: texts[position],
-          }))
-          .filter((point) => typeof point.y === "number"),
-      );
-      const shape = await draw(
-        place,
-        [trace],
-        {
-          xaxis: axisLayout(x),
-          yaxis: { title: context.depths.title(colour), quantity: colour, type: isLog ? "log" : "linear" },
-          dragmode: region.element.hidden ? "zoom" : "select",
-        },
-        context.signal,
-      );
-      listen(shape, chooseRegion);
-      return;
-    }
-
-    const vocabulary = words ? distinct(values) : [];
-    const coded = (/** @type {number} */ index) =>
-      words
-        ? values[index] === null
-          ? null
-          : vocabulary.indexOf(/** @type {string} */ (values[index]))
-        : isLog
-          ? logged(values[index])
-          : at(colour, values[index]);
-    const z = rows.map(coded);
-    const finite = /** @type {number[]} */ (z.filter((value) => value !== null));
-    const offset = isLog ? Math.log10(unit(colour).size) : 0;
-    const shownZ = isLog && !words ? z.map((value) => (value === null ? null : Number(value) - offset)) : z;
-    const least = finite.reduce((a, b) => Math.min(a, b), Infinity) - (words ? 0 : offset);
-    const largest = finite.reduce((a, b) => Math.max(a, b), -Infinity) - (words ? 0 : offset);
-    const bar = words
-      ? {
-          ...colourBar(context.depths.label(colour)),
-          tickvals: vocabulary.map((_, index) => index),
-          ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")),
-        }
-      : {
-          ...colourBar(context.depths.title(colour)),
-          ...(isLog && finite.length ? logTicks(least, largest) : {}),
-        };
-    const count = Math.max(vocabulary.length, 1);
-    const discrete = Array.from({ length: count }, (_, index) => [
-      [index / count, WORDS[index % WORDS.length]],
-      [(index + 1) / count, WORDS[index % WORDS.length]],
-    ]).flat();
-    const scale = words
-      ? { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 }
-      : { colorscale: SCALE, ...(finite.length ? { zmin: least, zmax: largest } : {}) };
-
-    /** @type {any[]} */
-    const traces = [];
-    if (isGrid) {
-      const requests = [context.sweep.request, ...(context.sweep.appended ?? [])].map((request) => ({
-        x: request?.axes?.[context.paths[x] ?? x],
-        y: request?.axes?.[context.paths[y] ?? y],
-      }));
-      const [allX, allY] = [xs, ys].map((column) => distinct(rows.map((index) => column[index])).map(Number));
-      layered(
-        rows.map((index) => Number(xs[index])),
-        rows.map((index) => Number(ys[index])),
-        requests,
-      ).forEach(({ across, up, at: positions }, order) => {
-        const part = (/** @type {(position: number) => any} */ value, /** @type {any} */ none) =>
-          positions.map((line) => line.map((position) => (position === undefined ? none : value(position))));
-        const gap = words || up.length * across.length > 900 ? 0 : 1;
-        const isContour = style === "contour" && !words && across.length > 1 && up.length > 1;
-        traces.push({
-          type: isContour ? "contour" : "heatmap",
-          x: ends(across, allX).map((value) => at(x, value)),
-          y: ends(up, allY).map((value) => at(y, value)),
-          z: part((position) => shownZ[position], null),
-          text: part((position) => texts[position], ""),
-          customdata: part((position) => ordinals[rows[position]], null),
-          hoverinfo: "text",
-          hoverongaps: order === 0,
-          colorbar: bar,
-          showscale: order === 0,
-          ...scale,
-          xgap: gap,
-          ygap: gap,
-          contours: { coloring: "heatmap" },
-          line: { color: inks().panel, width: 0.7 },
-        });
-      });
-    } else {
-      const kind = rows.length > MANY ? "scattergl" : "scatter";
-      traces.push({
-        type: kind,
-        mode: "markers",
-        x: rows.map((index) => at(x, xs[index])),
-        y: rows.map((index) => at(y, ys[index])),
-        text: texts,
-        customdata: rows.map((index) => ordinals[index]),
-        hoverinfo: "text",
-        marker: {
-          size: rows.length > MANY ? 5 : 9,
-          color: shownZ,
-          colorscale: words ? scale.colorscale : lineScale(),
-          cmin: words ? -0.5 : undefined,
-          cmax: words ? count - 0.5 : undefined,
-          colorbar: bar,
-          line: { width: 0 },
-        },
-      });
-    }
-    const crosses = (
-      /** @type {string} */ name,
-      /** @type {number[]} */ marked,
-      /** @type {any} */ marker,
-    ) => ({
-      type: marked.length > MANY ? "scattergl" : "scatter",
-      mode: "markers",
-      name,
-      x: marked.map((index) => at(x, xs[index])),
-      y: marked.map((index) => at(y, ys[index])),
-      customdata: marked.map((index) => ordinals[index]),
-      text: marked.map((index) => `point ${ordinals[index]}: ${name}`),
+  /** Draws a result over one parameter. @param {Chosen} chosen @param {Slice} slice */
+  async #drawLine({ x, colour, isLog }, slice) {
+    const { rows, ordinals, xs, values, doubts } = slice;
+    const texts = textsOf(this.#context, { x, y: undefined, colour }, slice);
+    const at = scaled([x, colour]);
+    const order = rows
+      .map((_, position) => position)
+      .sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
+    const points = order.map((position, column) => ({
+      x: at(x, xs[rows[position]]),
+      y: at(colour, values[rows[position]]),
+      column,
+      row: 0,
+      ordinal: Number(ordinals[rows[position]]),
+      text: texts[position],
+    }));
+    const trace = {
+      type: "scatter",
+      mode: "lines+markers",
+      x: points.map((point) => point.x),
+      y: points.map((point) => point.y),
+      text: points.map(({ text }) => text),
+      customdata: order.map((position) => ordinals[rows[position]]),
       hoverinfo: "text",
-      marker: { ...marker, size: marked.length > MANY ? 4 : 9, color: "#d55e00" },
-      showlegend: true,
+      marker: {
+        size: 8,
+        color: LINES[0],
+        symbol: order.map((position) => (doubts(rows[position]) ? "x" : "circle")),
+      },
+      line: { color: LINES[0] },
+    };
+    this.#cursor.over(points.filter((point) => typeof point.y === "number"));
+    await this.#draw([trace], {
+      xaxis: this.#axisLayout(x),
+      yaxis: { title: this.#context.depths.title(colour), quantity: colour, type: isLog ? "log" : "linear" },
     });
+  }
+
+  /** Draws a result over two parameters. @param {Chosen & {y: string}} chosen @param {Slice} slice */
+  async #drawArea(chosen, slice) {
+    const { x, y, colour } = chosen;
+    const { rows, ordinals, xs, ys, states, doubts } = slice;
+    const texts = textsOf(this.#context, chosen, slice);
+    const at = scaled([x, y, colour]);
+    const colours = coloursOf(this.#context, chosen, slice, at);
+    const traces = slice.isGrid
+      ? cellTraces(this.#context, chosen, slice, { texts, colours, at })
+      : [markTrace(chosen, slice, { texts, colours, at })];
     const failed = rows.filter((index) => states[index] === "failed");
-    if (failed.length) traces.push(crosses("failed", failed, { symbol: "x" }));
+    if (failed.length) traces.push(crosses("failed", failed, { symbol: "x" }, chosen, slice, at));
     const doubtful = rows.filter(doubts);
     if (doubtful.length)
       traces.push(
-        crosses("not settled", doubtful, {
-          symbol: "x-thin-open",
-          line: { width: doubtful.length > MANY ? 1 : 2 },
-        }),
+        crosses(
+          "not settled",
+          doubtful,
+          { symbol: "x-thin-open", line: { width: doubtful.length > MANY ? 1 : 2 } },
+          chosen,
+          slice,
+          at,
+        ),
       );
     const [columnOf, rowOf] = [xs, ys].map(
       (column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])),
     );
-    cursor.over(
+    this.#cursor.over(
       rows.map((index, position) => ({
         x: at(x, xs[index]),
         y: at(y, ys[index]),
@@ -412,17 +292,18 @@ export function map(context) {
         text: texts[position],
       })),
     );
-    const shape = await draw(
-      place,
-      traces,
-      { xaxis: axisLayout(x), yaxis: axisLayout(y), dragmode: region.element.hidden ? "zoom" : "select" },
-      context.signal,
-    );
-    listen(shape, chooseRegion);
+    await this.#draw(traces, { xaxis: this.#axisLayout(x), yaxis: this.#axisLayout(y) });
   }
 
-  /** @param {any} shape @param {(range: any) => void} chooseRegion */
-  function listen(shape, chooseRegion) {
+  /** @param {any[]} traces @param {any} layout */
+  async #draw(traces, layout) {
+    const chooseRegion = this.#chooseRegion;
+    const shape = await draw(
+      this.#place,
+      traces,
+      { ...layout, dragmode: this.#region.isOpen ? "select" : "zoom" },
+      this.#context.signal,
+    );
     shape.removeAllListeners?.("plotly_click");
     shape.removeAllListeners?.("plotly_selected");
     shape.on?.("plotly_selected", (/** @type {any} */ event) => {
@@ -430,17 +311,264 @@ export function map(context) {
     });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") context.open(ordinal);
+      if (typeof ordinal === "number") this.#context.open(ordinal);
     });
   }
+}
 
+/** @param {Context} context @returns {Chosen} */
+function chosenIn({ axes, table, query }) {
+  const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
+  const x = axes.includes(get("x", "")) ? get("x", "") : axes[0];
+  const others = axes.filter((axis) => axis !== x);
+  const y = others.includes(get("y", "")) ? get("y", "") : others[0];
+  const results = table.results().filter((name) => !axes.includes(name));
+  const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
   return {
-    element,
-    draw: undelayed(redraw, context),
-    fields: () => {
-      const { x, y, colour, held } = chosen();
-      return ["ordinal", x, y, ...held, colour].filter((name) => name !== undefined);
-    },
+    x,
+    y,
+    colour,
+    results,
+    held: others.filter((axis) => axis !== y),
+    isLog: get("scale", "linear") === "log",
+    style: get("style", "cells"),
+  };
+}
+
+/** Reads the columns that a map shows. @param {Context} context @param {Chosen} chosen @returns {Promise<Slice>} */
+async function readSlice({ sweep, table, query }, { x, y, colour, held: heldNames }) {
+  const present = SETTLING.filter((name) => table.names.includes(name));
+  const [ordinals, states, xs, ys, values, ...others] = await table.columns(
+    "ordinal",
+    "state",
+    x,
+    y ?? x,
+    colour,
+    ...heldNames,
+    ...present,
+  );
+  const settling = others.slice(heldNames.length);
+  const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) =>
+    settling[present.indexOf(name)]?.[index];
+  const doubts = (/** @type {number} */ index) =>
+    isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
+  const held = heldNames.map((axis, index) => {
+    const all = distinct(others[index]);
+    const asked = Number(query.get(`at.${axis}`) ?? "");
+    return {
+      axis,
+      all,
+      value: query.has(`at.${axis}`) && all.includes(asked) ? asked : all[0],
+      column: others[index],
+    };
+  });
+  const { axes: spans, design = "grid" } = sweep.request ?? {};
+  const isGrid =
+    !y ||
+    (spans && design === "grid") ||
+    (!DRAWN.includes(design) && distinct(xs).length * distinct(ys).length <= 4 * xs.length + 16);
+  // A design that draws its points has no slices: all of them are shown.
+  const slices = isGrid ? held : [];
+  const rows = ordinals
+    .map((_, index) => index)
+    .filter((index) => slices.every(({ column, value }) => column[index] === value));
+  return { ordinals, states, xs, ys, values, held, isGrid, rows, doubts };
+}
+
+/**
+ * Sides of the region for a finer grid.
+ * @param {string[]} sides names of the parameters across and up
+ * @param {any} range of the picture that was dragged over, in the units shown; the whole map if it is absent
+ * @param {Slice} slice
+ */
+function regionSides(sides, range, { xs, ys }) {
+  return sides.map((name, order) => {
+    const values = distinct(order ? ys : xs).map(Number);
+    const shownRange = range?.[order ? "y" : "x"]
+      ?.map((/** @type {number} */ end) => end * unit(name).size)
+      .sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+    // Cells reach beyond the values that they stand for.
+    const [from, to] = shownRange ?? [values[0], values.at(-1) ?? values[0]];
+    return { name, from: Math.max(from, values[0]), to: Math.min(to, values.at(-1) ?? to), count: 0 };
+  });
+}
+
+/** Parameters that a finer grid holds: at the slice that is shown, or free where all points are shown. @param {Context} context @param {Slice} slice */
+function furtherOf({ query, spans }, { held, isGrid }) {
+  return held.map(({ axis, all, value }) => {
+    if (isGrid) return { name: axis, value: Number(value), isFree: false };
+    const asked = Number(query.get(`at.${axis}`) || NaN);
+    return {
+      name: axis,
+      value: Number.isFinite(asked) ? asked : middle(all.map(Number), spans[axis]),
+      isFree: true,
+    };
+  });
+}
+
+/**
+ * A conversion to the units shown, which looks up each name once and not for each of a hundred thousand points.
+ * @param {string[]} names
+ */
+function scaled(names) {
+  const sizes = new Map(names.map((name) => [name, unit(name).size]));
+  return (/** @type {string} */ name, /** @type {any} */ value) =>
+    typeof value === "number" ? value / (sizes.get(name) ?? 1) : value;
+}
+
+/** Texts of the points, in the order of the rows. @param {Context} context @param {{x: string, y: string | undefined, colour: string}} chosen @param {Slice} slice */
+function textsOf({ depths, biases }, { x, y, colour }, { rows, ordinals, states, xs, ys, values, doubts }) {
+  const part = (/** @type {string} */ name) => {
+    const [called, words] = [depths.label(name), sayer(name)];
+    return (/** @type {any} */ value) => `${called} ${words(value)}`;
+  };
+  const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
+  return rows.map((index) => {
+    const bias = typeof values[index] === "number" ? biases.beside(colour, Number(ordinals[index])) : "";
+    return `point ${ordinals[index]}: ${states[index]}${doubts(index) ? ", not settled" : ""}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${bias}`;
+  });
+}
+
+/** @typedef {(name: string, value: any) => any} Scaled */
+
+/**
+ * Values that colour the points, with their scale and the bar next to it.
+ * @typedef {{z: (number | null)[], words: boolean, scale: any, bar: any, count: number}} Colours
+ */
+
+/** @param {Context} context @param {Chosen} chosen @param {Slice} slice @param {Scaled} at @returns {Colours} */
+function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
+  if (isText(values)) {
+    const vocabulary = distinct(values);
+    const count = Math.max(vocabulary.length, 1);
+    const discrete = Array.from({ length: count }, (_, index) => [
+      [index / count, WORDS[index % WORDS.length]],
+      [(index + 1) / count, WORDS[index % WORDS.length]],
+    ]).flat();
+    return {
+      z: rows.map((index) =>
+        values[index] === null ? null : vocabulary.indexOf(/** @type {string} */ (values[index])),
+      ),
+      words: true,
+      scale: { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 },
+      bar: {
+        ...colourBar(depths.label(colour)),
+        tickvals: vocabulary.map((_, index) => index),
+        ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")),
+      },
+      count,
+    };
+  }
+  const { size } = unit(colour);
+  const logged = (/** @type {any} */ value) =>
+    typeof value === "number" && value > 0 ? Math.log10(value) - Math.log10(size) : null;
+  const z = rows.map((index) => (isLog ? logged(values[index]) : at(colour, values[index])));
+  const finite = /** @type {number[]} */ (z.filter((value) => value !== null));
+  const least = finite.reduce((a, b) => Math.min(a, b), Infinity);
+  const largest = finite.reduce((a, b) => Math.max(a, b), -Infinity);
+  return {
+    z,
+    words: false,
+    scale: { colorscale: SCALE, ...(finite.length ? { zmin: least, zmax: largest } : {}) },
+    bar: { ...colourBar(depths.title(colour)), ...(isLog && finite.length ? logTicks(least, largest) : {}) },
+    count: 1,
+  };
+}
+
+/** @typedef {{texts: string[], colours: Colours, at: Scaled}} Drawn */
+
+/** The points of grids as cells or contours, a trace for each grid. @param {Context} context @param {Chosen & {y: string}} chosen @param {Slice} slice @param {Drawn} drawn @returns {any[]} */
+function cellTraces(
+  { sweep, paths },
+  { x, y, style },
+  { rows, ordinals, xs, ys },
+  { texts, colours: { z, words, scale, bar }, at },
+) {
+  const requests = [sweep.request, ...(sweep.appended ?? [])].map((request) => ({
+    x: request?.axes?.[paths[x] ?? x],
+    y: request?.axes?.[paths[y] ?? y],
+  }));
+  const [allX, allY] = [xs, ys].map((column) => distinct(rows.map((index) => column[index])).map(Number));
+  const layers = layered(
+    rows.map((index) => Number(xs[index])),
+    rows.map((index) => Number(ys[index])),
+    requests,
+  );
+  return layers.map(({ across, up, at: positions }, order) => {
+    const cells = (/** @type {(position: number) => any} */ value, /** @type {any} */ none) =>
+      positions.map((line) => line.map((position) => (position === undefined ? none : value(position))));
+    const gap = words || up.length * across.length > 900 ? 0 : 1;
+    const isContour = style === "contour" && !words && across.length > 1 && up.length > 1;
+    return {
+      type: isContour ? "contour" : "heatmap",
+      x: ends(across, allX).map((value) => at(x, value)),
+      y: ends(up, allY).map((value) => at(y, value)),
+      z: cells((position) => z[position], null),
+      text: cells((position) => texts[position], ""),
+      customdata: cells((position) => ordinals[rows[position]], null),
+      hoverinfo: "text",
+      hoverongaps: order === 0,
+      colorbar: bar,
+      showscale: order === 0,
+      ...scale,
+      xgap: gap,
+      ygap: gap,
+      contours: { coloring: "heatmap" },
+      line: { color: inks().panel, width: 0.7 },
+    };
+  });
+}
+
+/** Points that form no grid as marks. @param {Chosen & {y: string}} chosen @param {Slice} slice @param {Drawn} drawn @returns {any} */
+function markTrace(
+  { x, y },
+  { rows, ordinals, xs, ys },
+  { texts, colours: { z, words, scale, bar, count }, at },
+) {
+  const isMany = rows.length > MANY;
+  const marker = {
+    size: isMany ? 5 : 9,
+    color: z,
+    colorscale: words ? scale.colorscale : lineScale(),
+    cmin: words ? -0.5 : undefined,
+    cmax: words ? count - 0.5 : undefined,
+    colorbar: bar,
+    line: { width: 0 },
+  };
+  return {
+    type: isMany ? "scattergl" : "scatter",
+    mode: "markers",
+    x: rows.map((index) => at(x, xs[index])),
+    y: rows.map((index) => at(y, ys[index])),
+    text: texts,
+    customdata: rows.map((index) => ordinals[index]),
+    hoverinfo: "text",
+    marker,
+  };
+}
+
+/**
+ * Crosses on some points.
+ * @param {string} name
+ * @param {number[]} marked
+ * @param {any} marker
+ * @param {Chosen & {y: string}} chosen
+ * @param {Slice} slice
+ * @param {Scaled} at
+ */
+function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys }, at) {
+  const isMany = marked.length > MANY;
+  return {
+    type: isMany ? "scattergl" : "scatter",
+    mode: "markers",
+    name,
+    x: marked.map((index) => at(x, xs[index])),
+    y: marked.map((index) => at(y, ys[index])),
+    customdata: marked.map((index) => ordinals[index]),
+    text: marked.map((index) => `point ${ordinals[index]}: ${name}`),
+    hoverinfo: "text",
+    marker: { ...marker, size: isMany ? 4 : 9, color: "#d55e00" },
+    showlegend: true,
   };
 }
 

@@ -13,117 +13,170 @@ import { label, say, shown, title, unit } from "../data/units.js";
 const HOW =
   "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
+/** @typedef {import("./part.js").Context} Context */
+/** @typedef {import("./parallel-lines.js").Dimension} Dimension */
+
 /**
- * Dragging along an axis keeps what passes there.
- * @param {import("./part.js").Context} context
+ * Dragging along an axis filters the points to the range that was dragged over.
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function parallel(context) {
-  const { table, axes, query } = context;
-  const place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
-  const caption = h("figcaption", {});
-  const reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
-  const left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
-  const controls = h("div", { class: "controls" });
-  const begin = generations();
+  const coordinates = new ParallelCoordinates(context);
+  return {
+    element: coordinates.element,
+    draw: undelayed(() => coordinates.redraw(), context),
+    fields: () => ["ordinal", ...usualNames(context)],
+  };
+}
 
-  function chosen() {
-    const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
-    const colour = results.includes(query.get("colour") ?? "")
-      ? (query.get("colour") ?? "")
-      : preferred(results);
-    const first = results.find((name) => name === "friction_coefficient_max") ?? colour;
-    const beside = results.includes(query.get("beside") ?? "") ? (query.get("beside") ?? "") : first;
-    return { results, colour, beside };
-  }
+/** Columns that can be chosen, and the chosen ones. @param {Context} context */
+function chosenIn({ table, axes, query }) {
+  const results = table.results().filter((name) => !axes.includes(name) && name !== "state");
+  const colour = results.includes(query.get("colour") ?? "")
+    ? (query.get("colour") ?? "")
+    : preferred(results);
+  const first = results.find((name) => name === "friction_coefficient_max") ?? colour;
+  const beside = results.includes(query.get("beside") ?? "") ? (query.get("beside") ?? "") : first;
+  return { results, colour, beside };
+}
 
-  /** Says what a line of the picture is of. @type {(line: number) => void} */
-  let toldOf = () => {};
-  followLines(place, (line) => toldOf(line), context.signal);
+/** Names of the axes in their usual order. @param {Context} context */
+function usualNames(context) {
+  const { colour, beside } = chosenIn(context);
+  return [...new Set([...context.axes, beside, colour])];
+}
 
-  const fields = axisControls(
-    (name, ranges) => {
-      const others = (query.get("brush") ?? "")
-        .split(",")
-        .filter((part) => part && part.split(":")[0] !== name);
-      context.keep({
-        brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null,
-      });
-      attend(redraw(), context.signal);
-    },
-    (name, places) => {
-      const names = namesInOrder();
-      const at = names.indexOf(name);
-      const to = at + places;
-      // Pressed again before it is redrawn, a button may lead beyond the end of the row.
-      if (!names[to]) return;
-      [names[at], names[to]] = [names[to], name];
-      context.keep(inLink(names));
-      attend(redraw(), context.signal);
-    },
+class ParallelCoordinates {
+  #context;
+  #place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
+  #caption = h("figcaption", {});
+  #reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
+  #left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
+  #controls = h("div", { class: "controls" });
+  #fields = axisControls(
+    (name, ranges) => this.#filter(name, ranges),
+    (name, places) => this.#move(name, places),
   );
+  #begin = generations();
+  /** Reads the point of a line. @type {(line: number) => void} */
+  #readLine = () => {};
 
-  /** The axes' names in their usual order. */
-  function usualNames() {
-    const { colour, beside } = chosen();
-    return [...new Set([...axes, beside, colour])];
+  /** @param {Context} context */
+  constructor(context) {
+    this.#context = context;
+    followLines(this.#place, (line) => this.#readLine(line), context.signal);
+    this.element = h(
+      "div",
+      {},
+      this.#controls,
+      h("figure", {}, this.#place, this.#reading, this.#left, this.#caption),
+      this.#fields.element,
+    );
   }
 
-  /** The same in the order of the link. */
-  function namesInOrder() {
-    const usual = usualNames();
-    const moved = (query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
+  /** Keeps choices in the link and draws by them. @param {Record<string, string | null>} choices */
+  #keep(choices) {
+    this.#context.keep(choices);
+    attend(this.redraw(), this.#context.signal);
+  }
+
+  /** Filters the points by ranges of an axis. @param {string} name @param {number[][]} ranges */
+  #filter(name, ranges) {
+    const others = (this.#context.query.get("brush") ?? "")
+      .split(",")
+      .filter((part) => part && part.split(":")[0] !== name);
+    this.#keep({ brush: [...others, ...ranges.map((range) => writtenRange(name, range))].join(",") || null });
+  }
+
+  /** Moves an axis. @param {string} name @param {number} places */
+  #move(name, places) {
+    const names = this.#namesInOrder();
+    const at = names.indexOf(name);
+    const to = at + places;
+    // Pressed again before it is redrawn, a button may lead beyond the end of the row.
+    if (!names[to]) return;
+    [names[at], names[to]] = [names[to], name];
+    this.#keep(this.#inLink(names));
+  }
+
+  /** Names of the axes in the order of the link. */
+  #namesInOrder() {
+    const usual = usualNames(this.#context);
+    const moved = (this.#context.query.get("order") ?? "").split(",").filter((name) => usual.includes(name));
     return [...new Set([...moved, ...usual])];
   }
 
-  /** An order as the link holds it; the usual one it does not. @param {string[]} names */
-  function inLink(names) {
+  /** An order as the link holds it, which leaves the usual one out. @param {string[]} names */
+  #inLink(names) {
     const order = names.join(",");
-    return { order: order === usualNames().join(",") ? null : order };
+    return { order: order === usualNames(this.#context).join(",") ? null : order };
   }
 
-  /** Says to which stretches points are kept in the picture, and how many are. @param {import("./parallel-lines.js").Dimension[]} dimensions */
-  function tell(dimensions) {
-    fields.show(
-      dimensions.map((dimension) => ({
-        name: dimension.name,
-        ends: endsOf(dimension),
-        ranges: opened(dimension),
-      })),
-    );
-    const filters = dimensions.filter((dimension) => rangesOf(dimension).length);
-    const all = dimensions[0].values.length;
-    const kept = dimensions[0].values.filter((_, line) =>
-      filters.every((dimension) => isKept(dimension, line)),
-    ).length;
-    left.textContent = filters.length ? `${kept} of ${all} points are kept.` : "";
-  }
-
-  async function redraw() {
-    const isNewest = begin();
-    const { results, colour, beside } = chosen();
-    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
-      context.keep({ [key]: value });
-      attend(redraw(), context.signal);
-    };
-    const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
-    fill(
-      controls,
-      choice("Colour and last axis", options, colour, set("colour")),
-      choice("Further axis", options, beside, set("beside")),
-    );
-    const names = namesInOrder();
+  async redraw() {
+    const isNewest = this.#begin();
+    const { table, biases, signal } = this.#context;
+    const { colour, beside } = this.#drawControls();
+    const names = this.#namesInOrder();
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
     if (!isNewest()) return;
     const rows = columns[0]
       .map((_, index) => index)
       .filter((index) => columns.every((column) => typeof column[index] === "number"));
     if (!rows.length) {
-      fill(caption, "No point has all of these values yet.");
+      fill(this.#caption, "No point has all of these values yet.");
       return;
     }
-    const kept = brushed(query.get("brush") ?? "");
-    const dimensions = names.map((name, order) => {
+    const dimensions = this.#dimensions(names, columns, rows);
+    fill(
+      this.#caption,
+      HOW,
+      [...new Set([beside, colour])].map(
+        (name) => biases.say(name) && ` ${label(name)}: ${biases.say(name)}`,
+      ),
+    );
+    const line = {
+      color: dimensions[names.indexOf(colour)].values,
+      colorscale: lineScale(),
+      colorbar: colourBar(title(colour)),
+    };
+    const trace = {
+      type: "parcoords",
+      dimensions,
+      line,
+      labelangle: dimensions.length > 4 ? -12 : 0,
+      labelfont: { size: 12 },
+    };
+    const shape = await draw(this.#place, [trace], { margin: { l: 80, r: 60, t: 70, b: 30 } }, signal);
+    this.#readLine = (number) =>
+      this.#read(
+        Number(ordinals[rows[number]]),
+        names,
+        columns.map((column) => column[rows[number]]),
+      );
+    this.#tell(dimensions);
+    this.#follow(shape);
+  }
+
+  #drawControls() {
+    const { results, colour, beside } = chosenIn(this.#context);
+    const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    fill(
+      this.#controls,
+      choice("Colour and last axis", options, colour, (value) => this.#keep({ colour: value })),
+      choice("Further axis", options, beside, (value) => this.#keep({ beside: value })),
+    );
+    return { colour, beside };
+  }
+
+  /**
+   * @param {string[]} names
+   * @param {import("../data/sweep-table.js").Values[]} columns
+   * @param {number[]} rows that have all values
+   */
+  #dimensions(names, columns, rows) {
+    const kept = brushed(this.#context.query.get("brush") ?? "");
+    return names.map((name, order) => {
       const values = /** @type {number[]} */ (
         shown(
           name,
@@ -138,67 +191,55 @@ export function parallel(context) {
         values,
       };
     });
-    const last = dimensions[names.indexOf(colour)];
-    fill(
-      caption,
-      HOW,
-      [...new Set([beside, colour])].map(
-        (name) => context.biases.say(name) && ` ${label(name)}: ${context.biases.say(name)}`,
-      ),
-    );
-    const shape = await draw(
-      place,
-      [
-        {
-          type: "parcoords",
-          dimensions,
-          line: { color: last.values, colorscale: lineScale(), colorbar: colourBar(title(colour)) },
-          labelangle: dimensions.length > 4 ? -12 : 0,
-          labelfont: { size: 12 },
-        },
-      ],
-      { margin: { l: 80, r: 60, t: 70, b: 30 } },
-      context.signal,
-    );
-    toldOf = (line) =>
-      read(
-        Number(ordinals[rows[line]]),
-        names,
-        columns.map((column) => column[rows[line]]),
-      );
-    tell(dimensions);
+  }
+
+  /** Takes filters and the order of axes from the picture when the reader drags there. @param {any} shape */
+  #follow(shape) {
     shape.removeAllListeners?.("plotly_restyle");
     shape.on?.("plotly_restyle", () => {
-      const { dimensions } = shape.data[0];
-      context.keep({
+      /** @type {Dimension[]} */
+      const dimensions = shape.data[0].dimensions;
+      this.#context.keep({
         brush: written(dimensions) || null,
-        ...inLink(dimensions.map((/** @type {{name: string}} */ { name }) => name)),
+        ...this.#inLink(dimensions.map(({ name }) => name)),
       });
-      tell(dimensions);
+      this.#tell(dimensions);
     });
   }
 
-  /** Says which point a line is of. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
-  function read(ordinal, names, values) {
+  /** Shows the filters of the picture as numbers, and how many points pass them. @param {Dimension[]} dimensions */
+  #tell(dimensions) {
+    this.#fields.show(
+      dimensions.map((dimension) => ({
+        name: dimension.name,
+        ends: endsOf(dimension),
+        ranges: opened(dimension),
+      })),
+    );
+    const filters = dimensions.filter((dimension) => rangesOf(dimension).length);
+    const all = dimensions[0].values.length;
+    const kept = dimensions[0].values.filter((_, line) =>
+      filters.every((dimension) => isKept(dimension, line)),
+    ).length;
+    this.#left.textContent = filters.length ? `${kept} of ${all} points are kept.` : "";
+  }
+
+  /** Shows the point of a line. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
+  #read(ordinal, names, values) {
+    const { sweep, biases } = this.#context;
     const words = names.map(
-      (name, order) => `${label(name)} ${say(name, values[order])}${context.biases.beside(name, ordinal)}`,
+      (name, order) => `${label(name)} ${say(name, values[order])}${biases.beside(name, ordinal)}`,
     );
     fill(
-      reading,
-      h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, `Point ${ordinal}`),
+      this.#reading,
+      h("a", { href: link(["sweeps", sweep.id, "points", String(ordinal)]) }, `Point ${ordinal}`),
       `: ${words.join(" · ")}`,
     );
   }
-
-  return {
-    element: h("div", {}, controls, h("figure", {}, place, reading, left, caption), fields.element),
-    draw: undelayed(redraw, context),
-    fields: () => ["ordinal", ...usualNames()],
-  };
 }
 
 /**
- * The stretches of axes to which points are kept, as the link has them in the service's units: `flow_rate:0.01:0.02,mud_density::1500`.
+ * Filters of axes, as the link holds them in the service's units: `flow_rate:0.01:0.02,mud_density::1500`.
  * @param {string} text
  * @returns {Map<string, number[][]>} by column; an end that is not given is infinite
  */

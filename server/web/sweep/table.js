@@ -11,193 +11,236 @@ import { label, meaning, number, title, unit } from "../data/units.js";
 const ROW_PX = 30;
 const SPARE_ROWS = 12;
 
+/** Results that are shown next to the preferred one, unless columns are chosen. */
+const USUAL =
+  /^(orbit_radius_rms|friction_coefficient_max|largest_normal_force|whole_error|time_error|resolved_hz|tension_top|torque_top)/;
+
+/** Choices of points by their state. @type {[string, string][]} */
+const STATES = [
+  ["", "all points"],
+  ["state=succeeded", "succeeded"],
+  ["state=failed", "failed"],
+  ["state=running", "running"],
+  ["state=queued", "queued"],
+];
+
+/** @typedef {import("./part.js").Context} Context */
+
 /**
- * @param {import("./part.js").Context} context
+ * @param {Context} context
  * @returns {import("./part.js").Part}
  */
 export function table(context) {
-  const { table: data, axes, query, signal } = context;
-  const body = h("tbody", {});
-  const header = h("tr", {});
-  const grid = h("table", { "aria-label": "Points" }, h("thead", {}, header), body);
-  const scroller = h(
-    "div",
-    { class: "rows", tabindex: "0", role: "region", "aria-label": "Points, scrollable" },
-    grid,
-  );
-  const status = h("p", { class: "soft small", role: "status" });
-  const filter = h("input", {
-    type: "search",
-    value: query.get("filter") ?? "",
-    placeholder: "e.g. flow_rate>0.02 state=failed",
-    size: 34,
-    oninput: debounced(
-      () => {
-        context.keep({ filter: filter.value || null });
-        attend(redraw(), context.signal);
-      },
-      250,
-      signal,
-    ),
-  });
-  const wrong = h("p", { class: "wrong", role: "alert" });
-  const columnsPart = h("details", {});
+  const points = new PointTable(context);
+  return { element: points.element, draw: () => points.redraw(), fields: () => points.names };
+}
 
-  const standard = () => {
-    const results = data.results().filter((name) => !axes.includes(name) && name !== "state");
-    const usual = [
-      preferred(results),
-      ...results.filter((name) =>
-        /^(orbit_radius_rms|friction_coefficient_max|largest_normal_force|whole_error|time_error|resolved_hz|tension_top|torque_top)/.test(
-          name,
-        ),
-      ),
-    ];
-    return ["ordinal", "state", ...axes, ...new Set(usual.filter((name) => results.includes(name)))];
-  };
-  const shownNames = () => {
-    const asked = (query.get("columns") ?? "").split(",").filter((name) => data.names.includes(name));
-    return asked.length ? asked : standard();
-  };
-  const sorting = () => ({ by: query.get("sort") ?? "ordinal", isDown: query.get("order") === "down" });
-
-  /** @type {number[]} */
-  let rows = [];
+/** Points as rows of a table, of which the page has only the rows in sight. */
+class PointTable {
+  #context;
+  #body = h("tbody", {});
+  #header = h("tr", {});
+  #status = h("p", { class: "soft small", role: "status" });
+  #wrong = h("p", { class: "wrong", role: "alert" });
+  #columnsPart = h("details", {});
+  #filter;
+  #scroller;
+  #begin = generations();
+  /** Places of the shown points in the columns, in the order of the rows. @type {number[]} */
+  #rows = [];
   /** @type {import("../data/sweep-table.js").Values[]} */
-  let columns = [];
-  /** @type {string[]} */
-  let names = [];
+  #columns = [];
+  /** Names of the shown columns. @type {string[]} */
+  names = [];
   /** @type {(index: number) => boolean} */
-  let doubts = () => false;
-  const begin = generations();
+  #doubts = () => false;
+  #isScrolled = false;
 
-  async function redraw() {
-    const isNewest = begin();
-    const asked = shownNames();
-    const { by, isDown } = sorting();
-    const { tests, problem } = conditions(filter.value, data.names);
-    wrong.textContent = problem;
+  /** @param {Context} context */
+  constructor(context) {
+    this.#context = context;
+    const filtered = debounced(() => this.#keep({ filter: this.#filter.value || null }), 250, context.signal);
+    this.#filter = h("input", {
+      type: "search",
+      value: context.query.get("filter") ?? "",
+      placeholder: "e.g. flow_rate>0.02 state=failed",
+      size: 34,
+      oninput: filtered,
+    });
+    const grid = h("table", { "aria-label": "Points" }, h("thead", {}, this.#header), this.#body);
+    this.#scroller = h(
+      "div",
+      {
+        class: "rows",
+        tabindex: "0",
+        role: "region",
+        "aria-label": "Points, scrollable",
+        onscroll: () => this.#scroll(),
+      },
+      grid,
+    );
+    const states = choice("Show", STATES, "", (value) => {
+      this.#filter.value = value;
+      this.#keep({ filter: value || null });
+    });
+    const controls = h(
+      "div",
+      { class: "controls" },
+      h("label", { class: "field" }, h("span", {}, "Filter, in units as shown"), this.#filter),
+      states,
+    );
+    this.element = h("div", {}, controls, this.#wrong, this.#columnsPart, this.#status, this.#scroller);
+  }
+
+  /** Keeps choices in the link and shows the points by them. @param {Record<string, string | null>} choices */
+  #keep(choices) {
+    this.#context.keep(choices);
+    attend(this.redraw(), this.#context.signal);
+  }
+
+  async redraw() {
+    const isNewest = this.#begin();
+    const { table: data, query } = this.#context;
+    const asked = this.#askedNames();
+    const by = query.get("sort") ?? "ordinal";
+    const isDown = query.get("order") === "down";
+    const { tests, problem } = conditions(this.#filter.value, data.names);
+    this.#wrong.textContent = problem;
     const present = SETTLING.filter((name) => data.names.includes(name));
-    const needed = [...asked, by, ...tests.map((test) => test.name), ...present];
-    const found = await data.columns(...needed);
+    const found = await data.columns(...asked, by, ...tests.map((test) => test.name), ...present);
     if (!isNewest()) return;
-    names = asked;
-    columns = found.slice(0, names.length);
-    const key = found[names.length];
+    this.names = asked;
+    this.#columns = found.slice(0, asked.length);
     const settling = found.slice(found.length - present.length);
     const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) =>
       settling[present.indexOf(name)]?.[index];
-    doubts = (index) => isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
-    rows = Array.from({ length: data.rows }, (_, index) => index).filter((index) =>
-      tests.every((test, order) => test.holds(found[names.length + 1 + order][index])),
+    this.#doubts = (index) =>
+      isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
+    const all = Array.from({ length: data.rows }, (_, index) => index);
+    const kept = all.filter((index) =>
+      tests.every((test, order) => test.holds(found[asked.length + 1 + order][index])),
     );
-    // Gaps stand at the end, whatever the order.
-    rows.sort((a, b) => {
-      const [left, right] = [key[a], key[b]];
-      if (left === null || right === null) return (left === null ? 1 : 0) - (right === null ? 1 : 0);
-      const sign = left < right ? -1 : left > right ? 1 : a - b;
-      return isDown ? -sign : sign;
-    });
-    fill(status, `${rows.length === data.rows ? "" : `${rows.length} of `}${data.rows} points`);
+    this.#rows = kept.sort(ordering(found[asked.length], isDown));
     fill(
-      header,
-      names.map((name) => {
-        const isSorted = name === by;
-        return h(
-          "th",
-          {
-            class: typeof firstOf(name) === "number" ? "number" : "",
-            scope: "col",
-            style: `width:${name === "ordinal" ? 5 : name === "state" ? 8 : 10}rem;white-space:normal`,
-            "aria-sort": isSorted && (isDown ? "descending" : "ascending"),
-            title: meaning(name),
-          },
-          h(
-            "button",
-            {
-              onclick: () => {
-                context.keep({ sort: name, order: isSorted && !isDown ? "down" : null });
-                attend(redraw(), context.signal);
-              },
-            },
-            name === "ordinal" ? "Point" : title(name),
-            isSorted ? (isDown ? " ▼" : " ▲") : "",
-          ),
-          context.biases.brief(name) &&
-            h("div", { title: context.biases.say(name) }, context.biases.brief(name)),
-        );
-      }),
+      this.#status,
+      `${this.#rows.length === data.rows ? "" : `${this.#rows.length} of `}${data.rows} points`,
     );
-    drawColumns();
-    drawRows();
+    fill(
+      this.#header,
+      asked.map((name) => this.#head(name, name === by, isDown)),
+    );
+    this.#drawColumns();
+    this.#drawRows();
   }
 
-  /** @param {string} name */
-  function firstOf(name) {
-    return columns[names.indexOf(name)]?.find((value) => value !== null);
+  /** Columns of the link, or the usual ones. */
+  #askedNames() {
+    const { table: data, axes, query } = this.#context;
+    const asked = (query.get("columns") ?? "").split(",").filter((name) => data.names.includes(name));
+    if (asked.length) return asked;
+    const results = data.results().filter((name) => !axes.includes(name) && name !== "state");
+    const usual = [preferred(results), ...results.filter((name) => USUAL.test(name))];
+    return ["ordinal", "state", ...axes, ...new Set(usual.filter((name) => results.includes(name)))];
   }
 
-  function drawRows() {
-    const first = Math.max(0, Math.floor(scroller.scrollTop / ROW_PX) - SPARE_ROWS);
+  /** @param {string} name of a column @param {boolean} isSorted whether rows are sorted by it @param {boolean} isDown */
+  #head(name, isSorted, isDown) {
+    const { biases } = this.#context;
+    const first = this.#columns[this.names.indexOf(name)]?.find((value) => value !== null);
+    const width = name === "ordinal" ? 5 : name === "state" ? 8 : 10;
+    const sort = h(
+      "button",
+      { onclick: () => this.#keep({ sort: name, order: isSorted && !isDown ? "down" : null }) },
+      name === "ordinal" ? "Point" : title(name),
+      isSorted ? (isDown ? " ▼" : " ▲") : "",
+    );
+    const attributes = {
+      class: typeof first === "number" ? "number" : "",
+      scope: "col",
+      style: `width:${width}rem;white-space:normal`,
+      "aria-sort": isSorted && (isDown ? "descending" : "ascending"),
+      title: meaning(name),
+    };
+    return h(
+      "th",
+      attributes,
+      sort,
+      biases.brief(name) && h("div", { title: biases.say(name) }, biases.brief(name)),
+    );
+  }
+
+  #drawRows() {
+    const { scrollTop, clientHeight } = this.#scroller;
+    const first = Math.max(0, Math.floor(scrollTop / ROW_PX) - SPARE_ROWS);
     const last = Math.min(
-      rows.length,
-      Math.ceil((scroller.scrollTop + (scroller.clientHeight || 800)) / ROW_PX) + SPARE_ROWS,
+      this.#rows.length,
+      Math.ceil((scrollTop + (clientHeight || 800)) / ROW_PX) + SPARE_ROWS,
     );
     const gap = (/** @type {number} */ count) =>
       count > 0 &&
       h(
         "tr",
         { class: "gap", "aria-hidden": "true" },
-        h("td", { colspan: names.length, style: `height:${count * ROW_PX}px` }),
+        h("td", { colspan: this.names.length, style: `height:${count * ROW_PX}px` }),
       );
-    fill(body, gap(first), rows.slice(first, last).map(row), gap(rows.length - last));
-  }
-
-  /** @param {number} index */
-  function row(index) {
-    const ordinal = columns[names.indexOf("ordinal")]?.[index] ?? index + 1;
-    return h(
-      "tr",
-      { onclick: () => context.open(Number(ordinal)) },
-      names.map((name, order) => {
-        const value = columns[order][index];
-        if (name === "ordinal")
-          return h(
-            "td",
-            { class: "number" },
-            h("a", { href: link(["sweeps", context.sweep.id, "points", String(ordinal)]) }, ordinal),
-          );
-        if (name === "state")
-          return h(
-            "td",
-            {},
-            h("span", { class: `state ${value}` }, value),
-            doubts(index) && h("span", { class: "wrong small" }, " not settled"),
-          );
-        if (typeof value === "number")
-          return h(
-            "td",
-            { class: "number" },
-            number(value / unit(name).size, 5),
-            context.biases.at(name, Number(ordinal)) &&
-              h("span", { class: "soft small" }, ` ${context.biases.at(name, Number(ordinal))}`),
-          );
-        return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
-      }),
+    fill(
+      this.#body,
+      gap(first),
+      this.#rows.slice(first, last).map((index) => this.#row(index)),
+      gap(this.#rows.length - last),
     );
   }
 
-  function drawColumns() {
-    const chosen = new Set(names);
-    const ticks = data.names.map((name) => {
+  /** @param {number} index */
+  #row(index) {
+    const ordinal = Number(this.#columns[this.names.indexOf("ordinal")]?.[index] ?? index + 1);
+    return h(
+      "tr",
+      { onclick: () => this.#context.open(ordinal) },
+      this.names.map((name) => this.#cell(name, index, ordinal)),
+    );
+  }
+
+  /** @param {string} name @param {number} index @param {number} ordinal */
+  #cell(name, index, ordinal) {
+    const { sweep, biases } = this.#context;
+    const value = this.#columns[this.names.indexOf(name)][index];
+    if (name === "ordinal")
+      return h(
+        "td",
+        { class: "number" },
+        h("a", { href: link(["sweeps", sweep.id, "points", String(ordinal)]) }, ordinal),
+      );
+    if (name === "state")
+      return h(
+        "td",
+        {},
+        h("span", { class: `state ${value}` }, value),
+        this.#doubts(index) && h("span", { class: "wrong small" }, " not settled"),
+      );
+    if (typeof value !== "number")
+      return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
+    const bias = biases.at(name, ordinal);
+    return h(
+      "td",
+      { class: "number" },
+      number(value / unit(name).size, 5),
+      bias && h("span", { class: "soft small" }, ` ${bias}`),
+    );
+  }
+
+  /** Draws the ticks by which columns are chosen. */
+  #drawColumns() {
+    const known = this.#context.table.names;
+    const chosen = new Set(this.names);
+    const ticks = known.map((name) => {
       const box = h("input", {
         type: "checkbox",
         checked: chosen.has(name),
         onchange: () => {
-          box.checked ? chosen.add(name) : chosen.delete(name);
-          const kept = data.names.filter((entry) => chosen.has(entry));
-          context.keep({ columns: kept.join(",") || null });
-          attend(redraw(), context.signal);
+          if (box.checked) chosen.add(name);
+          else chosen.delete(name);
+          this.#keep({ columns: known.filter((entry) => chosen.has(entry)).join(",") || null });
         },
       });
       return h(
@@ -208,55 +251,35 @@ export function table(context) {
       );
     });
     fill(
-      columnsPart,
-      h("summary", {}, `Columns (${names.length} of ${data.names.length})`),
+      this.#columnsPart,
+      h("summary", {}, `Columns (${this.names.length} of ${known.length})`),
       h("div", { class: "controls" }, ticks),
     );
   }
 
-  let isDue = false;
-  scroller.addEventListener("scroll", () => {
-    if (isDue) return;
-    isDue = true;
+  /** Draws the rows in sight, at most once a frame. */
+  #scroll() {
+    if (this.#isScrolled) return;
+    this.#isScrolled = true;
     requestAnimationFrame(() => {
-      isDue = false;
-      if (!signal.aborted) drawRows();
+      this.#isScrolled = false;
+      if (!this.#context.signal.aborted) this.#drawRows();
     });
-  });
+  }
+}
 
-  const presets = choice(
-    "Show",
-    [
-      ["", "all points"],
-      ["state=succeeded", "succeeded"],
-      ["state=failed", "failed"],
-      ["state=running", "running"],
-      ["state=queued", "queued"],
-    ],
-    "",
-    (value) => {
-      filter.value = value;
-      context.keep({ filter: value || null });
-      attend(redraw(), context.signal);
-    },
-  );
-  return {
-    element: h(
-      "div",
-      {},
-      h(
-        "div",
-        { class: "controls" },
-        h("label", { class: "field" }, h("span", {}, "Filter, in units as shown"), filter),
-        presets,
-      ),
-      wrong,
-      columnsPart,
-      status,
-      scroller,
-    ),
-    draw: redraw,
-    fields: () => names,
+/**
+ * Order of points by their values in a column; gaps stand at the end in either direction.
+ * @param {import("../data/sweep-table.js").Values} key
+ * @param {boolean} isDown
+ * @returns {(a: number, b: number) => number}
+ */
+function ordering(key, isDown) {
+  return (a, b) => {
+    const [left, right] = [key[a], key[b]];
+    if (left === null || right === null) return (left === null ? 1 : 0) - (right === null ? 1 : 0);
+    const sign = left < right ? -1 : left > right ? 1 : a - b;
+    return isDown ? -sign : sign;
   };
 }
 

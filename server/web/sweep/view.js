@@ -4,7 +4,7 @@ import { follow, get, isFinal, send } from "../data/api.js";
 import { Biases } from "../data/biases.js";
 import { Depths } from "../data/depths.js";
 import { choice, fill, h } from "../ui/dom.js";
-import { lines } from "../ui/snippets.js";
+import { snippets } from "../ui/snippets.js";
 import { attend, reported, notice } from "../ui/notices.js";
 import { Pace } from "../data/pace.js";
 import { go, keep, link } from "../ui/router.js";
@@ -39,8 +39,7 @@ const REDRAW_MS = 4000;
 /** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
   const id = route.path[1];
-  const asked = PARTS.find(([name]) => name === route.query.get("view"));
-  let sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
+  const sweep = await get(`/v1/sweeps/${encodeURIComponent(id)}`, {}, signal);
   const data = new SweepTable(sweep, signal);
   const biases = new Biases();
   const depths = new Depths();
@@ -48,15 +47,15 @@ export async function show(main, route, signal) {
   const deepened = depths.load(sweep, signal);
   await Promise.all([data.load(), biases.load(sweep, signal)]);
   const { axes, spans, paths } = sweptBy(sweep, data.names);
-  const [view, , making] = asked ?? PARTS[axes.length ? 0 : TABLE];
+  const [view, text, making] =
+    PARTS.find(([name]) => name === route.query.get("view")) ?? PARTS[axes.length ? 0 : TABLE];
   const make = await making();
 
   const query = new URLSearchParams(route.query);
-  const taken = lines(() => {
-    const own = { id, path: data.path, fields: part.fields() };
-    const others = part.others?.() ?? [];
-    return sweepLines([own, ...others]);
-  });
+  const taken = snippets(() =>
+    sweepLines([{ id, path: data.path, fields: part.fields() }, ...(part.others?.() ?? [])]),
+  );
+  const drawn = () => taken.dispatchEvent(new Event("redraw"));
   /** @type {Context} */
   const context = {
     sweep,
@@ -73,95 +72,21 @@ export async function show(main, route, signal) {
         else query.set(name, value);
       }
       keep(changes);
-      taken.dispatchEvent(new Event("redraw"));
+      drawn();
     },
-    drawn: () => taken.dispatchEvent(new Event("redraw")),
-    changed: (changed) => update(changed),
+    drawn,
+    changed: (changed) => shown.update(changed),
     open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
     signal,
   };
   const part = make(context);
-
-  const tabs = PARTS.map(([name]) =>
-    h("a", { href: link(["sweeps", id], { view: name }), "aria-current": name === view && "page" }),
-  );
-  const drawTabs = () =>
-    PARTS.forEach(
-      ([name, text], index) =>
-        (tabs[index].textContent =
-          name === "failures" && sweep.counts.failed ? `${text} (${sweep.counts.failed})` : text),
-    );
-  const head = h("div", {});
-  const pace = new Pace();
-  pace.note(sweep);
-  const drawHead = () => fill(head, ...headPart(sweep, pace, act, change));
-  /** Learns what a point takes, once one is complete, for the time left before the page has seen how fast the sweep goes. */
-  async function learnPace() {
-    if (isFinal(sweep) || !sweep.counts.succeeded || hasAsked) return;
-    hasAsked = true;
-    pace.pointSeconds = await secondsOfPoint(id, signal);
-    if (!signal.aborted) drawHead();
-  }
-  let hasAsked = false;
-
-  /** @param {string} verb */
-  async function act(verb) {
-    const changed = await reported(send("POST", `/v1/sweeps/${encodeURIComponent(id)}/${verb}`));
-    if (changed) update(changed);
-  }
-
-  /** @param {any} changes */
-  async function change(changes) {
-    const changed = await reported(send("PATCH", `/v1/sweeps/${encodeURIComponent(id)}`, changes));
-    if (changed) update(changed);
-    if (changed) notice("The sweep is changed.");
-  }
-
-  let drawnAt = Date.now();
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let waiting;
-
-  /** @param {any} changed */
-  function update(changed) {
-    const hasResults =
-      changed.counts.succeeded !== sweep.counts.succeeded || changed.counts.failed !== sweep.counts.failed;
-    const wasFinal = isFinal(sweep);
-    // What is absent is not so any more.
-    sweep = { ...sweep, waiting_for: undefined, ...changed };
-    context.sweep = sweep;
-    pace.note(sweep);
-    drawHead();
-    drawTabs();
-    attend(learnPace(), signal);
-    if (hasResults && waiting === undefined)
-      waiting = setTimeout(redraw, Math.max(0, drawnAt + REDRAW_MS - Date.now()));
-    if (wasFinal && !isFinal(sweep)) follow(id, { sweep: update }, signal);
-  }
-
-  async function redraw() {
-    waiting = undefined;
-    drawnAt = Date.now();
-    try {
-      await Promise.all([data.load(), biases.load(sweep, signal), depths.load(sweep, signal)]);
-      await part.draw();
-    } catch {
-      // A later result, or the server's return, draws again.
-    }
-  }
-  signal.addEventListener("abort", () => clearTimeout(waiting));
-
-  drawHead();
-  drawTabs();
+  const shown = new ShownSweep(context, part, view);
   fill(
     main,
     h("nav", { class: "crumbs", "aria-label": "Breadcrumb" }, h("a", { href: "#/sweeps" }, "Sweeps"), " / "),
-    head,
-    h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, tabs),
-    h(
-      "section",
-      { class: "panel", "aria-label": PARTS.find(([name]) => name === view)?.[1] ?? "" },
-      part.element,
-    ),
+    shown.head,
+    h("nav", { class: "tabs", "aria-label": "Views of the sweep" }, shown.tabs),
+    h("section", { class: "panel", "aria-label": text }, part.element),
     taken,
   );
   await part.draw();
@@ -169,13 +94,128 @@ export async function show(main, route, signal) {
     deepened.then(() => (depths.isMissed && !signal.aborted ? part.draw() : undefined)),
     signal,
   );
-  attend(learnPace(), signal);
-  if (!isFinal(sweep)) follow(id, { sweep: update }, signal);
+  shown.start();
   return sweep.name ?? `Sweep ${id.slice(-8)}`;
 }
 
+/** A sweep on the page, which follows its changes: head, tabs, and the part that is drawn. */
+class ShownSweep {
+  #context;
+  #part;
+  #pace = new Pace();
+  #drawnAt = Date.now();
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #waiting;
+  #hasLearned = false;
+  head = h("div", {});
+
+  /** @param {Context} context @param {import("./part.js").Part} part @param {string} view that is shown */
+  constructor(context, part, view) {
+    this.#context = context;
+    this.#part = part;
+    const { sweep, signal } = context;
+    this.tabs = PARTS.map(([name]) =>
+      h("a", { href: link(["sweeps", sweep.id], { view: name }), "aria-current": name === view && "page" }),
+    );
+    this.#pace.note(sweep);
+    signal.addEventListener("abort", () => clearTimeout(this.#waiting));
+    this.#drawHead();
+    this.#drawTabs();
+  }
+
+  /** Follows the sweep from now on. */
+  start() {
+    const { sweep, signal } = this.#context;
+    attend(this.#learnPace(), signal);
+    if (!isFinal(sweep)) this.#follow();
+  }
+
+  #follow() {
+    const { sweep, signal } = this.#context;
+    follow(sweep.id, { sweep: (changed) => this.update(changed) }, signal);
+  }
+
+  /** Takes the sweep as an answer or an event shows it. @param {any} changed */
+  update(changed) {
+    const { sweep: before, signal } = this.#context;
+    const hasResults =
+      changed.counts.succeeded !== before.counts.succeeded || changed.counts.failed !== before.counts.failed;
+    // A member that is absent does not hold any more.
+    const sweep = { ...before, waiting_for: undefined, ...changed };
+    this.#context.sweep = sweep;
+    this.#pace.note(sweep);
+    this.#drawHead();
+    this.#drawTabs();
+    attend(this.#learnPace(), signal);
+    if (hasResults && this.#waiting === undefined)
+      this.#waiting = setTimeout(
+        () => void this.#redraw(),
+        Math.max(0, this.#drawnAt + REDRAW_MS - Date.now()),
+      );
+    if (isFinal(before) && !isFinal(sweep)) this.#follow();
+  }
+
+  async #redraw() {
+    const { sweep, table, biases, depths, signal } = this.#context;
+    this.#waiting = undefined;
+    this.#drawnAt = Date.now();
+    try {
+      await Promise.all([table.load(), biases.load(sweep, signal), depths.load(sweep, signal)]);
+      await this.#part.draw();
+    } catch {
+      // A later result, or the server's return, draws again.
+    }
+  }
+
+  #drawHead() {
+    fill(
+      this.head,
+      ...headPart(
+        this.#context.sweep,
+        this.#pace,
+        (verb) => this.#act(verb),
+        (changes) => this.#change(changes),
+      ),
+    );
+  }
+
+  #drawTabs() {
+    const { failed } = this.#context.sweep.counts;
+    PARTS.forEach(
+      ([name, text], index) =>
+        (this.tabs[index].textContent = name === "failures" && failed ? `${text} (${failed})` : text),
+    );
+  }
+
+  /** Learns the time of a point, once one is complete: the time left follows from it before the page has seen the pace of the sweep. */
+  async #learnPace() {
+    const { sweep, signal } = this.#context;
+    if (isFinal(sweep) || !sweep.counts.succeeded || this.#hasLearned) return;
+    this.#hasLearned = true;
+    this.#pace.pointSeconds = await secondsOfPoint(sweep.id, signal);
+    if (!signal.aborted) this.#drawHead();
+  }
+
+  /** @param {string} verb */
+  async #act(verb) {
+    const changed = await reported(
+      send("POST", `/v1/sweeps/${encodeURIComponent(this.#context.sweep.id)}/${verb}`),
+    );
+    if (changed) this.update(changed);
+  }
+
+  /** @param {any} changes */
+  async #change(changes) {
+    const changed = await reported(
+      send("PATCH", `/v1/sweeps/${encodeURIComponent(this.#context.sweep.id)}`, changes),
+    );
+    if (changed) this.update(changed);
+    if (changed) notice("The sweep is changed.");
+  }
+}
+
 /**
- * What verifying warns of: the first of it, and the rest where it is asked for.
+ * Warnings of verifying: the first, and the others on request.
  * @param {string[]} warnings each begins with the name of what it is of
  */
 function warningsPart([first, ...others]) {

@@ -1,4 +1,4 @@
-// The lines that made a view, for curl, Python, MATLAB and the command line.
+// Snippets of code that reproduce a view: curl, Python, MATLAB and the command line.
 
 import { fill, h } from "./dom.js";
 import { session } from "./session.js";
@@ -23,7 +23,7 @@ const LANGUAGES = [
  * @param {() => Lines} make called when the lines are opened, so that they follow the view
  * @param {string} [about] what they are for
  */
-export function lines(make, about = "Lines that made this view") {
+export function snippets(make, about = "Lines that made this view") {
   const body = h("div", {});
   const draw = () => {
     const made = make();

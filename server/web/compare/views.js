@@ -1,4 +1,4 @@
-// What up to six points are compared by: each view draws the points that have what it needs, and says of the others what they lack.
+// Views of a comparison, by their names in the link.
 
 import { each, Lacking, noteNode } from "./comparison.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
@@ -13,10 +13,10 @@ import {
   spectrumLayout,
   spectrumTrace,
 } from "../draw/orbit.js";
-import { colourBar, draw, inks, lineScale } from "../draw/plots.js";
+import { draw, inks } from "../draw/plots.js";
 import { ACCOUNTS, ledger } from "../point/energy.js";
-import { drawProfiles, nodeDepths, QUANTITIES, reading, tableOf } from "../point/profiles.js";
-import { displaced, exaggeration, onNodes, saysExaggeration } from "../point/well.js";
+import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
+import { drawWells } from "./wells.js";
 import { label, say, shown, title, unit } from "../data/units.js";
 
 /** Samples of a line. */
@@ -25,10 +25,6 @@ const SHOWN = 6000;
 const SAME_CLEARANCE = 1e-6;
 /** Part of a depth below which the ends of two strings are one. */
 const SAME_END = 1e-6;
-/** How many times a string's distance from the axis of its hole is drawn, unless the link says so. */
-const EXAGGERATION = 100;
-/** Part of a well's length by which coloured wells are drawn aside of each other. */
-const APART = 0.12;
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
 /** @typedef {import("./comparison.js").Compared} Compared */
@@ -344,129 +340,6 @@ export function comparedRange({ query, points }) {
 /** The rate of what was recorded most slowly [Hz]. @param {Compared[]} points */
 export function comparedRate(points) {
   return Math.min(...points.map((point) => point.detail.scenario.recording.rate_hz));
-}
-
-/** The quantity that colours wells; none where each has the colour of its point. @param {URLSearchParams} query */
-export function wellColour(query) {
-  return QUANTITIES.find(([name]) => name === query.get("colour"))?.[0];
-}
-
-/**
- * How far aside of each other wells are drawn, horizontally and across: most often all points have the same.
- * @param {any} statics
- */
-function asideOf({ north, east, measured_depth }) {
-  const last = north.length - 1;
-  const [along, across] = [north[last] - north[0], east[last] - east[0]];
-  const apart = (APART * (measured_depth[last] - measured_depth[0])) / (Math.hypot(along, across) || 1);
-  return Math.hypot(along, across)
-    ? { north: -across * apart, east: along * apart }
-    : { north: 0, east: APART * measured_depth[last] };
-}
-
-/** How many times the distance from the axis of the hole is drawn. @param {URLSearchParams} query */
-export function wellFactor(query) {
-  return exaggeration(query, EXAGGERATION);
-}
-
-/** @param {HTMLElement} place @param {Comparison} comparison */
-async function drawWells(place, comparison) {
-  const colour = wellColour(comparison.query);
-  const factor = wellFactor(comparison.query);
-  comparison.says.push(saysExaggeration("The strings at rest; their", factor));
-  const found = await each(comparison, async (point) => {
-    const [{ columns: statics }, table] = await Promise.all(
-      ["statics", ...(colour && tableOf(colour) !== "statics" ? [tableOf(colour)] : [])].map((name) =>
-        comparison.table(point, name),
-      ),
-    );
-    const { columns } = table ?? { columns: statics };
-    if (colour && !columns[colour]) comparison.lacking.push(`Point ${point.number} has no ${label(colour)}.`);
-    return {
-      statics,
-      values: colour && columns[colour] ? onNodes(columns, colour, statics.measured_depth.length) : null,
-    };
-  });
-  // One scale for all.
-  const finite = colour
-    ? found.flatMap(([, { values }]) => shown(colour, values ?? []).filter((value) => value !== null))
-    : [];
-  const [cmin, cmax] = [
-    finite.reduce((a, b) => Math.min(a, b), Infinity),
-    finite.reduce((a, b) => Math.max(a, b), -Infinity),
-  ];
-  const barOf = found.find(([, { values }]) => values)?.[0];
-  const aside = colour && found.length > 1 ? asideOf(found[0][1].statics) : null;
-  if (aside) comparison.says.push("Wells are drawn aside of each other, so that each is seen.");
-  const traces = found.map(([point, { statics, values }], order) => {
-    const beside = (/** @type {number[]} */ path, /** @type {number} */ step) =>
-      path.map((value) => value + order * step);
-    const axis = {
-      north: beside(statics.north, aside?.north ?? 0),
-      east: beside(statics.east, aside?.east ?? 0),
-      down: statics.true_vertical_depth,
-    };
-    const path = displaced(statics, axis, factor);
-    const line =
-      colour && values
-        ? {
-            color: shown(colour, values),
-            colorscale: lineScale(),
-            cmin,
-            cmax,
-            width: 9,
-            ...(point === barOf ? { colorbar: colourBar(title(colour)), showscale: true } : {}),
-          }
-        : { color: point.colour, width: 5 };
-    const last = statics.measured_depth.length - 1;
-    // Where colours tell values, numbers tell the wells apart.
-    const told = colour
-      ? {
-          mode: "lines+text",
-          text: statics.measured_depth.map((/** @type {number} */ _, /** @type {number} */ index) =>
-            index === last ? `point ${point.number}` : "",
-          ),
-          hovertext: values?.map(
-            (value, index) =>
-              `${point.name}<br>${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(colour)} ${say(colour, value)}`,
-          ),
-          hoverinfo: "text",
-          showlegend: false,
-        }
-      : { mode: "lines", hoverinfo: "name", showlegend: true };
-    return {
-      type: "scatter3d",
-      ...told,
-      name: point.name,
-      x: shown("east", path.east),
-      y: shown("north", path.north),
-      z: shown("true_vertical_depth", path.down),
-      line,
-    };
-  });
-  const { soft, line } = inks();
-  const space = (/** @type {string} */ text) => ({
-    title: { text: `${text} [${unit("north").symbol}]` },
-    gridcolor: line,
-    zeroline: false,
-    color: soft,
-    backgroundcolor: "rgba(0,0,0,0)",
-  });
-  return draw(
-    place,
-    traces,
-    {
-      margin: { l: 0, r: 0, t: 0, b: 0 },
-      scene: {
-        xaxis: space("east"),
-        yaxis: space("north"),
-        zaxis: { ...space("true vertical depth"), autorange: "reversed" },
-        aspectmode: "data",
-        camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
-      },
-    },
-    comparison.signal,
-  );
 }
 
 /** The account whose energy is compared over time; empty where all are by what they changed. @param {URLSearchParams} query */

@@ -16,210 +16,213 @@ const REFERENCE = "#/components/schemas/";
  * @property {(path: string, value: unknown) => void} set changes a field; undefined takes the change back
  */
 
-/**
- * @param {Changes} changes
- * @param {AbortSignal} signal of the view
- * @returns {{element: HTMLElement, show: (scenario: any) => void}} `show` draws the fields of another scenario, or none
- */
-export function scenarioForm(changes, signal) {
-  const body = h("div", {});
+/** Fields of a scenario, drawn when they are opened. */
+export class ScenarioForm {
+  #changes;
+  #signal;
+  #body = h("div", {});
   /** @type {any} */
-  let shownScenario = null;
+  #scenario = null;
   /** @type {Record<string, any> | undefined} */
-  let schemas;
+  #schemas;
 
-  async function draw() {
-    if (!element.open) return;
-    if (!shownScenario) {
-      fill(body, h("p", { class: "soft small" }, "The fields appear here once the scenario can be read."));
-      return;
-    }
-    if (!schemas) {
-      fill(body, h("p", { class: "soft small", role: "status" }, "Loading…"));
-      schemas = /** @type {Record<string, any>} */ (
-        (await get("/openapi.json", {}, signal)).components.schemas
-      );
-    }
-    fill(body, section(schemas.Scenario, shownScenario, ""));
+  /** @param {Changes} changes @param {AbortSignal} signal of the view */
+  constructor(changes, signal) {
+    this.#changes = changes;
+    this.#signal = signal;
+    const toggled = (/** @type {Event} */ event) =>
+      event.target === this.element && attend(this.#draw(), signal);
+    this.element = h(
+      "details",
+      { class: "schema", ontoggle: toggled },
+      h("summary", {}, "All fields, with units, limits and help"),
+      this.#body,
+    );
   }
 
-  /** @param {any} schema @returns {any} what a reference, or one beside `null`, leads to, with the description nearest to the field */
-  function resolved(schema) {
+  /** Shows the fields of a scenario, or none. @param {any} scenario */
+  show(scenario) {
+    this.#scenario = scenario;
+    attend(this.#draw(), this.#signal);
+  }
+
+  async #draw() {
+    if (!this.element.open) return;
+    if (!this.#scenario) {
+      fill(
+        this.#body,
+        h("p", { class: "soft small" }, "The fields appear here once the scenario can be read."),
+      );
+      return;
+    }
+    if (!this.#schemas) {
+      fill(this.#body, h("p", { class: "soft small", role: "status" }, "Loading…"));
+      this.#schemas = /** @type {Record<string, any>} */ (
+        (await get("/openapi.json", {}, this.#signal)).components.schemas
+      );
+    }
+    fill(this.#body, this.#section(this.#schemas.Scenario, this.#scenario, ""));
+  }
+
+  /** The schema of a reference, or of one beside `null`, with the description nearest to the field. @param {any} schema @returns {any} */
+  #resolved(schema) {
     const choices = (schema.oneOf ?? schema.anyOf)?.filter((/** @type {any} */ one) => one.type !== "null");
     const inner = schema.$ref
-      ? schemas?.[schema.$ref.slice(REFERENCE.length)]
+      ? this.#schemas?.[schema.$ref.slice(REFERENCE.length)]
       : choices?.length === 1
         ? choices[0]
         : undefined;
     return inner
       ? {
-          ...resolved(inner),
+          ...this.#resolved(inner),
           ...(schema.description && { description: schema.description }),
           ...(schema["x-unit"] && { "x-unit": schema["x-unit"] }),
         }
       : schema;
   }
 
-  /** The fields of an object, sections within it folded. @param {any} schema @param {any} value @param {string} path */
-  function section(schema, value, path) {
+  /** The fields of an object, sections within it folded. @param {any} schema @param {any} value @param {string} path @returns {HTMLElement[]} */
+  #section(schema, value, path) {
     return Object.entries(schema.properties ?? {}).flatMap(([name, given]) => {
       const at = path ? `${path}.${name}` : name;
       // A section that a scenario leaves out has its defaults, unless it may be none.
       const absent = isOptional(given) ? undefined : {};
-      const field = resolved(given);
+      const resolved = this.#resolved(given);
       return ELSEWHERE.includes(at)
         ? []
-        : [part(field, value?.[name] ?? (field.properties ? absent : undefined), at)];
+        : [this.#part(resolved, value?.[name] ?? (resolved.properties ? absent : undefined), at)];
     });
   }
 
   /** @param {any} schema @param {any} value @param {string} path @returns {HTMLElement} */
-  function part(schema, value, path) {
+  #part(schema, value, path) {
     const isObject = schema.properties && value !== null && value !== undefined;
-    if (isObject) return folded(path, schema.description, () => section(schema, value, path));
-    const item = schema.items && resolved(schema.items);
-    if (item?.properties && Array.isArray(value) && value.length) {
-      return folded(path, schema.description, () =>
-        value.map((entry, index) =>
-          folded(
-            `${path}[${index}]`,
-            [entry.kind, entry.measured_depth !== undefined && say("measured_depth", entry.measured_depth)]
-              .filter(Boolean)
-              .join(", "),
-            () => section(item, entry, `${path}[${index}]`),
-          ),
-        ),
+    if (isObject) return folded(path, schema.description, () => this.#section(schema, value, path));
+    const item = schema.items && this.#resolved(schema.items);
+    if (!item?.properties || !Array.isArray(value) || !value.length)
+      return field(schema, value, path, this.#changes);
+    const entryOf = (/** @type {any} */ entry, /** @type {string} */ at) =>
+      folded(
+        at,
+        [entry.kind, entry.measured_depth !== undefined && say("measured_depth", entry.measured_depth)]
+          .filter(Boolean)
+          .join(", "),
+        () => this.#section(item, entry, at),
       );
-    }
-    return field(schema, value, path);
-  }
-
-  /** @param {string} path @param {string} help @param {() => (HTMLElement | HTMLElement[])[]} make when it is opened first */
-  function folded(path, help, make) {
-    const inner = h("div", {});
-    const details = h(
-      "details",
-      {
-        class: "section",
-        ontoggle: (/** @type {Event} */ event) => {
-          if (event.target === details && details.open && !inner.childElementCount)
-            fill(inner, help && h("p", { class: "small soft" }, plain(help)), make().flat());
-        },
-      },
-      h("summary", {}, last(path)),
-      inner,
+    return folded(path, schema.description, () =>
+      value.map((entry, index) => entryOf(entry, `${path}[${index}]`)),
     );
-    return details;
   }
+}
 
-  /** @param {any} schema @param {any} value @param {string} path */
-  function field(schema, value, path) {
-    const now = () => {
-      const changed = changes.get(path);
-      return changed === undefined ? value : changed;
-    };
-    const hint = h("span", { class: "small soft" });
-    const row = h("div", { class: "setting" });
-    const back = h(
-      "button",
-      {
-        type: "button",
-        class: "plain small",
-        onclick: () => {
-          changes.set(path, undefined);
-          fill(row, ...made());
-        },
-      },
-      "Take back",
-    );
-    const mark = () => {
-      const isChanged = changes.get(path) !== undefined;
-      row.classList.toggle("changed", isChanged);
-      back.hidden = !isChanged;
-      fill(
-        hint,
-        limits(schema),
-        unitSystem() === "field" && typeof now() === "number" && servedUnit(path)
-          ? ` = ${say(path, now())}`
-          : "",
-        isChanged ? ` The scenario has ${written(value)}.` : "",
-      );
-    };
-    /** @param {unknown} entered */
-    const set = (entered) => {
-      changes.set(
-        path,
-        JSON.stringify(entered) === JSON.stringify(value) || entered === undefined ? undefined : entered,
-      );
-      mark();
-    };
-    const help = `help-${path}`;
-    const described = { "aria-describedby": help };
-    const words = wordsOf(schema);
-    const made = () => {
-      /** @type {HTMLElement} */
-      let input;
-      if (schema.type === "boolean" || words) {
-        const options = words ?? ["true", "false"];
-        const given = now();
-        const select = h(
-          "select",
-          { ...described, onchange: () => set(words ? select.value : select.value === "true") },
-          !options.includes(String(given)) && h("option", { value: "" }, written(given)),
-          options.map((word) =>
-            h("option", { value: word, selected: word === String(given) }, word.replaceAll("_", " ")),
-          ),
-        );
-        input = select;
-      } else if (isNumber(schema)) {
-        const box = h("input", {
-          ...described,
-          type: "number",
-          step: schema.type === "integer" ? 1 : "any",
-          min: schema.minimum,
-          max: schema.maximum,
-          value: now() ?? "",
-          oninput: () => set(box.value === "" ? undefined : Number(box.value)),
-        });
-        input = box;
-      } else {
-        const box = h("input", {
-          ...described,
-          value: written(now()),
-          spellcheck: "false",
-          oninput: () => set(read(box.value)),
-        });
-        input = box;
-      }
-      mark();
-      const unit = servedUnit(path);
-      return [
-        h("label", { class: "field" }, h("span", {}, `${last(path)}${unit ? ` [${unit}]` : ""}`), input),
-        hint,
-        back,
-        h("p", { class: "small soft", id: help }, plain(schema.description ?? "")),
-      ];
-    };
-    fill(row, ...made());
-    return row;
-  }
-
-  const element = h(
-    "details",
-    {
-      class: "schema",
-      ontoggle: (/** @type {Event} */ event) => event.target === element && attend(draw(), signal),
-    },
-    h("summary", {}, "All fields, with units, limits and help"),
-    body,
-  );
-  return {
-    element,
-    show: (scenario) => {
-      shownScenario = scenario;
-      attend(draw(), signal);
-    },
+/** @param {string} path @param {string} help @param {() => (HTMLElement | HTMLElement[])[]} make when it is opened first */
+function folded(path, help, make) {
+  const inner = h("div", {});
+  const toggled = (/** @type {Event} */ event) => {
+    if (event.target === details && details.open && !inner.childElementCount)
+      fill(inner, help && h("p", { class: "small soft" }, plain(help)), make().flat());
   };
+  const details = h("details", { class: "section", ontoggle: toggled }, h("summary", {}, last(path)), inner);
+  return details;
+}
+
+/** @param {any} schema @param {any} value of the scenario @param {string} path @param {Changes} changes */
+function field(schema, value, path, changes) {
+  const now = () => {
+    const changed = changes.get(path);
+    return changed === undefined ? value : changed;
+  };
+  const hint = h("span", { class: "small soft" });
+  const row = h("div", { class: "setting" });
+  const back = h(
+    "button",
+    {
+      type: "button",
+      class: "plain small",
+      onclick: () => {
+        changes.set(path, undefined);
+        fill(row, ...made());
+      },
+    },
+    "Take back",
+  );
+  const mark = () => {
+    const isChanged = changes.get(path) !== undefined;
+    row.classList.toggle("changed", isChanged);
+    back.hidden = !isChanged;
+    fill(
+      hint,
+      limits(schema),
+      unitSystem() === "field" && typeof now() === "number" && servedUnit(path)
+        ? ` = ${say(path, now())}`
+        : "",
+      isChanged ? ` The scenario has ${written(value)}.` : "",
+    );
+  };
+  const set = (/** @type {unknown} */ entered) => {
+    changes.set(
+      path,
+      JSON.stringify(entered) === JSON.stringify(value) || entered === undefined ? undefined : entered,
+    );
+    mark();
+  };
+  const help = `help-${path}`;
+  const made = () => {
+    const input = inputOf(schema, now(), { "aria-describedby": help }, set);
+    mark();
+    const unit = servedUnit(path);
+    return [
+      h("label", { class: "field" }, h("span", {}, `${last(path)}${unit ? ` [${unit}]` : ""}`), input),
+      hint,
+      back,
+      h("p", { class: "small soft", id: help }, plain(schema.description ?? "")),
+    ];
+  };
+  fill(row, ...made());
+  return row;
+}
+
+/**
+ * An input for a value: a choice of words, a number, or a text.
+ * @param {any} schema
+ * @param {unknown} value
+ * @param {Record<string, string>} attributes
+ * @param {(entered: unknown) => void} set
+ * @returns {HTMLElement}
+ */
+function inputOf(schema, value, attributes, set) {
+  const words = wordsOf(schema);
+  if (schema.type === "boolean" || words) {
+    const options = words ?? ["true", "false"];
+    const select = h(
+      "select",
+      { ...attributes, onchange: () => set(words ? select.value : select.value === "true") },
+      !options.includes(String(value)) && h("option", { value: "" }, written(value)),
+      options.map((word) =>
+        h("option", { value: word, selected: word === String(value) }, word.replaceAll("_", " ")),
+      ),
+    );
+    return select;
+  }
+  if (isNumber(schema)) {
+    const box = h("input", {
+      ...attributes,
+      type: "number",
+      step: schema.type === "integer" ? 1 : "any",
+      min: schema.minimum,
+      max: schema.maximum,
+      value: value ?? "",
+      oninput: () => set(box.value === "" ? undefined : Number(box.value)),
+    });
+    return box;
+  }
+  const box = h("input", {
+    ...attributes,
+    value: written(value),
+    spellcheck: "false",
+    oninput: () => set(read(box.value)),
+  });
+  return box;
 }
 
 /** Whether a field may be `null`. @param {any} schema */

@@ -1,0 +1,130 @@
+// Rows of the form: parameters with their values, and changes of the scenario.
+
+import { label, meaning, servedUnit } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
+import { read } from "./values.js";
+
+/** A name with the text of its values. @typedef {{name: string, values: string}} Row */
+
+export class Rows {
+  #kind;
+  #rows;
+  #changed;
+  element = h("div", {});
+
+  /** @param {"axes" | "set"} kind member of the request @param {Row[]} rows @param {() => void} changed */
+  constructor(kind, rows, changed) {
+    this.#kind = kind;
+    this.#rows = rows;
+    this.#changed = changed;
+    this.#draw();
+  }
+
+  /** Rows that have a name. */
+  get named() {
+    return this.#rows.filter((row) => row.name);
+  }
+
+  /** @param {(row: Row) => boolean} isKept */
+  keep(isKept) {
+    this.replace(this.#rows.filter(isKept));
+  }
+
+  /** @param {Row[]} rows */
+  replace(rows) {
+    this.#rows = rows;
+    this.#draw();
+  }
+
+  /** The value of a name; undefined if it has no row. @param {string} name */
+  get(name) {
+    const row = this.#rows.find((entry) => entry.name === name);
+    return row && read(row.values);
+  }
+
+  /** Sets a name to a value; undefined removes its row. @param {string} name @param {unknown} value */
+  set(name, value) {
+    const at = this.#rows.findIndex((entry) => entry.name === name);
+    if (value === undefined) {
+      if (at >= 0) this.#rows.splice(at, 1);
+    } else if (at >= 0) this.#rows[at].values = JSON.stringify(value);
+    else this.#rows.push({ name, values: JSON.stringify(value) });
+    this.#draw();
+    this.#changed();
+  }
+
+  #draw() {
+    const add = h(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          this.#rows.push({ name: "", values: "" });
+          this.#draw();
+        },
+      },
+      this.#kind === "axes" ? "Add a parameter" : "Add a change",
+    );
+    fill(
+      this.element,
+      this.#rows.map((row) => this.#line(row)),
+      add,
+    );
+  }
+
+  /** @param {Row} row */
+  #line(row) {
+    const isAxis = this.#kind === "axes";
+    const hint = h("span", { class: "small soft" });
+    const path = h("input", {
+      value: row.name,
+      list: "paths",
+      "aria-label": isAxis ? "Parameter" : "Field",
+      size: 26,
+      oninput: () => {
+        row.name = path.value.trim();
+        name();
+        this.#changed();
+      },
+    });
+    const values = h("input", {
+      value: row.values,
+      "aria-label": isAxis ? "Values" : "Value",
+      size: 22,
+      placeholder: isAxis ? "0.01, 0.02 or 0.01:0.06:6" : "value",
+      oninput: () => {
+        row.values = values.value;
+        this.#changed();
+      },
+    });
+    const remove = h(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          this.#rows.splice(this.#rows.indexOf(row), 1);
+          this.#draw();
+          this.#changed();
+        },
+      },
+      "✕",
+    );
+    const line = h("div", { class: "controls", style: "margin-bottom:.35rem" }, path, values, remove, hint);
+    const name = () => {
+      line.dataset.pointer = `/${this.#kind}/${row.name}`;
+      remove.setAttribute("aria-label", `Remove ${row.name}`);
+      path.title = meaning(row.name);
+      fill(hint, hintOf(row.name));
+    };
+    name();
+    return line;
+  }
+}
+
+/** Label and unit of a name, if the vocabulary has more than the name. @param {string} name */
+function hintOf(name) {
+  const unit = servedUnit(name);
+  return [label(name) !== name.replaceAll("_", " ") && label(name), unit && `in ${unit}`]
+    .filter(Boolean)
+    .join(", ");
+}

@@ -3,11 +3,12 @@
 import { each, Lacking, noteNode } from "./comparison.js";
 import { fill, h } from "../ui/dom.js";
 import { canvas, draw } from "../draw/plots.js";
-import { contactMap, largestShown } from "../point/contacts.js";
+import { largestShown } from "../data/decimation.js";
+import { contactMap } from "../point/contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE, twoPanels } from "../point/rotation.js";
 import { describe, drawSpectrogram, largestOf, RANGES } from "../point/spectrogram.js";
 import { frames } from "../data/snapshots.js";
-import { stringPlayer } from "../point/string-player.js";
+import { StringPlayer } from "../point/string-player.js";
 import { shown } from "../data/units.js";
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
@@ -134,7 +135,7 @@ export async function drawContactMaps(place, comparison) {
 export async function drawStrings(place, comparison) {
   const found = await each(comparison, (point) => snapshotsThere(comparison, point));
   if (!found.length) return fill(place);
-  const player = stringPlayer(
+  const player = new StringPlayer(
     found.map(([point, one]) => ({ ...one, context: contextOf(comparison, point), heading: point.name })),
     async () => {},
   );

@@ -62,3 +62,18 @@ export async function frames(source, names, window, nodes, taken = TAKEN) {
     columns,
   };
 }
+
+/**
+ * A value of a node between two snapshots; beyond the first and the last they are continued.
+ * @param {Frames} frames
+ * @param {string} name of the quantity
+ * @param {number} node from 0 at the top
+ * @param {number} time [s]
+ */
+export function valueAt({ nodes, count, first, interval, columns }, name, node, time) {
+  const values = columns[name];
+  const at = Math.max(0, Math.min(count - 1, (time - first) / interval));
+  const frame = Math.min(Math.floor(at), count - 2);
+  const [a, b] = [values[frame * nodes + node], values[(frame + 1) * nodes + node]];
+  return a + (b - a) * (at - frame);
+}

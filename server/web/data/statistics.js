@@ -85,3 +85,76 @@ export function biasOver(point, { from, to }, bias) {
 function isSame(one, other, duration) {
   return [one.from - other.from, one.to - other.to].every((apart) => Math.abs(apart) <= SAME * duration);
 }
+
+/**
+ * Statistics of some samples of an orbit, as the service calls them.
+ * @param {{u: number[], v: number[]}} columns
+ * @param {number} first @param {number} end rows, half-open
+ * @returns {Record<string, number> | null} null of none
+ */
+export function orbitStatistics({ u, v }, first, end) {
+  const count = end - first;
+  if (count <= 0) return null;
+  let [meanU, meanV, meanRadius] = [0, 0, 0];
+  for (let row = first; row < end; row += 1) {
+    meanU += u[row] / count;
+    meanV += v[row] / count;
+    meanRadius += Math.hypot(u[row], v[row]) / count;
+  }
+  let [square, deviation, largest, smallest] = [0, 0, 0, Infinity];
+  for (let row = first; row < end; row += 1) {
+    const radius = Math.hypot(u[row], v[row]);
+    square += ((u[row] - meanU) ** 2 + (v[row] - meanV) ** 2) / count;
+    deviation += (radius - meanRadius) ** 2 / count;
+    largest = Math.max(largest, radius);
+    smallest = Math.min(smallest, radius);
+  }
+  return {
+    orbit_radius_rms: Math.sqrt(square),
+    orbit_mean_radius: meanRadius,
+    orbit_radius_deviation: Math.sqrt(deviation),
+    orbit_largest_radius: largest,
+    orbit_smallest_radius: smallest,
+    orbit_offset: Math.hypot(meanU, meanV),
+    peak_to_peak_u: reach(u, first, end),
+    peak_to_peak_v: reach(v, first, end),
+  };
+}
+
+/** Distance from the least to the largest of some values. @param {number[]} values @param {number} first @param {number} end half-open */
+function reach(values, first, end) {
+  let [least, largest] = [Infinity, -Infinity];
+  for (let row = first; row < end; row += 1) {
+    least = Math.min(least, values[row]);
+    largest = Math.max(largest, values[row]);
+  }
+  return largest - least;
+}
+
+/**
+ * Root mean square distance of each node from its mean position.
+ * @param {import("./snapshots.js").Frames} frames
+ */
+export function amplitudes({ nodes, count, columns: { u, v } }) {
+  return Array.from({ length: nodes }, (_, node) => {
+    const [sums, squares] = [
+      [0, 0],
+      [0, 0],
+    ];
+    [u, v].forEach((column, part) => {
+      // About the first value, so that nothing cancels.
+      const start = column[node];
+      for (let frame = 0; frame < count; frame += 1) {
+        const value = column[frame * nodes + node] - start;
+        sums[part] += value;
+        squares[part] += value * value;
+      }
+    });
+    return Math.sqrt(
+      Math.max(
+        0,
+        [0, 1].reduce((sum, part) => sum + squares[part] / count - (sums[part] / count) ** 2, 0),
+      ),
+    );
+  });
+}

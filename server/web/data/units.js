@@ -72,8 +72,8 @@ export function meaning(name) {
 export function unit(name) {
   const { entry, variant } = parse(name);
   if (!entry?.unit || entry.unit === "1" || variant === "bias") return { symbol: "", size: 1 };
-  const shown = unitSystem() === "field" ? entry.field : entry.shown;
-  return { symbol: written(shown?.unit ?? entry.unit), size: shown?.size ?? 1 };
+  const preferred = unitSystem() === "field" ? entry.field : entry.shown;
+  return { symbol: written(preferred?.unit ?? entry.unit), size: preferred?.size ?? 1 };
 }
 
 /**

@@ -43,10 +43,10 @@ export function dragWindow(place, moved, ended, signal) {
     shade.style.width = `${Math.abs(end - start)}px`;
     moved(range());
   };
-  const finish = (/** @type {[number, number] | null} */ range) => {
+  const finish = (/** @type {[number, number] | null} */ chosen) => {
     start = null;
     shade.hidden = true;
-    ended(range);
+    ended(chosen);
   };
   // Before plotly hears of it.
   const keepOut = (/** @type {Event} */ event) => isMine(event) && event.stopPropagation();
@@ -191,49 +191,4 @@ function firstNotBelow(values, value) {
     else high = middle;
   }
   return low;
-}
-
-/**
- * Statistics of some samples of an orbit, as the service calls them.
- * @param {{u: number[], v: number[]}} columns
- * @param {number} first @param {number} end rows, half-open
- * @returns {Record<string, number> | null} null of none
- */
-export function orbitStatistics({ u, v }, first, end) {
-  const count = end - first;
-  if (count <= 0) return null;
-  let [meanU, meanV, meanRadius] = [0, 0, 0];
-  for (let row = first; row < end; row += 1) {
-    meanU += u[row] / count;
-    meanV += v[row] / count;
-    meanRadius += Math.hypot(u[row], v[row]) / count;
-  }
-  let [square, deviation, largest, smallest] = [0, 0, 0, Infinity];
-  for (let row = first; row < end; row += 1) {
-    const radius = Math.hypot(u[row], v[row]);
-    square += ((u[row] - meanU) ** 2 + (v[row] - meanV) ** 2) / count;
-    deviation += (radius - meanRadius) ** 2 / count;
-    largest = Math.max(largest, radius);
-    smallest = Math.min(smallest, radius);
-  }
-  return {
-    orbit_radius_rms: Math.sqrt(square),
-    orbit_mean_radius: meanRadius,
-    orbit_radius_deviation: Math.sqrt(deviation),
-    orbit_largest_radius: largest,
-    orbit_smallest_radius: smallest,
-    orbit_offset: Math.hypot(meanU, meanV),
-    peak_to_peak_u: reach(u, first, end),
-    peak_to_peak_v: reach(v, first, end),
-  };
-}
-
-/** How far some values reach from the least to the largest. @param {number[]} values @param {number} first @param {number} end half-open */
-function reach(values, first, end) {
-  let [least, largest] = [Infinity, -Infinity];
-  for (let row = first; row < end; row += 1) {
-    least = Math.min(least, values[row]);
-    largest = Math.max(largest, values[row]);
-  }
-  return largest - least;
 }

@@ -360,10 +360,8 @@ function drawLine(pen, trace, x, y) {
     pen.setLineDash(dashes(trace.line.dash));
     pen.beginPath();
     for (let index = 0, isDown = false; index < count; index += 1) {
-      if (has(index))
-        isDown
-          ? pen.lineTo(at(x, trace.x[index]), at(y, trace.y[index]))
-          : pen.moveTo(at(x, trace.x[index]), at(y, trace.y[index]));
+      // After a gap the line begins anew.
+      if (has(index)) pen[isDown ? "lineTo" : "moveTo"](at(x, trace.x[index]), at(y, trace.y[index]));
       isDown = has(index);
     }
     pen.stroke();

@@ -58,75 +58,125 @@ export function sayView(view) {
   return text === Object.values(USUAL).join(":") ? "" : text;
 }
 
-/**
- * A picture that is turned by dragging or the arrow keys, and brought nearer by the wheel or + and -.
- * @param {string} name
- * @param {typeof USUAL} view from where the string is seen at first
- * @param {(view: typeof USUAL) => void} onView told when the reader has turned it
- * @param {AbortSignal} signal
- */
-export function stringScene(name, view, onView, signal) {
-  const canvas = h("canvas", {
-    class: "scene",
-    role: "application",
-    tabindex: "0",
-    "aria-label": name,
-    "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home",
-  });
-  const screen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  /** What draws at present. @type {import("./svg-pen.js").Pen} */
-  let pen = screen;
-  /** @type {Scene | undefined} */
-  let scene;
-  let isDue = false;
-  let drawn = 0;
+/** @typedef {typeof USUAL} View */
+/** @typedef {import("./svg-pen.js").Pen} Pen */
+/** @typedef {(place: Vector) => number[]} Project */
 
-  function later() {
-    if (isDue) return;
-    isDue = true;
+/** A picture that is turned by dragging or the arrow keys, and brought nearer by the wheel or + and -. */
+export class StringScene {
+  #view;
+  #onView;
+  #screen;
+  /** @type {Scene | undefined} */
+  #scene;
+  #isDue = false;
+  #drawn = 0;
+  /** Last place of the pointer while it is held. @type {{x: number, y: number} | null} */
+  #held = null;
+
+  /**
+   * @param {string} name
+   * @param {View} view from where the string is seen, which changes when the reader turns it
+   * @param {() => void} onView called when the reader has turned it
+   * @param {AbortSignal} signal
+   */
+  constructor(name, view, onView, signal) {
+    this.#view = view;
+    this.#onView = onView;
+    this.element = h("canvas", {
+      class: "scene",
+      role: "application",
+      tabindex: "0",
+      "aria-label": name,
+      "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home",
+    });
+    this.#screen = /** @type {CanvasRenderingContext2D} */ (this.element.getContext("2d"));
+    const observer = new ResizeObserver(() => this.turned());
+    observer.observe(this.element);
+    signal.addEventListener("abort", () => observer.disconnect(), { once: true });
+    this.#listen();
+  }
+
+  /** @param {Scene} scene */
+  show(scene) {
+    this.#scene = scene;
+    this.turned();
+  }
+
+  /** Draws anew in the next frame. */
+  turned() {
+    if (this.#isDue) return;
+    this.#isDue = true;
     requestAnimationFrame(() => {
-      isDue = false;
-      paint();
+      this.#isDue = false;
+      this.paint();
     });
   }
 
-  const observer = new ResizeObserver(later);
-  observer.observe(canvas);
-  signal.addEventListener("abort", () => observer.disconnect(), { once: true });
+  /** Draws at once, in the frame of a caller. */
+  paint() {
+    const canvas = this.element;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!this.#scene || !width || !height) return;
+    const scale = devicePixelRatio || 1;
+    if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) {
+      canvas.width = Math.round(width * scale);
+      canvas.height = Math.round(height * scale);
+    }
+    this.#screen.setTransform(scale, 0, 0, scale, 0, 0);
+    this.#screen.clearRect(0, 0, width, height);
+    drawAll(this.#screen, this.#scene, this.#view, width, height);
+    this.#drawn += 1;
+    canvas.dataset.drawn = String(this.#drawn);
+  }
 
-  /** @type {{x: number, y: number} | null} */
-  let held = null;
-  canvas.addEventListener("pointerdown", (event) => {
-    held = { x: event.clientX, y: event.clientY };
-    canvas.setPointerCapture(event.pointerId);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    const [x, y] = [event.clientX - held.x, event.clientY - held.y];
-    held = { x: event.clientX, y: event.clientY };
+  /** Draws with another pen, as a file has it. @param {Pen} pen */
+  drawWith(pen) {
+    if (this.#scene)
+      drawAll(pen, this.#scene, this.#view, this.element.clientWidth, this.element.clientHeight);
+  }
+
+  #listen() {
+    const canvas = this.element;
+    canvas.addEventListener("pointerdown", (event) => {
+      this.#held = { x: event.clientX, y: event.clientY };
+      canvas.setPointerCapture(event.pointerId);
+    });
+    canvas.addEventListener("pointermove", (event) => this.#drag(event));
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (this.#held = null));
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.#view.size *= event.deltaY < 0 ? NEARER : 1 / NEARER;
+        this.#changed();
+      },
+      { passive: false },
+    );
+    canvas.addEventListener("keydown", (event) => this.#press(event));
+  }
+
+  /** @param {PointerEvent} event */
+  #drag(event) {
+    if (!this.#held) return;
+    const [x, y] = [event.clientX - this.#held.x, event.clientY - this.#held.y];
+    this.#held = { x: event.clientX, y: event.clientY };
     if (event.shiftKey) {
-      view.right += x / canvas.clientWidth;
-      view.down += y / canvas.clientHeight;
-    } else turn(-x * 0.008, y * 0.008);
-    changed();
-  });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = null));
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      view.size *= event.deltaY < 0 ? NEARER : 1 / NEARER;
-      changed();
-    },
-    { passive: false },
-  );
-  canvas.addEventListener("keydown", (event) => {
+      this.#view.right += x / this.element.clientWidth;
+      this.#view.down += y / this.element.clientHeight;
+    } else this.#turn(-x * 0.008, y * 0.008);
+    this.#changed();
+  }
+
+  /** @param {KeyboardEvent} event */
+  #press(event) {
+    const view = this.#view;
     /** @type {Record<string, () => void>} */
     const keys = {
-      ArrowLeft: () => turn(TURN, 0),
-      ArrowRight: () => turn(-TURN, 0),
-      ArrowUp: () => turn(0, TURN),
-      ArrowDown: () => turn(0, -TURN),
+      ArrowLeft: () => this.#turn(TURN, 0),
+      ArrowRight: () => this.#turn(-TURN, 0),
+      ArrowUp: () => this.#turn(0, TURN),
+      ArrowDown: () => this.#turn(0, -TURN),
       "+": () => (view.size *= NEARER),
       "-": () => (view.size /= NEARER),
       Home: () => Object.assign(view, USUAL),
@@ -134,268 +184,255 @@ export function stringScene(name, view, onView, signal) {
     if (!keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
-    changed();
-  });
-
-  function changed() {
-    later();
-    onView(view);
+    this.#changed();
   }
 
   /** @param {number} azimuth @param {number} elevation */
-  function turn(azimuth, elevation) {
-    view.azimuth += azimuth;
-    view.elevation = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, view.elevation + elevation));
+  #turn(azimuth, elevation) {
+    this.#view.azimuth += azimuth;
+    this.#view.elevation = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, this.#view.elevation + elevation));
   }
 
-  function paint() {
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (!scene || !width || !height) return;
-    const scale = devicePixelRatio || 1;
-    if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) {
-      canvas.width = Math.round(width * scale);
-      canvas.height = Math.round(height * scale);
-    }
-    screen.setTransform(scale, 0, 0, scale, 0, 0);
-    screen.clearRect(0, 0, width, height);
-    drawAll(scene, width, height);
-    drawn += 1;
-    canvas.dataset.drawn = String(drawn);
+  #changed() {
+    this.turned();
+    this.#onView();
   }
+}
 
-  /** @param {Scene} scene @param {number} width @param {number} height */
-  function drawAll(scene, width, height) {
-    const project = projection(scene, width, height);
-    drawHole(scene, project);
-    drawDepths(scene, project);
-    if (scene.rest) drawLine(scene, scene.rest, project);
-    drawString(scene, project);
-    drawCompass(height);
+/** @param {Pen} pen @param {Scene} scene @param {View} view @param {number} width @param {number} height */
+function drawAll(pen, scene, view, width, height) {
+  const project = projection(scene, view, width, height);
+  drawHole(pen, scene, project);
+  drawDepths(pen, scene, project);
+  if (scene.rest) drawLine(pen, scene, scene.rest, project);
+  drawString(pen, scene, project);
+  drawCompass(pen, view, height);
+}
+
+/**
+ * Projection from space to the picture: without perspective, and with all of the shown part in it.
+ * @param {Scene} scene @param {View} view @param {number} width @param {number} height
+ * @returns {Project}
+ */
+function projection({ frames, stretch: [first, last], clearance, factor }, view, width, height) {
+  const [cosine, sine] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];
+  const [up, flat] = [Math.cos(view.elevation), Math.sin(view.elevation)];
+  const seen = (/** @type {Vector} */ [north, east, down]) => {
+    const [right, away] = [east * cosine - north * sine, east * sine + north * cosine];
+    return [right, down * up - away * flat];
+  };
+  const bounds = [Infinity, -Infinity, Infinity, -Infinity];
+  for (let node = first; node <= last; node += 1) {
+    const [x, y] = seen(frames.axis[node]);
+    const room = factor * clearance[node];
+    bounds[0] = Math.min(bounds[0], x - room);
+    bounds[1] = Math.max(bounds[1], x + room);
+    bounds[2] = Math.min(bounds[2], y - room);
+    bounds[3] = Math.max(bounds[3], y + room);
   }
+  const size =
+    0.92 * view.size * Math.min(width / (bounds[1] - bounds[0] || 1), height / (bounds[3] - bounds[2] || 1));
+  const [x0, y0] = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
+  return (place) => {
+    const [x, y] = seen(place);
+    return [width * (0.5 + view.right) + size * (x - x0), height * (0.5 + view.down) + size * (y - y0)];
+  };
+}
 
-  /**
-   * From a place in space to one in the picture: without perspective, all of the stretch in it.
-   * @param {Scene} shown @param {number} width @param {number} height
-   */
-  function projection({ frames, stretch: [first, last], clearance, factor }, width, height) {
-    const [cosine, sine] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];
-    const [up, flat] = [Math.cos(view.elevation), Math.sin(view.elevation)];
-    const seen = (/** @type {Vector} */ [north, east, down]) => {
-      const [right, away] = [east * cosine - north * sine, east * sine + north * cosine];
-      return [right, down * up - away * flat];
-    };
-    const bounds = [Infinity, -Infinity, Infinity, -Infinity];
-    for (let node = first; node <= last; node += 1) {
-      const [x, y] = seen(frames.axis[node]);
-      const room = factor * clearance[node];
-      bounds[0] = Math.min(bounds[0], x - room);
-      bounds[1] = Math.max(bounds[1], x + room);
-      bounds[2] = Math.min(bounds[2], y - room);
-      bounds[3] = Math.max(bounds[3], y + room);
-    }
-    const size =
-      0.92 *
-      view.size *
-      Math.min(width / (bounds[1] - bounds[0] || 1), height / (bounds[3] - bounds[2] || 1));
-    const [x0, y0] = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
-    return (/** @type {Vector} */ place) => {
-      const [x, y] = seen(place);
-      return [width * (0.5 + view.right) + size * (x - x0), height * (0.5 + view.down) + size * (y - y0)];
-    };
+/** Corners of a ring of the hole about a node, in space. @param {Scene} scene @param {number} node @returns {Vector[]} */
+function ringOf({ frames, clearance, factor }, node) {
+  const radius = factor * clearance[node];
+  return Array.from({ length: CORNERS + 1 }, (_, corner) => {
+    const angle = (2 * Math.PI * corner) / CORNERS;
+    return offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle));
+  });
+}
+
+/** @param {Pen} pen @param {Scene} scene @param {Project} project */
+function drawHole(pen, scene, project) {
+  const {
+    frames,
+    stretch: [first, last],
+  } = scene;
+  const { soft, line } = inks();
+  pen.lineWidth = 1;
+  pen.strokeStyle = line;
+  const step = Math.max(1, Math.round((last - first) / RINGS));
+  for (let node = first; node <= last; node += step) {
+    const ring = ringOf(scene, node);
+    path(pen, 0, CORNERS, (corner) => project(ring[corner]));
   }
+  pen.strokeStyle = soft;
+  pen.setLineDash([6, 5]);
+  path(pen, first, last, (node) => project(frames.axis[node]));
+  pen.setLineDash([]);
+}
 
-  /** @param {Scene} shown @param {(place: Vector) => number[]} project */
-  function drawHole({ frames, stretch: [first, last], clearance, factor }, project) {
-    const { soft, line } = inks();
-    pen.lineWidth = 1;
-    pen.strokeStyle = line;
-    const step = Math.max(1, Math.round((last - first) / RINGS));
-    for (let node = first; node <= last; node += step) {
-      pen.beginPath();
-      for (let corner = 0; corner <= CORNERS; corner += 1) {
-        const angle = (2 * Math.PI * corner) / CORNERS;
-        const radius = factor * clearance[node];
-        const [x, y] = project(offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle)));
-        if (corner) pen.lineTo(x, y);
-        else pen.moveTo(x, y);
-      }
-      pen.stroke();
-    }
+/** Draws marks of depth next to the hole. @param {Pen} pen @param {Scene} scene @param {Project} project */
+function drawDepths(pen, scene, project) {
+  const {
+    stretch: [first, last],
+    depth: { values, symbol },
+  } = scene;
+  const { soft, text } = inks();
+  const step = niceStep((values[last] - values[first]) / MARKS);
+  pen.lineWidth = 1.2;
+  pen.font = "12px system-ui, sans-serif";
+  pen.textBaseline = "middle";
+  /** @type {number[] | undefined} */
+  let before;
+  let node = first;
+  for (
+    let mark = Math.ceil(values[first] / step - 1e-9);
+    mark * step <= values[last] * (1 + 1e-9);
+    mark += 1
+  ) {
+    while (node < last - 1 && values[node + 1] < mark * step) node += 1;
+    const part = (mark * step - values[node]) / (values[node + 1] - values[node] || 1);
+    const {
+      at,
+      side: [x, y],
+    } = besideHole(scene, node, part, project);
+    const [start, end, words] = [at(1), at(8), at(12)];
+    if (before && Math.hypot(words[0] - before[0], words[1] - before[1]) < BETWEEN) continue;
+    before = words;
     pen.strokeStyle = soft;
-    pen.setLineDash([6, 5]);
-    path(first, last, (node) => project(frames.axis[node]));
-    pen.setLineDash([]);
-  }
-
-  /** Marks of depth beside the hole. @param {Scene} shown @param {(place: Vector) => number[]} project */
-  function drawDepths({ frames, stretch: [first, last], clearance, factor, depth }, project) {
-    const { soft, text } = inks();
-    const step = niceStep((depth.values[last] - depth.values[first]) / MARKS);
-    pen.lineWidth = 1.2;
-    pen.font = "12px system-ui, sans-serif";
-    pen.textBaseline = "middle";
-    /** @type {number[] | undefined} */
-    let before;
-    let node = first;
-    for (
-      let mark = Math.ceil(depth.values[first] / step - 1e-9);
-      mark * step <= depth.values[last] * (1 + 1e-9);
-      mark += 1
-    ) {
-      while (node < last - 1 && depth.values[node + 1] < mark * step) node += 1;
-      const part = (mark * step - depth.values[node]) / (depth.values[node + 1] - depth.values[node] || 1);
-      const [from, to] = [project(frames.axis[node]), project(frames.axis[node + 1])];
-      const along = [to[0] - from[0], to[1] - from[1]];
-      const length = Math.hypot(along[0], along[1]);
-      // To the right of the hole; of one that is seen from its end, level.
-      const side = length > 0.5 ? Math.sign(-along[1] || 1) : 1;
-      const [x, y] = length > 0.5 ? [(-side * along[1]) / length, (side * along[0]) / length] : [1, 0];
-      const radius = factor * clearance[node];
-      const room = Math.max(
-        ...Array.from({ length: CORNERS }, (_, corner) => {
-          const angle = (2 * Math.PI * corner) / CORNERS;
-          const [right, down] = project(
-            offset(frames, node, radius * Math.cos(angle), radius * Math.sin(angle)),
-          );
-          return (right - from[0]) * x + (down - from[1]) * y;
-        }),
-      );
-      const at = (/** @type {number} */ beyond) => [
-        from[0] + part * along[0] + x * (room + beyond),
-        from[1] + part * along[1] + y * (room + beyond),
-      ];
-      const [start, end, words] = [at(1), at(8), at(12)];
-      if (before && Math.hypot(words[0] - before[0], words[1] - before[1]) < BETWEEN) continue;
-      before = words;
-      pen.strokeStyle = soft;
-      pen.beginPath();
-      pen.moveTo(start[0], start[1]);
-      pen.lineTo(end[0], end[1]);
-      pen.stroke();
-      pen.fillStyle = text;
-      pen.textAlign = x > 0.4 ? "left" : "center";
-      pen.fillText(
-        `${Number((mark * step).toPrecision(6))} ${depth.symbol}`,
-        words[0],
-        words[1] + (x > 0.4 ? 0 : 6 * Math.sign(y)),
-      );
-    }
-  }
-
-  /** @param {Scene} shown @param {(node: number) => [number, number]} place @param {(place: Vector) => number[]} project */
-  function drawLine({ frames, stretch: [first, last], factor }, place, project) {
-    pen.lineWidth = 1.5;
-    pen.strokeStyle = inks().soft;
-    path(first, last, (node) => {
-      const [u, v] = place(node);
-      return project(offset(frames, node, factor * u, factor * v));
-    });
-  }
-
-  /** @param {Scene} shown @param {(place: Vector) => number[]} project */
-  function drawString({ frames, stretch: [first, last], factor, place, value, range, isMarked }, project) {
-    const { panel, text } = inks();
-    const at = (/** @type {number} */ node) => {
-      const [u, v] = place(node);
-      return project(offset(frames, node, factor * u, factor * v));
-    };
-    // Whatever its colour, it stands out from the ground of either theme.
-    pen.lineCap = "round";
-    pen.lineWidth = 6.5;
-    pen.globalAlpha = 0.35;
-    pen.strokeStyle = text;
-    path(first, last, at);
-    pen.globalAlpha = 1;
-    pen.lineWidth = 4;
-    /** @type {number[][]} */
-    const dots = [];
-    let before;
-    for (let node = first; node <= last; node += 1) {
-      const here = at(node);
-      if (before) {
-        pen.strokeStyle = colourOf(value(node), range);
-        pen.beginPath();
-        pen.moveTo(before[0], before[1]);
-        pen.lineTo(here[0], here[1]);
-        pen.stroke();
-      }
-      if (isMarked?.(node)) dots.push([here[0], here[1], value(node)]);
-      before = here;
-    }
-    pen.lineCap = "butt";
-    pen.lineWidth = 1;
-    pen.strokeStyle = panel;
-    for (const [x, y, force] of dots) {
-      pen.fillStyle = colourOf(force, range);
-      pen.beginPath();
-      pen.arc(x, y, DOT, 0, 2 * Math.PI);
-      pen.fill();
-      pen.stroke();
-    }
-  }
-
-  /** @param {number} first @param {number} last @param {(node: number) => number[]} at */
-  function path(first, last, at) {
     pen.beginPath();
-    for (let node = first; node <= last; node += 1) {
-      const [x, y] = at(node);
-      if (node > first) pen.lineTo(x, y);
-      else pen.moveTo(x, y);
+    pen.moveTo(start[0], start[1]);
+    pen.lineTo(end[0], end[1]);
+    pen.stroke();
+    pen.fillStyle = text;
+    pen.textAlign = x > 0.4 ? "left" : "center";
+    pen.fillText(
+      `${Number((mark * step).toPrecision(6))} ${symbol}`,
+      words[0],
+      words[1] + (x > 0.4 ? 0 : 6 * Math.sign(y)),
+    );
+  }
+}
+
+/**
+ * Places next to the hole in the picture, between a node and the next one below.
+ * @param {Scene} scene
+ * @param {number} node
+ * @param {number} part of the way to the next node
+ * @param {Project} project
+ * @returns {{at: (beyond: number) => number[], side: number[]}} places so many pixels beyond the wall, and their direction from the axis
+ */
+function besideHole(scene, node, part, project) {
+  const [from, to] = [project(scene.frames.axis[node]), project(scene.frames.axis[node + 1])];
+  const along = [to[0] - from[0], to[1] - from[1]];
+  const length = Math.hypot(along[0], along[1]);
+  // To the right of the hole; of one that is seen from its end, level.
+  const sign = length > 0.5 ? Math.sign(-along[1] || 1) : 1;
+  const [x, y] = length > 0.5 ? [(-sign * along[1]) / length, (sign * along[0]) / length] : [1, 0];
+  const ring = ringOf(scene, node).map(project);
+  const room = Math.max(...ring.map(([right, down]) => (right - from[0]) * x + (down - from[1]) * y));
+  return {
+    at: (beyond) => [
+      from[0] + part * along[0] + x * (room + beyond),
+      from[1] + part * along[1] + y * (room + beyond),
+    ],
+    side: [x, y],
+  };
+}
+
+/** @param {Pen} pen @param {Scene} scene @param {(node: number) => [number, number]} place @param {Project} project */
+function drawLine(pen, { frames, stretch: [first, last], factor }, place, project) {
+  pen.lineWidth = 1.5;
+  pen.strokeStyle = inks().soft;
+  path(pen, first, last, (node) => {
+    const [u, v] = place(node);
+    return project(offset(frames, node, factor * u, factor * v));
+  });
+}
+
+/** @param {Pen} pen @param {Scene} scene @param {Project} project */
+function drawString(pen, { frames, stretch: [first, last], factor, place, value, range, isMarked }, project) {
+  const at = (/** @type {number} */ node) => {
+    const [u, v] = place(node);
+    return project(offset(frames, node, factor * u, factor * v));
+  };
+  // Whatever its colour, it stands out from the ground of either theme.
+  pen.lineCap = "round";
+  pen.lineWidth = 6.5;
+  pen.globalAlpha = 0.35;
+  pen.strokeStyle = inks().text;
+  path(pen, first, last, at);
+  pen.globalAlpha = 1;
+  pen.lineWidth = 4;
+  /** @type {number[][]} */
+  const dots = [];
+  let before;
+  for (let node = first; node <= last; node += 1) {
+    const here = at(node);
+    if (before) {
+      pen.strokeStyle = colourOf(value(node), range);
+      pen.beginPath();
+      pen.moveTo(before[0], before[1]);
+      pen.lineTo(here[0], here[1]);
+      pen.stroke();
     }
+    if (isMarked?.(node)) dots.push([here[0], here[1], value(node)]);
+    before = here;
+  }
+  pen.lineCap = "butt";
+  drawDots(pen, dots, range);
+}
+
+/** @param {Pen} pen @param {number[][]} dots places and values @param {[number, number]} range of the colours */
+function drawDots(pen, dots, range) {
+  pen.lineWidth = 1;
+  pen.strokeStyle = inks().panel;
+  for (const [x, y, value] of dots) {
+    pen.fillStyle = colourOf(value, range);
+    pen.beginPath();
+    pen.arc(x, y, DOT, 0, 2 * Math.PI);
+    pen.fill();
     pen.stroke();
   }
+}
 
-  /** North, east and down in a corner. @param {number} height */
-  function drawCompass(height) {
-    const { text, soft } = inks();
-    const [cosine, sine, up, flat] = [
-      Math.cos(view.azimuth),
-      Math.sin(view.azimuth),
-      Math.cos(view.elevation),
-      Math.sin(view.elevation),
-    ];
-    const [x, y, length] = [46, height - 46, 26];
-    pen.lineWidth = 1.5;
-    pen.font = "12px system-ui, sans-serif";
-    pen.textAlign = "center";
-    pen.textBaseline = "middle";
-    for (const [name, right, lower] of /** @type {[string, number, number][]} */ ([
-      ["N", -sine, -cosine * flat],
-      ["E", cosine, -sine * flat],
-      ["down", 0, up],
-    ])) {
-      pen.strokeStyle = soft;
-      pen.fillStyle = text;
-      pen.beginPath();
-      pen.moveTo(x, y);
-      pen.lineTo(x + length * right, y + length * lower);
-      pen.stroke();
-      pen.fillText(name, x + 1.4 * length * right, y + 1.4 * length * lower);
-    }
+/** Draws a line through places. @param {Pen} pen @param {number} first @param {number} last @param {(index: number) => number[]} at */
+function path(pen, first, last, at) {
+  pen.beginPath();
+  for (let index = first; index <= last; index += 1) {
+    const [x, y] = at(index);
+    if (index > first) pen.lineTo(x, y);
+    else pen.moveTo(x, y);
   }
+  pen.stroke();
+}
 
-  return {
-    element: canvas,
-    /** @param {Scene} next */
-    show(next) {
-      scene = next;
-      later();
-    },
-    /** Draws at once, in the frame of a caller. */
-    paint,
-    /** Draws anew, seen from elsewhere. */
-    turned: later,
-    /**
-     * Draws what is shown with another pen, as a file has it.
-     * @param {import("./svg-pen.js").Pen} other
-     */
-    drawWith(other) {
-      if (!scene) return;
-      pen = other;
-      drawAll(scene, canvas.clientWidth, canvas.clientHeight);
-      pen = screen;
-    },
-  };
+/** Draws north, east and down in a corner. @param {Pen} pen @param {View} view @param {number} height */
+function drawCompass(pen, view, height) {
+  const { text, soft } = inks();
+  const [cosine, sine, up, flat] = [
+    Math.cos(view.azimuth),
+    Math.sin(view.azimuth),
+    Math.cos(view.elevation),
+    Math.sin(view.elevation),
+  ];
+  const [x, y, length] = [46, height - 46, 26];
+  pen.lineWidth = 1.5;
+  pen.font = "12px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  /** @type {[string, number, number][]} */
+  const directions = [
+    ["N", -sine, -cosine * flat],
+    ["E", cosine, -sine * flat],
+    ["down", 0, up],
+  ];
+  for (const [name, right, lower] of directions) {
+    pen.strokeStyle = soft;
+    pen.fillStyle = text;
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(x + length * right, y + length * lower);
+    pen.stroke();
+    pen.fillText(name, x + 1.4 * length * right, y + 1.4 * length * lower);
+  }
 }
 
 /**

@@ -165,7 +165,8 @@ export function quantityTicks(chosen, onChange) {
       type: "checkbox",
       checked: names.has(name),
       onchange: () => {
-        box.checked ? names.add(name) : names.delete(name);
+        if (box.checked) names.add(name);
+        else names.delete(name);
         if (names.size) onChange(inOrder());
       },
     });

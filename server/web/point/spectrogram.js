@@ -209,7 +209,7 @@ export async function drawSpectrogram(place, table, { isLog, range, most }, sign
   const rows = frequency.map((/** @type {number} */ _, /** @type {number} */ bin) =>
     isMean[bin]
       ? Array(windows).fill(null)
-      : time.map((_, index) => table.columns.amplitude[index * bins + bin]),
+      : time.map((__, index) => table.columns.amplitude[index * bins + bin]),
   );
   const z = rows.map((/** @type {(number | null)[]} */ row) =>
     shown("amplitude", row).map((value) =>

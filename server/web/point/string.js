@@ -6,7 +6,7 @@ import { contactMap } from "./contacts.js";
 import { endsRequest, RECORD_ENDS, rotation } from "./rotation.js";
 import { snapshotsOf } from "../data/snapshots.js";
 import { withoutSnapshots } from "./no-snapshots.js";
-import { stringPlayer } from "./string-player.js";
+import { StringPlayer } from "./string-player.js";
 
 /**
  * @param {import("./part.js").PointContext} context
@@ -16,7 +16,7 @@ export function string(context) {
   const { duration } = context.point.scenario;
   const element = h("div", {});
   const turning = rotation(context);
-  /** @type {ReturnType<typeof stringPlayer> | null} */
+  /** @type {StringPlayer | null} */
   let player = null;
   /** Rotation and torque at bit and top. @type {import("./rotation.js").EndLine[]} */
   let ends = [];
@@ -32,7 +32,7 @@ export function string(context) {
       there.names.includes(name),
     );
     const hasForce = there.names.includes("normal_force");
-    player = stringPlayer([{ context, heading: "", there, statics }], async ([{ motion }], span) => {
+    player = new StringPlayer([{ context, heading: "", there, statics }], async ([{ motion }], span) => {
       await Promise.all([hasForce && motion && map.draw(motion, statics), turn(span)]);
     });
     fill(
@@ -66,7 +66,7 @@ export function string(context) {
     draw: redraw,
     request: () => {
       if (!player) return ends.length ? endsRequest(ends) : null;
-      const { from, to } = player.span();
+      const { from, to } = player.span;
       const turned = endsRequest(ends, { from, to });
       const forces = names.includes("normal_force")
         ? ['forces = snapshots.pivot(index="node", columns="time", values="normal_force")']

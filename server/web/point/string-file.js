@@ -1,0 +1,76 @@
+// Strings in motion as a file: all that is shown, one string below the other, with the scale and the time.
+
+import { colourOf } from "../draw/colours.js";
+import { inks } from "../draw/plots.js";
+import { SvgPen } from "../draw/svg-pen.js";
+import { h } from "../ui/dom.js";
+
+/** Height of the scale below the picture, and cells of its colours. */
+const [SCALE_HEIGHT, CELLS] = [44, 120];
+
+/** @typedef {{scene: import("../draw/string-scene.js").StringScene, heading: string}} Actor */
+/** Time and name of the scale, and the values at its ends. @typedef {{time: string, text: string, least: string, largest: string}} Words */
+
+/**
+ * Saves strings as a file.
+ * @param {"png" | "svg"} format
+ * @param {Actor[]} actors
+ * @param {Words} words
+ */
+export function saveStrings(format, actors, words) {
+  const width = Math.max(...actors.map(({ scene }) => scene.element.clientWidth));
+  const height = actors.reduce((sum, { scene }) => sum + scene.element.clientHeight, SCALE_HEIGHT);
+  const name = `string-in-motion-${words.time.replace(/[^\d.]+/g, "")}-s`;
+  if (format === "svg") {
+    const pen = new SvgPen(width, height);
+    drawFile(pen, actors, words, width, height);
+    download(new Blob([String(pen)], { type: "image/svg+xml" }), `${name}.svg`);
+    return;
+  }
+  const canvas = h("canvas", { width: 2 * width, height: 2 * height });
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  pen.scale(2, 2);
+  drawFile(pen, actors, words, width, height);
+  canvas.toBlob((blob) => blob && download(blob, `${name}.png`), "image/png");
+}
+
+/** @param {import("../draw/svg-pen.js").Pen} pen @param {Actor[]} actors @param {Words} words @param {number} width @param {number} height */
+function drawFile(pen, actors, words, width, height) {
+  const { panel, text } = inks();
+  pen.fillStyle = panel;
+  pen.fillRect(0, 0, width, height);
+  for (const { scene, heading } of actors) {
+    scene.drawWith(pen);
+    pen.fillStyle = text;
+    pen.font = "14px system-ui, sans-serif";
+    pen.textAlign = "left";
+    pen.fillText(heading, 12, 20);
+    pen.translate(0, scene.element.clientHeight);
+  }
+  pen.font = "13px system-ui, sans-serif";
+  pen.textBaseline = "middle";
+  pen.fillStyle = text;
+  pen.textAlign = "left";
+  const middle = SCALE_HEIGHT / 2;
+  pen.fillText(`${words.time}   ${words.text}`, 12, middle);
+  const [left, right] = [width * 0.45, width * 0.85];
+  pen.textAlign = "right";
+  pen.fillText(words.least, left - 8, middle);
+  pen.textAlign = "left";
+  pen.fillText(words.largest, right + 8, middle);
+  for (let cell = 0; cell < CELLS; cell += 1) {
+    pen.fillStyle = colourOf(cell, [0, CELLS - 1]);
+    pen.fillRect(left + ((right - left) * cell) / CELLS, middle - 6, (right - left) / CELLS + 0.5, 12);
+  }
+}
+
+/**
+ * Gives the reader a file.
+ * @param {Blob} blob
+ * @param {string} name
+ */
+function download(blob, name) {
+  const url = URL.createObjectURL(blob);
+  h("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}

@@ -6,9 +6,7 @@ import contextlib
 import csv
 import io
 import json
-import math
 import os
-import random
 import re
 import sqlite3
 import subprocess
@@ -29,14 +27,6 @@ __all__ = ["browser", "named", "opened", "troubles"]
 
 PRESETS = REPOSITORY / "scenario" / "presets"
 AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}
-
-
-def module(page: Page, name: str, expression: str, argument: Any = None) -> Any:
-    """What an expression gives that has a module of the page as `module`, and `argument`."""
-    source = page.locator("script[type=module]").first.get_attribute("src") or ""
-    base = source.rpartition("/")[0]
-    call = f"async ([path, argument]) => {{ const module = await import(path); return ({expression}); }}"
-    return page.evaluate(call, [f"{base}/{name}", argument])
 
 
 @pytest.mark.parametrize("name", ["well.toml", "well.json"])
@@ -294,56 +284,6 @@ def test_the_keyboard_stays_at_a_sweep_whose_row_changes(opened: Opens, client: 
     expect(page.get_by_role("link", name="changes")).to_be_focused()
     sweep.change(name="has changed")
     expect(page.get_by_role("link", name="has changed")).to_be_focused()
-
-
-PACE = """(() => {
-    const real = Date.now;
-    const pace = new module.Pace();
-    try {
-        for (const [at, progress, running, state] of argument.seen) {
-            Date.now = () => 1000 * at;
-            pace.note({ state, progress, counts: { total: 100, running } });
-        }
-        pace.pointSeconds = argument.seconds;
-        return pace.left();
-    } finally {
-        Date.now = real;
-    }
-})()"""
-
-
-@pytest.mark.parametrize(
-    ("seen", "seconds", "left"),
-    [
-        # A tenth in 10 s: nine more of these.
-        ([(0, 0.0, 2, "running"), (10, 0.1, 2, "running")], None, 90),
-        # An hour's pause and a wait for a worker change nothing.
-        (
-            [
-                (0, 0.0, 0, "running"),
-                (1000, 0.0, 2, "running"),
-                (1010, 0.1, 2, "paused"),
-                (4610, 0.1, 2, "running"),
-                (4620, 0.2, 2, "running"),
-            ],
-            None,
-            80,
-        ),
-        # What was long ago does not count.
-        ([(0, 0.0, 2, "running"), (1000, 0.5, 2, "running"), (1200, 0.6, 2, "running")], None, 800),
-        # A page just opened goes by what a point took: 75 points, two at a time.
-        ([(0, 0.25, 2, "running")], 4, 150),
-        ([(0, 0.25, 2, "running")], None, None),
-        # Nothing runs.
-        ([(0, 0.0, 2, "running"), (10, 0.1, 0, "running")], 4, None),
-        ([(0, 0.0, 2, "running"), (10, 0.1, 2, "paused")], 4, None),
-    ],
-)
-def test_the_time_left_goes_by_how_fast_points_were_while_they_ran(
-    opened: Opens, seen: list[tuple[float, float, int, str]], seconds: float | None, left: float | None
-) -> None:
-    found = module(opened(), "data/pace.js", PACE, {"seen": seen, "seconds": seconds})
-    assert found == (left if left is None else pytest.approx(left))
 
 
 def test_the_time_left_is_unknown_while_a_sweep_waits(idle: str, opened: Opens) -> None:
@@ -809,21 +749,6 @@ def test_a_finer_grid_leaves_the_coarse_cells_in_the_map(opened: Opens, client: 
     assert set(crosses) == shown_points
 
 
-def test_first_order_indices_are_those_of_the_ishigami_function(opened: Opens) -> None:
-    # Exact shares of f = sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1 over (-pi, pi)^3 (Ishigami and Homma 1990).
-    exact = [0.3139, 0.4424, 0.0]
-    rng = random.Random(7)
-    points = [[rng.uniform(-math.pi, math.pi) for _ in range(3)] for _ in range(2000)]
-    values = [math.sin(a) + 7 * math.sin(b) ** 2 + 0.1 * c**4 * math.sin(a) for a, b, c in points]
-    found = module(opened(), "data/sensitivity.js", "module.shares(...argument)", [list(zip(*points, strict=True)), values])
-    for share, index in zip(found, exact, strict=True):
-        assert share["first"] == pytest.approx(index, abs=0.04)
-        low, high = share["interval"]
-        assert low <= index <= high
-        assert high - low < 0.15
-        assert share["total"] is None
-
-
 def test_an_incomplete_grid_says_how_its_indices_are_estimated(opened: Opens, client: Client) -> None:
     axes = {"flow_rate": Range(0.01, 0.04, 4), "mud_density": Range(1200, 1800, 3)}
     sweep = client.submit("paper-200m", set=SHORT, axes=axes, outputs="summary")
@@ -969,20 +894,6 @@ def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Cli
     expect(tabs.get_by_role("link", name=f"Failures ({failed})" if failed else "Failures", exact=True)).to_be_visible()
     sweep.resume().wait(timeout=120.0)
     expect(tabs.get_by_role("link", name="Failures (3)")).to_be_visible()
-
-
-@pytest.mark.parametrize(
-    ("least", "largest"),
-    [(2.27, 2.51), (1.1, 4.9), (1.0, 1.0000001), (9.7, 9.9), (0.0031, 0.0049), (1e-7, 1e3), (1e-200, 1e200)],
-)
-def test_a_logarithmic_scale_has_ticks_in_any_range(opened: Opens, least: float, largest: float) -> None:
-    ends = [math.log10(least), math.log10(largest)]
-    found = module(opened(), "draw/plots.js", "module.logTicks(...argument)", ends)
-    assert 2 <= len(found["tickvals"]) <= 13
-    assert all(ends[0] - 1e-9 <= value <= ends[1] + 1e-9 for value in found["tickvals"])
-    said = [float(text) for text in found["ticktext"]]
-    assert said == pytest.approx([10**value for value in found["tickvals"]], rel=1e-9)
-    assert len(set(said)) == len(said)
 
 
 def test_a_difference_tells_what_else_the_sweeps_differ_in(opened: Opens, named: Sweep, other: Sweep) -> None:

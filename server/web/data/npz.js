@@ -14,14 +14,14 @@ const IN_EXTRA = 0xffffffff;
  * @returns {Promise<{columns: Record<string, Float32Array>, attributes: any}>} in single precision
  */
 export async function getArrays(path, query, signal) {
-  return arrays(await getBytes(path, { ...query, format: "npz" }, signal));
+  return readArrays(await getBytes(path, { ...query, format: "npz" }, signal));
 }
 
 /**
  * The arrays of an uncompressed archive, each a file `NAME.npy`.
  * @param {ArrayBuffer} archive
  */
-function arrays(archive) {
+export function readArrays(archive) {
   const view = new DataView(archive);
   /** @type {Record<string, Float32Array>} */
   const columns = {};

@@ -1,0 +1,59 @@
+// Orbits as seen downhole, and lines of spectra with their modes.
+
+import "./browser.js";
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { near } from "./browser.js";
+import { modeOf, multiple, seenDownhole } from "../../draw/orbit.js";
+
+test("the low side is down in the picture", () => {
+  // A node that lies on the low side, wherever that is.
+  for (const angle of [0, 1, Math.PI, -2.5]) {
+    const { across, up } = seenDownhole([3 * Math.cos(angle)], [3 * Math.sin(angle)], angle);
+    near(up[0], -3);
+    assert.ok(Math.abs(across[0]) < 1e-12);
+  }
+});
+
+test("forward whirl, from u towards v, goes clockwise", () => {
+  const angles = [0, 0.1];
+  const { across, up } = seenDownhole(angles.map(Math.cos), angles.map(Math.sin), 0.7);
+  assert.ok(across[0] * up[1] - up[0] * across[1] < 0);
+  near(Math.hypot(across[1], up[1]), 1);
+});
+
+test("multiples of a frequency are those within half the resolution, up to twelve", () => {
+  assert.equal(multiple(4.32, 2.16, 0.05, "rotation"), "2 × rotation");
+  assert.equal(multiple(-4.33, 2.16, 0.05, "rotation"), "2 × rotation");
+  assert.equal(multiple(4.36, 2.16, 0.05, "rotation"), "");
+  assert.equal(multiple(24, 2, 0.05, "rotation"), "12 × rotation");
+  assert.equal(multiple(26, 2, 0.05, "rotation"), "");
+  assert.equal(multiple(0.5, 2, 0.05, "rotation"), "");
+  assert.equal(multiple(1, 0, 0.05, "rotation"), "");
+});
+
+/** Frequency of the mode of a line, and how many modes are about it if that says nothing. */
+function beside(line, frequencies, resolution, whirl = 1) {
+  const modes = frequencies.map((frequency_hz) => ({ frequency_hz, whirl, kind: "lateral" }));
+  const { mode, among } = modeOf(line, modes, resolution);
+  return [mode?.frequency_hz ?? null, among?.count ?? null];
+}
+
+const ALONE = [0.9, 2, 3.1, 4.4];
+
+test("a line has the mode that is within half the resolution and a hundredth of its frequency", () => {
+  assert.deepEqual(beside(2.03, ALONE, 0.1), [2, null]);
+  assert.deepEqual(beside(2.0699, ALONE, 0.1), [2, null]);
+  assert.deepEqual(beside(2.1, ALONE, 0.1), [null, null]);
+});
+
+test("a mode of the other sense of whirl is not that of a line, but motion to and fro is of both", () => {
+  assert.deepEqual(beside(-2.03, ALONE, 0.1), [null, null]);
+  assert.deepEqual(beside(-2.03, ALONE, 0.1, -1), [2, null]);
+  assert.deepEqual(beside(-2.03, ALONE, 0.1, 0), [2, null]);
+});
+
+test("where modes are dense they are counted instead", () => {
+  const dense = Array.from({ length: 199 }, (_, index) => 0.05 * (index + 1));
+  assert.deepEqual(beside(2.03, dense, 0.1), [null, 20]);
+});

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -58,3 +59,20 @@ class Service:
         self._drain.join(60.0)
         assert self.process.stderr is not None
         self.process.stderr.close()
+
+
+def make_token(data: Path, scope: str) -> str:
+    command = [binary(), "token", "create", "--owner", "anne", "--scope", scope, "--data", str(data)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def tokens_of(data: Path) -> set[str]:
+    """The identifiers of the tokens there are."""
+    command = [binary(), "token", "list", "--json", "--data", str(data)]
+    listed = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    return {token["id"] for token in listed}
+
+
+def revoke_token(data: Path, token: str) -> None:
+    command = [binary(), "token", "revoke", token, "--data", str(data)]
+    subprocess.run(command, capture_output=True, text=True, check=True)

@@ -2,32 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from drillsweep import Client, Forbidden, Unauthorized
-from service import SHORT, Service, binary
-
-
-def make_token(data: Path, scope: str) -> str:
-    command = [binary(), "token", "create", "--owner", "anne", "--scope", scope, "--data", str(data)]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
-
-
-def tokens_of(data: Path) -> set[str]:
-    """The identifiers of the tokens there are."""
-    command = [binary(), "token", "list", "--json", "--data", str(data)]
-    listed = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-    return {token["id"] for token in listed}
-
-
-def revoke_token(data: Path, token: str) -> None:
-    command = [binary(), "token", "revoke", token, "--data", str(data)]
-    subprocess.run(command, capture_output=True, text=True, check=True)
+from service import SHORT, Service, make_token
 
 
 @pytest.fixture

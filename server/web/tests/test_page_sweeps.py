@@ -19,11 +19,9 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from browsing import GONE, Opens, drag, drawn, requested, taken, until
 from drillsweep import Axis, Client, Outputs, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
-from test_page import GONE, Opens, browser, drag, drawn, named, opened, requested, taken, troubles, until
-
-__all__ = ["browser", "named", "opened", "troubles"]
 
 PRESETS = REPOSITORY / "scenario" / "presets"
 AXES: dict[str, Any] = {"flow_rate": {"values": [0.01, 0.04]}, "mud_density": {"values": [1200, 1500]}}

@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
-import os
 import re
-import subprocess
-import sys
 from itertools import pairwise
 from pathlib import Path
 from urllib.parse import parse_qs
@@ -16,13 +10,23 @@ from urllib.parse import parse_qs
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from browsing import (
+    MINUS,
+    Opens,
+    clock,
+    drawn,
+    pixels,
+    run_curl,
+    run_python,
+    said,
+    scene,
+    shown_lines,
+    taken,
+    trace,
+    until,
+)
 from drillsweep import Client, DrillsweepWarning, Sweep
-from service import SHORT, Service
-from test_page import MINUS, Opens, browser, drawn, opened, taken, troubles, until
-from test_page_motion import clock, pixels, recorded, scene, trace
-from test_tokens import make_token
-
-__all__ = ["browser", "opened", "recorded", "troubles"]
+from service import SHORT, Service, make_token
 
 
 @pytest.fixture(scope="module")
@@ -80,51 +84,6 @@ def test_the_keyboards_focus_stays_where_controls_are_made_anew(opened: Opens, s
     until(page, lambda: colour.input_value() != before)
     until(page, lambda: f"colour={colour.input_value()}" in page.url)
     expect(colour).to_be_focused()
-
-
-def shown_lines(page: Page) -> dict[str, str]:
-    """The lines that made a view, by language."""
-    details = page.locator("details.lines")
-    if details.get_attribute("open") is None:
-        details.locator("summary").click()
-    expect(details.locator("pre").first).to_be_visible()
-    return dict(zip(details.locator("h2").all_text_contents(), details.locator("pre").all_text_contents(), strict=True))
-
-
-def run_curl(lines: str, directory: Path, token: str = "") -> dict[str, list[str]]:
-    """The columns of each answer of the lines, run by a shell; those of a document are its keys."""
-    directory.mkdir()
-    environment = {**os.environ, "DRILLSWEEP_TOKEN": token}
-    command = ["sh", "-e", "-c", lines]
-    result = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True, check=False)
-    assert result.returncode == 0, f"{lines}\n{result.stderr}"
-    answers = {path.stem: path.read_text() for path in directory.iterdir()} or {"": result.stdout}
-    return {name: columns_of(text) for name, text in answers.items()}
-
-
-def columns_of(text: str) -> list[str]:
-    if text.startswith("{"):
-        return list(json.loads(text))
-    rows = list(csv.reader(io.StringIO("".join(line for line in text.splitlines(True) if not line.startswith("#")))))
-    assert len(rows) > 1, text
-    return rows[0]
-
-
-def run_python(lines: str, token: str = "") -> dict[str, list[str]]:
-    """The columns of each table that the lines make, in a process of their own."""
-    tell = (
-        "\nimport json, pandas"
-        "\nfound = {name: value for name, value in globals().items()}"
-        "\nfor name, value in list(found.items()):"
-        "\n    if isinstance(value, list): found |= {f'{name}[{at}]': one for at, one in enumerate(value)}"
-        "\nprint('\\n' + json.dumps({name: [str(column) for column in value.columns]"
-        " for name, value in found.items() if isinstance(value, pandas.DataFrame)}))"
-    )
-    environment = {**os.environ, "MPLBACKEND": "Agg", "DRILLSWEEP_TOKEN": token}
-    command = [sys.executable, "-c", lines + tell]
-    result = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert result.returncode == 0, f"{lines}\n{result.stderr}"
-    return dict(json.loads(result.stdout.splitlines()[-1]))
 
 
 PROFILE = ["measured_depth_top", "measured_depth_bottom"]
@@ -228,12 +187,6 @@ def test_the_lines_that_submit_and_list_carry_the_token_too(opened: Opens, troub
     finally:
         service.stop()
     troubles[:] = [text for text in troubles if "status of 401" not in text]
-
-
-def said(bias: float) -> str:
-    """A relative bias as the page writes it."""
-    sign = "+" if bias > 0 else MINUS
-    return "below 0.01 %" if abs(bias) < 1e-4 else f"{sign}{float(f'{abs(100 * bias):.2g}'):g} %"
 
 
 def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Opens, client: Client) -> None:

@@ -11,13 +11,22 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, Route, expect
 
+from browsing import (
+    COMPARED,
+    MINUS,
+    REFUSED,
+    Opens,
+    drag,
+    drawn,
+    run_curl,
+    run_python,
+    said,
+    shown_lines,
+    taken,
+    until,
+)
 from drillsweep import Client, Sweep
-from service import SHORT, Service
-from test_page import COMPARED, MINUS, REFUSED, Opens, browser, drag, drawn, named, opened, taken, troubles, until
-from test_page_points import run_curl, run_python, said, shown_lines
-from test_tokens import make_token
-
-__all__ = ["browser", "named", "opened", "troubles"]
+from service import SHORT, Service, make_token
 
 
 @pytest.fixture(scope="module")

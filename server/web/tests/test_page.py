@@ -3,124 +3,19 @@
 from __future__ import annotations
 
 import functools
-import json
 import re
-import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Literal
-from urllib.parse import parse_qs
+from typing import Literal
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Locator, Page, Request, Route, expect, sync_playwright
+from playwright.sync_api import Locator, Page, Request, Route, expect
 
+from browsing import COMPARED, GONE, MINUS, NASTY, REFUSED, Opens, drag, drawn, requested, until
 from drillsweep import Axis, Client, Outputs, Sweep
-from service import SHORT, Service
-from test_tokens import make_token, revoke_token, tokens_of
+from service import SHORT, Service, make_token, revoke_token, tokens_of
 
-CHROMIUM = "/usr/bin/chromium"
-OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
-NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="taken"</script>'
-"""A name that would be markup where it was taken for it."""
-GONE = re.compile(r"net::ERR_|502|Failed to load resource")
-"""What a browser itself writes on its console of a server that is gone."""
-REFUSED = re.compile("status of 40[13]")
-"""What it writes of every answer that refuses."""
-MINUS = "\N{MINUS SIGN}"
-COMPARED = {
-    "profiles": "Profiles",
-    "orbit": "Orbits",
-    "history": "Histories",
-    "rotation": "Rotation and torque",
-    "spectrum": "Full spectra",
-    "well": "Well",
-    "energy": "Energy",
-}
-"""Views of a comparison that have one picture, and its name."""
 POINT_VIEWS = ["profiles", "motion", "well", "energy", "about"]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    assert Path(CHROMIUM).exists(), f"{CHROMIUM} is missing: apt install chromium"
-    # A machine that does other work beside takes its time.
-    expect.set_options(timeout=20_000)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
-        yield browser
-        browser.close()
-
-
-Opens = Callable[..., Page]
-
-
-@pytest.fixture
-def troubles() -> list[str]:
-    """What pages have complained of; a test fails by them at its end, and takes away those that it caused."""
-    return []
-
-
-@pytest.fixture
-def opened(browser: Browser, server: str, troubles: list[str]) -> Iterator[Opens]:
-    """Opens a view of the page. Errors on its console, violations of its policy among them, fail the test."""
-    contexts = []
-
-    def open_view(view: str = "", address: str = server, **options: Any) -> Page:
-        context = browser.new_context(**options)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.goto(f"{address}/{view}")
-        return page
-
-    yield open_view
-    for context in contexts:
-        context.close()
-    assert troubles == []
-
-
-@pytest.fixture(scope="module")
-def named(client: Client) -> Sweep:
-    """Six points of three parameters, complete, with a name and a tag of markup."""
-    axes: dict[str, Axis] = {
-        "flow_rate": [0.01, 0.04],
-        "mud_density": [1200, 1800],
-        "operation.rotation_speed_rpm": [90, 120],
-    }
-    return client.submit("paper-200m", set=SHORT, axes=axes, name=NASTY, tags=["<b>bold</b>"]).wait(timeout=120.0)
-
-
-def drawn(page: Page, name: str) -> Locator:
-    """A picture, once plotly has drawn it."""
-    picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator(".main-svg"))
-    # WebGL without a graphics card takes its time.
-    expect(picture.first).to_be_visible(timeout=30_000)
-    return picture.first
-
-
-def until(page: Page, holds: Callable[[], bool]) -> None:
-    """Waits until something holds; the page's policy forbids Playwright's own way, which evaluates a text."""
-    deadline = time.monotonic() + 30.0
-    while not holds():
-        assert time.monotonic() < deadline, "it never came to hold"
-        page.wait_for_timeout(50)
-
-
-def taken(page: Page) -> None:
-    """Waits until the page has taken the answers that have come: those of the server come in order."""
-    page.evaluate("async () => { await (await fetch('/livez')).text(); await new Promise(requestAnimationFrame); }")
-
-
-def drag(page: Page, over: Locator, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """Drags the mouse over a part of the page, between two places given as parts of its width and height."""
-    box = over.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + start[0] * box["width"], box["y"] + start[1] * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + end[0] * box["width"], box["y"] + end[1] * box["height"], steps=8)
-    page.mouse.up()
 
 
 def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:
@@ -244,12 +139,6 @@ def test_a_survey_is_pasted_from_a_spreadsheet(opened: Opens) -> None:
     survey.fill("0 60 0\n100 nonsense 7")
     expect(scenario.get_by_text("Line 2 does not begin with three numbers")).to_be_visible()
     expect(page.get_by_role("button", name="Submit")).to_be_disabled()
-
-
-def requested(page: Page) -> dict[str, Any]:
-    """The request of a new sweep that the page's link holds."""
-    query = parse_qs(page.url.partition("?")[2])
-    return dict(json.loads(query.get("request", ["{}"])[0]))
 
 
 @pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "difference", "table", "failures"])

@@ -4,46 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import expect
 
-from drillsweep import Client, Sweep
-from service import SHORT
-from test_page import Opens, browser, drawn, opened, troubles, until
-
-__all__ = ["browser", "opened", "troubles"]
-
-
-@pytest.fixture(scope="module")
-def recorded(client: Client) -> Sweep:
-    """One point with 50 snapshots, of 0.01 to 0.49 s."""
-    snapshots = {"rate_hz": 100, "window": {"from": 0.01, "to": 0.5}}
-    changes = SHORT | {"recording.snapshots": snapshots}
-    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="snapshots").wait(timeout=120.0)
-
-
-def scene(page: Page) -> Locator:
-    """The picture of the string, once it is drawn."""
-    picture = page.get_by_role("application", name=re.compile("The string moving"))
-    expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
-    return picture
-
-
-def pixels(picture: Locator) -> str:
-    return str(picture.evaluate("canvas => canvas.toDataURL()"))
-
-
-def clock(page: Page) -> float:
-    return float(str(page.locator("output").text_content()).removesuffix(" s"))
-
-
-def trace(picture: Locator, number: int) -> dict[str, Any]:
-    """What plotly was given to draw."""
-    read = "(place, number) => { const { x, y, z } = place.data[number]; return { x: [...x], y: [...y], z }; }"
-    return dict(picture.evaluate(read, number))
+from browsing import Opens, clock, drawn, pixels, scene, trace, until
+from drillsweep import Sweep
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

@@ -17,7 +17,7 @@ const VIEWS = {
   submit: () => import("./submit/view.js"),
 };
 
-/** How long a view may take before the page says that it is loading. */
+/** Time that a view may take before the page shows that it is loading. */
 const SLOW_MS = 250;
 
 const main = element("main");
@@ -58,7 +58,7 @@ async function show() {
     );
     return;
   }
-  // What comes at once needs no such word, which would hold it up.
+  // A view that comes at once needs no such word, which would hold it up.
   const waits = setTimeout(
     () => isElsewhere && fill(main, h("p", { class: "empty", role: "status" }, "Loading…")),
     SLOW_MS,

@@ -7,7 +7,7 @@ const preload = (() => {
   const WHOLE = 3000;
   /** Sweeps on a page of the list. */
   const PAGE = 100;
-  /** How long an answer waits for the view to ask for it; later it may not be true any more. */
+  /** Time that an answer waits for the view to request it; later it may be out of date. */
   const KEPT_MS = 3000;
 
   /**
@@ -129,12 +129,12 @@ const preload = (() => {
   function send(url) {
     if (isOver || taken.has(url)) return;
     const answer = fetch(url, { headers: { Accept: "application/json" } });
-    // Who asks for it hears of it.
+    // The view that requests it gets the error.
     answer.catch(() => {});
     answers.set(url, answer);
   }
 
-  /** What was sent for, once it has come; nothing where there is none. @param {string} url */
+  /** Document of a sent request, once it has arrived; `null` if there is none. @param {string} url */
   async function received(url) {
     const answer = await answers.get(url);
     return answer?.ok ? answer.clone().json() : null;
@@ -179,7 +179,7 @@ const preload = (() => {
   }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
-  // What fails of these, the view finds out when it asks itself.
+  // The view reports failures when it sends the request itself.
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
   if (view === "point" && first.query.get("view") === "motion")
     sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});

@@ -5,7 +5,7 @@ import { choice, debounced, fill, h } from "../ui/dom.js";
 import { MOST } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
 
-/** How long typing rests before sweeps are searched. */
+/** Rest of typing before sweeps are searched. */
 const REST_MS = 200;
 /** Sweeps that are offered at once. */
 export const OFFERED = 100;

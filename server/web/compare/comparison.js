@@ -26,7 +26,7 @@ import { say } from "../data/units.js";
  */
 
 /**
- * Why a point has no result at all; nothing of one that has.
+ * Reason for a point without any result; empty if it has one.
  * @param {any} detail
  */
 function withoutResult({ summary, state, error }) {
@@ -35,11 +35,11 @@ function withoutResult({ summary, state, error }) {
   return state === "cancelled" ? "it was cancelled" : `it is ${state}, without results yet`;
 }
 
-/** What a point lacks that a view needs, in words. */
+/** Data that a view needs and a point lacks, in words. */
 export class Lacking extends Error {}
 
 /**
- * What a view needs of each point, of those that have it; what the others lack is said.
+ * Reads data from each point that has them, and reports the data that the others lack.
  * @template T
  * @param {Comparison} comparison
  * @param {(point: Compared) => Promise<T>} read

@@ -1,4 +1,5 @@
-// What points are compared by side by side, a picture each with one scale of colours, and rotation at the ends of the string.
+// Views with a picture for each point, side by side on one scale of colours, and rotation at the ends of the
+// string.
 
 import { each, Lacking, noteNode } from "./comparison.js";
 import { fill, h } from "../ui/dom.js";
@@ -15,7 +16,7 @@ import { shown } from "../data/units.js";
 /** @typedef {import("./comparison.js").Compared} Compared */
 
 /**
- * What the views of a point are made with, of one that is compared.
+ * Data and callbacks that views of a point take, for a compared point.
  * @param {Comparison} comparison
  * @param {Compared} point
  * @returns {import("../point/part.js").PointContext}
@@ -77,7 +78,7 @@ export async function drawSpectrograms(place, comparison) {
 }
 
 /**
- * What there is of a point's snapshots; it is said where there are none.
+ * Describes a point's snapshots; reports a point without any.
  * @param {Comparison} comparison @param {Compared} point
  */
 async function snapshotsThere(comparison, point) {

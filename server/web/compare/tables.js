@@ -1,4 +1,4 @@
-// What points are compared by in numbers and words: a row a fact, a column a point.
+// Tables that compare points in numbers and words: a row for each fact, a column for each point.
 
 import { get } from "../data/api.js";
 import { Biases } from "../data/biases.js";
@@ -102,7 +102,7 @@ async function loadBiases(id, signal) {
   return biases;
 }
 
-/** Which effects take part, and why. @param {HTMLElement} place @param {Comparison} comparison */
+/** Draws the effects that take part, with reasons. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawEffects(place, comparison) {
   const found = await each(comparison, async (point) => {
     const plan = await get(`${point.path}/plan`, {}, comparison.drawing);
@@ -147,7 +147,7 @@ export async function drawModes(place, comparison) {
   );
 }
 
-/** How far the numbers can be trusted. @param {HTMLElement} place @param {Comparison} comparison */
+/** Draws the errors of the numbers. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawAccuracy(place, comparison) {
   const found = await each(
     comparison,
@@ -165,7 +165,7 @@ export async function drawAccuracy(place, comparison) {
   );
 }
 
-/** What the runs cost. @param {HTMLElement} place @param {Comparison} comparison */
+/** Draws the cost of the runs. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawCost(place, comparison) {
   const found = await each(comparison, async (point) => costFacts(point.detail));
   drawTable(

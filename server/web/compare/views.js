@@ -332,7 +332,7 @@ async function drawSpectra(place, comparison) {
   return draw(place, traces, { ...layout, shows: range }, comparison.signal);
 }
 
-/** How far compared spectra are shown [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
+/** Highest frequency of compared spectra [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
 export function comparedRange({ query, points }) {
   return spectrumRange(query, comparedRate(points));
 }

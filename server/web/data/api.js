@@ -1,6 +1,6 @@
 // Requests to the service, and whether it can be reached.
 
-/** What the service says is wrong with a request (RFC 9457). */
+/** A problem that the service reports (RFC 9457). */
 export class Problem extends Error {
   /** @param {number} status @param {any} document */
   constructor(status, document) {
@@ -25,13 +25,13 @@ export const connection = new EventTarget();
 
 const FIRST_RETRY_MS = 1000;
 const LONGEST_RETRY_MS = 30_000;
-/** How long a stream that the service refuses is not asked for again. */
+/** Pause before a refused stream is requested again. */
 const REFUSED_MS = 5000;
 let isLost = false;
 
 export const address = preload.address;
 
-/** What every answer waits for. @type {Promise<unknown>} */
+/** Work that every answer waits for. @type {Promise<unknown>} */
 let needed = Promise.resolve();
 
 /**
@@ -42,7 +42,7 @@ export function answerAfter(work) {
   needed = work;
 }
 
-/** How many requests for what views show have no answer yet. */
+/** Requests of views without an answer yet. */
 let open = 0;
 
 /** Whether answers are still to come. */

@@ -1,4 +1,4 @@
-// What verifying a sample of a sweep's points has found, beside the numbers that it touches.
+// Biases found by verifying a sample of a sweep's points, shown next to the affected numbers.
 
 import { get } from "./api.js";
 import { number, say } from "./units.js";

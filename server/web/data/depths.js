@@ -8,7 +8,7 @@ export class Depths {
   /** @type {Map<number, number>} */
   #depths = new Map();
   #isAsked = false;
-  /** Whether a name was told without the depth of its node. */
+  /** Whether a name was shown without the depth of its node. */
   isMissed = false;
 
   /**
@@ -22,7 +22,7 @@ export class Depths {
     try {
       await this.#read(sweep, signal);
     } catch (error) {
-      // What could not be reached is asked for with the next result.
+      // An unreachable service is asked again with the next result.
       this.#isAsked = error instanceof Problem;
     }
   }

@@ -32,7 +32,7 @@ export function layered(xs, ys, requests) {
 }
 
 /**
- * Where cells end: halfway to the next of the values that there are.
+ * Ends of cells: halfway to the next value.
  * @param {number[]} values of a layer; of more than one, the picture finds the ends itself
  * @param {number[]} all that there are, in order
  */

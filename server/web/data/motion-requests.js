@@ -126,7 +126,7 @@ export function keptWindow(point) {
     : { from: 0, to: point.scenario.duration };
 }
 
-/** How the samples of a spectrum are weighted, as the link says. @param {URLSearchParams} query */
+/** Weighting of a spectrum's samples, from the link. @param {URLSearchParams} query */
 export function spectrumWeighting(query) {
   return query.get("window") === "rectangular" ? "rectangular" : "hann";
 }
@@ -140,7 +140,7 @@ export function rangesOf(rate) {
 }
 
 /**
- * How far a spectrum is shown, as the link says [Hz].
+ * Highest frequency of a spectrum, from the link [Hz].
  * @param {URLSearchParams} query
  * @param {number} rate of the samples [Hz]
  */

@@ -3,7 +3,7 @@
 import { getBytes } from "./api.js";
 
 const LOCAL_FILE = 0x04034b50;
-/** What stands in the place of a length that a 64-bit field holds. */
+/** Mark in the place of a length that a 64-bit field holds. */
 const IN_EXTRA = 0xffffffff;
 
 /**
@@ -42,7 +42,7 @@ export function readArrays(archive) {
 }
 
 /**
- * What the header of an array says: the type of its values, and where they begin.
+ * Type of an array's values, and their first byte, from its header.
  * @param {DataView} view
  * @param {number} start
  */

@@ -1,4 +1,4 @@
-// How much time a sweep still takes: by how fast it went while points of it ran. Pauses and waits for a worker say nothing of that.
+// The time left of a sweep, from its pace while its points ran; pauses and waits for a worker do not count.
 
 /** Running time that the newest look at a sweep's speed reaches back [ms]. */
 const RECENT_MS = 120_000;

@@ -1,4 +1,4 @@
-// Which parameter a result depends on: shares of its variance, from the points of a sweep.
+// Sensitivities of a result: the parameters' shares of its variance, from the points of a sweep.
 
 /** Values up to which each is a group of its own; more are grouped, unless they repeat. */
 const FEW_VALUES = 10;

@@ -1,4 +1,4 @@
-// What a reader chooses for this browser: theme and units. The link does not hold these.
+// Settings of a reader in this browser: theme and units. The link does not hold them.
 
 /** `change` when a setting has changed. */
 export const settings = new EventTarget();

@@ -20,7 +20,7 @@ const TAKEN = 450_000;
  */
 
 /**
- * What there is of snapshots; null where the point has none.
+ * Describes a point's snapshots; `null` if it has none.
  * @param {Source} source
  * @returns {Promise<{names: string[], nodes: number, count: number, first: number, interval: number} | null>}
  */

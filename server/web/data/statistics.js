@@ -2,7 +2,7 @@
 
 import { verifiedWindow } from "./motion-requests.js";
 
-/** What the service calls them, and what the page does. @type {[string, string][]} */
+/** Statistics by their names in the service, with those on the page. @type {[string, string][]} */
 export const STATISTICS = [
   ["orbit_radius_rms", "Orbit size (rms about the mean)"],
   ["orbit_mean_radius", "Mean radius"],
@@ -51,7 +51,7 @@ export function spectrumWindow(point, window) {
 }
 
 /**
- * How names of a summary's columns write a recorded node: its number, or the depth for which it is recorded.
+ * Suffix of a recorded node in the names of a summary's columns: its number, or the depth for which it is recorded.
  * @param {any} scenario
  * @param {number} node as the service numbers it
  * @param {number} depth its measured depth [m]
@@ -67,7 +67,7 @@ export function recordedAs({ recording: { nodes } }, node, depth) {
 }
 
 /**
- * What stands beside a statistic of a window: its bias where that is the one that verifying looks at, else nothing.
+ * Bias to show next to a statistic of a window: empty unless verifying used that window.
  * @param {any} point
  * @param {{from: number, to: number}} window [s]
  * @param {(name: string) => string} bias

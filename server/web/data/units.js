@@ -1,4 +1,4 @@
-// What the names of columns and of a scenario's fields stand for, and the units in which they are shown.
+// Labels and units of columns and of a scenario's fields.
 
 import { getNeeded } from "./api.js";
 import { unitSystem } from "./settings.js";
@@ -26,7 +26,7 @@ const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
 const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 
 /**
- * What a name stands for: a column, with the node, window and variant that its name may carry, or a path of the scenario.
+ * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
  * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
  */
@@ -46,7 +46,7 @@ function parse(name) {
 }
 
 /**
- * What a picture calls a name, such as `orbit radius rms, node 49`.
+ * Label of a name in pictures, such as `orbit radius rms, node 49`.
  * @param {string} name
  */
 export function label(name) {

@@ -1,9 +1,9 @@
-// Where nodes and their frames lie in space: north, east and down from the top of the string.
+// Positions of nodes and their frames in space: north, east and down from the top of the string.
 
 /** @typedef {[north: number, east: number, down: number]} Vector */
 
 /**
- * Of each node its place on the axis of the hole, and the two directions across it in which u and v are counted.
+ * Place of each node on the axis of the hole, and the two directions across it in which u and v are counted.
  * @param {any} statics columns of the table
  * @returns {{axis: Vector[], u: Vector[], v: Vector[], tangent: Vector[]}}
  */

@@ -114,7 +114,7 @@ export class Brush {
     place.classList.add("brushed");
   }
 
-  /** What shows the whole motion, so that nothing that is brushed lies outside: changes of the layout. */
+  /** Changes of the layout that show the whole motion, so that no brushed part lies outside. */
   layout() {
     const ends = (/** @type {Float64Array} */ values) => [
       values.reduce((a, b) => Math.min(a, b), Infinity),

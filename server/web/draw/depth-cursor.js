@@ -140,7 +140,7 @@ function depthOf(depth) {
   return say("measured_depth", depth * unit("measured_depth").size);
 }
 
-/** Where in a list the depth is that is nearest to another; the first of equals. @param {(number | null)[]} depths @param {number} depth */
+/** Index of the depth that is nearest to another; the first of equals. @param {(number | null)[]} depths @param {number} depth */
 export function nearest(depths, depth) {
   return depths.reduce(
     (/** @type {number} */ best, entry, index) =>

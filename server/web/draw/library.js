@@ -1,7 +1,7 @@
 // The drawing library, plotly, in two builds: a small one for flat pictures, and the whole one for those that WebGL draws. Compiling either
 // takes the page a part of a second in which nothing else happens, so that it waits until a picture needs it.
 
-/** What the small build draws. */
+/** Types of traces that the small build draws. */
 const FLAT = new Set(["scatter", "bar", "heatmap", "contour"]);
 /** @typedef {"flat" | "whole"} Build */
 /** @type {Record<Build, string>} */

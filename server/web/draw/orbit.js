@@ -232,7 +232,7 @@ function readable(peaks, last) {
 }
 
 /**
- * What a line is a multiple of, such as `2 × rotation`, where it is one nearer than half the resolution.
+ * Names a line as a multiple, such as `2 × rotation`, if it is one to within half the resolution.
  * @param {number} frequency [Hz]
  * @param {number} base [Hz]
  * @param {number} resolution [Hz]

@@ -56,19 +56,19 @@ export function canvas(name, key, size = "", build = "flat") {
   return place;
 }
 
-/** How long no picture of a view has been sketched and nothing is awaited when the first is drawn, and how long that waits at most. */
+/** The first picture of a view is drawn once none was sketched and nothing awaited for a while, or after the longest wait. */
 const REST_MS = 10,
   LONGEST_MS = 500,
   STEP_MS = 10;
 
 /**
- * What is known of a picture that is drawn: its layout, what its axes are, and how it is when it is not zoomed.
+ * Pictures that are drawn: layout, quantities of the axes, and the layout without a zoom.
  * @type {WeakMap<HTMLElement, {layout: any, axes: string, whole: Record<string, any>}>}
  */
 const drawn = new WeakMap();
-/** What drew a picture. @type {WeakMap<HTMLElement, any>} */
+/** Builds that drew the pictures. @type {WeakMap<HTMLElement, any>} */
 const drawers = new WeakMap();
-/** How often each place was to be drawn: what is older than the newest is dropped. @type {WeakMap<HTMLElement, number>} */
+/** Requested drawings of each place: all but the newest are dropped. @type {WeakMap<HTMLElement, number>} */
 const asked = new WeakMap();
 /** Pictures whose layout the page changes itself. @type {WeakSet<HTMLElement>} */
 const adjusted = new WeakSet();
@@ -88,14 +88,14 @@ export async function draw(place, traces, layout, signal) {
   await laidOut(place, signal);
   if (signal.aborted) return place;
   const complete = merged(common(), layout);
-  // Of what WebGL draws, a sketch takes as long.
+  // A sketch of a WebGL picture takes as long as the picture.
   if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces)))
     await sketched(place, traces, complete, signal);
   const Plotly = await library(traces);
-  // What has been asked for since is drawn in the place of this.
+  // A newer drawing takes the place of this one.
   if (signal.aborted || asked.get(place) !== mine) return place;
   const before = drawers.get(place);
-  // What one build has drawn the other cannot change.
+  // One build cannot change the other's picture.
   if (before && before !== Plotly) before.purge(place);
   drawers.set(place, Plotly);
   await Plotly.react(place, traces, complete, config(Plotly, place, layout));
@@ -128,13 +128,13 @@ async function sketched(place, traces, layout, signal) {
   const times = sketches.get(signal) ?? { first: now, last: now };
   sketches.set(signal, times);
   times.last = now;
-  // What else the view shows is sketched before.
+  // The view's other pictures are sketched before.
   while (
     performance.now() < Math.min(times.first + LONGEST_MS, isWaiting() ? Infinity : times.last + REST_MS)
   )
     await new Promise((resolve) => setTimeout(resolve, STEP_MS));
 }
-/** When pictures of a view were sketched first and last [ms]. @type {WeakMap<AbortSignal, {first: number, last: number}>} */
+/** Times of the first and the last sketch of a view [ms]. @type {WeakMap<AbortSignal, {first: number, last: number}>} */
 const sketches = new WeakMap();
 
 /** Waits until the browser has painted what there is; compiling the drawing library would hold that up. @returns {Promise<void>} */
@@ -294,7 +294,7 @@ function config(Plotly, place, layout) {
   });
   // plotly would offer to send what is shown to a service of its own.
   const nowhereElse = { showSendToCloud: false, plotlyServerURL: "" };
-  // Who has zoomed in to a picture in which a window is chosen can choose one again.
+  // A reader who has zoomed in to a picture in which a window is chosen can choose one again.
   const unused = ["toImage", "lasso2d", "autoScale2d", ...(layout.dragmode === "select" ? [] : ["select2d"])];
   return {
     ...nowhereElse,

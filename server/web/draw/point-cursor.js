@@ -1,4 +1,4 @@
-// A cursor over the points of a picture, for who has no mouse: arrows move it, Enter opens the point.
+// A cursor over the points of a picture, for readers without a mouse: arrows move it, Enter opens the point.
 
 import { h } from "../ui/dom.js";
 import { adjust, inks } from "./plots.js";
@@ -13,7 +13,7 @@ import { adjust, inks } from "./plots.js";
  * @property {string} text what is said of it, its lines apart by `<br>`
  */
 
-/** How much more a step aside counts than one ahead. */
+/** Weight of a step aside relative to one ahead. */
 const ASIDE = 3;
 /** @type {Record<string, [number, number]>} */
 const STEPS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };

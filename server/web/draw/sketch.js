@@ -134,7 +134,7 @@ function edges(values, cells) {
 }
 
 /**
- * Where axes lie, with room for what stands beside them.
+ * Frame of the axes, with room for ticks, titles and the bar next to them.
  * @param {CanvasRenderingContext2D} pen @param {Axis[]} axes @param {any} layout
  * @param {number} width @param {number} height @param {{hasBar: boolean, hasNames: boolean}} beside
  */
@@ -443,7 +443,7 @@ function drawBar(pen, trace, bar, frame, { text: ink }) {
   pen.restore();
 }
 
-/** What lines are called. @param {CanvasRenderingContext2D} pen @param {any[]} traces @param {Frame} frame @param {{text: string}} inks */
+/** Draws the names of lines. @param {CanvasRenderingContext2D} pen @param {any[]} traces @param {Frame} frame @param {{text: string}} inks */
 function drawNames(pen, traces, frame, { text: ink }) {
   let left = frame.left;
   pen.textAlign = "left";

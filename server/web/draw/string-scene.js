@@ -8,7 +8,7 @@ import { inks } from "./plots.js";
 
 /** Corners of a ring of the hole, and rings along the stretch that is shown. */
 const [CORNERS, RINGS] = [28, 36];
-/** How far a key or a turn of the wheel moves the view. */
+/** Steps of the view for a key or a turn of the wheel. */
 const [TURN, NEARER] = [0.08, 1.15];
 /** Marks of depth along the stretch that is shown, about, and pixels between two at least. */
 const [MARKS, BETWEEN] = [6, 16];
@@ -16,7 +16,7 @@ const [MARKS, BETWEEN] = [6, 16];
 const DOT = 4.5;
 
 /**
- * What is drawn.
+ * A string in its hole, as it is drawn.
  * @typedef {object} Scene
  * @property {{axis: Vector[], u: Vector[], v: Vector[]}} frames
  * @property {number[]} clearance of each node [m]

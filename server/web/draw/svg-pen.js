@@ -1,7 +1,7 @@
-// What draws lines, dots and words: a canvas, or an SVG file by the same calls.
+// Pens that draw lines, dots and words: a canvas, or an SVG file by the same calls.
 
 /**
- * What both have.
+ * Members that both pens have.
  * @typedef {Pick<CanvasRenderingContext2D, "lineWidth" | "strokeStyle" | "fillStyle" | "globalAlpha" | "lineCap" | "font" | "textAlign" | "textBaseline" | "beginPath" | "moveTo" | "lineTo" | "arc" | "stroke" | "fill" | "fillRect" | "fillText" | "setLineDash" | "translate">} Pen
  */
 

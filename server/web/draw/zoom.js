@@ -8,11 +8,11 @@ import { unit } from "../data/units.js";
 const SAME = 1e-6;
 /** By how much a horizon may be off the level [rad], and counts as level. */
 const LEVEL = 1e-5;
-/** What is upwards where the horizon is level. */
+/** Upward direction with a level horizon. */
 const UPRIGHT = [0, 0, 1];
 
 /**
- * What the link says of a picture, as changes of its layout; nothing of axes that it has not.
+ * Zoom of a picture in the link, as changes of its layout; axes that the layout lacks are left out.
  * @param {string} key of the picture
  * @param {any} layout
  * @returns {Record<string, any>}
@@ -44,7 +44,7 @@ export function zoomed(key, layout) {
 }
 
 /**
- * How a picture is drawn before it is zoomed.
+ * Ranges and camera of a picture before it is zoomed.
  * @param {any} place that plotly draws in
  * @param {any} layout
  * @returns {Record<string, any>}
@@ -108,7 +108,7 @@ export async function rested(place) {
     await new Promise(requestAnimationFrame);
 }
 
-/** How a picture in space is seen, as plotly moves it; nothing of a flat one. @param {any} place that plotly draws in */
+/** View of a picture in space, as plotly moves it; undefined for a flat one. @param {any} place that plotly draws in */
 function viewOf(place) {
   return place._fullLayout.scene?._scene?.camera?.view;
 }
@@ -123,7 +123,7 @@ function cameraOf(place) {
   return [eye.x, eye.y, eye.z, center.x, center.y, center.z, ...(isLevel ? UPRIGHT : [up.x, up.y, up.z])];
 }
 
-/** How many of the served unit one of an axis is. @param {any} axis */
+/** Size of an axis' unit in the served unit. @param {any} axis */
 function sizeOf(axis) {
   return axis.quantity ? unit(axis.quantity).size : 1;
 }

@@ -4,7 +4,7 @@ import { get } from "../data/api.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { Rows } from "./rows.js";
 
-/** How long sweeps that are new to the page are collected before the list is requested to find those that pass its filters. */
+/** Time during which new sweeps are collected before the list is requested to find those that pass its filters. */
 const COLLECT_MS = 300;
 
 export class Sweeps {

@@ -13,7 +13,7 @@ import { Sweeps } from "./sweeps.js";
 const POLL_MS = 4000;
 /** Longest time between two looks at the list and at the service: the stream does not report the deletion of a sweep that existed for less than a second. */
 const QUIET_MS = 30_000;
-/** How long typing rests before the list is loaded. */
+/** Rest of typing before the list is loaded. */
 const REST_MS = 250;
 
 /** @type {import("../ui/router.js").View} */

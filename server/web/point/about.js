@@ -1,4 +1,4 @@
-// Which effects took part and why, how far the numbers can be trusted, what they cost, and files to take away.
+// Effects with reasons, accuracy, cost, and files to download.
 
 import { address, get } from "../data/api.js";
 import { fill, h } from "../ui/dom.js";
@@ -157,7 +157,7 @@ function factsPart(heading, facts, more = []) {
 }
 
 /**
- * How far the numbers of a point can be trusted.
+ * Errors of a point's numbers.
  * @param {any} point
  * @returns {[string, string][]}
  */
@@ -217,7 +217,7 @@ function accuracyPart({ point, bias }) {
 }
 
 /**
- * What a run took of time, and how it was solved.
+ * Time that a run took, and its method.
  * @param {any} point
  * @returns {[string, string][]}
  */

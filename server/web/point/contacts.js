@@ -63,5 +63,5 @@ export function contactMap(context, onTime, named) {
   };
 }
 
-/** What a picture says of the scale's end. */
+/** Sentence about the end of the scale. */
 export const BEYOND = "The largest tenth of the forces has the colour at the end of the scale.";

@@ -21,7 +21,7 @@ import { MotionChoices } from "./motion-choices.js";
 import { MotionControls } from "./motion-controls.js";
 import { SpectralLines } from "./spectral-lines.js";
 
-/** How long a window that is dragged rests before its samples are requested. */
+/** Rest of a dragged window before its samples are requested. */
 const REST_MS = 100;
 
 /** @typedef {import("./part.js").PointContext} PointContext */

@@ -7,7 +7,7 @@ import { link } from "../ui/router.js";
 const PROPOSED_HZ = 25;
 
 /**
- * What to add to a request where there are no snapshots.
+ * Change of a request that adds snapshots.
  * @param {import("./part.js").PointContext} context
  */
 export function withoutSnapshots({ point, path }) {

@@ -14,7 +14,7 @@ const TAKEN = 300_000;
 const SHOWN = 4000;
 const QUANTITIES = ["rotation_speed", "torque"];
 
-/** Why there may be no such lines. */
+/** Reason for missing lines. */
 export const RECORD_ENDS =
   "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or what is kept is chosen (recording.outputs).";
 
@@ -144,7 +144,7 @@ export function endsRequest(lines, window = null) {
   };
 }
 
-/** Where the lines are from, in words. @param {EndLine[]} lines */
+/** Sources of the lines, in words. @param {EndLine[]} lines */
 function saySources(lines) {
   const of = (/** @type {string} */ end) => lines.find((line) => line.end === end)?.source;
   const words = { history: "the recorded history", snapshots: "the snapshots" };
@@ -154,11 +154,11 @@ function saySources(lines) {
   return source ? `From ${words[source]}.` : "";
 }
 
-/** What the torque at an end is. */
+/** Sentence about the torque at an end. */
 export const TORQUE = "The torque is what the string carries in its last element at that end.";
 
 /**
- * How that differs from the torque on bit.
+ * Sentence about its difference from the torque on bit.
  * @param {any} point
  */
 function sayTorqueOnBit({ scenario }) {

@@ -185,7 +185,7 @@ export function largestOf(table) {
 }
 
 /**
- * What a spectrogram is of.
+ * Describes a spectrogram.
  * @param {any} table
  * @param {number} range [Hz]
  */

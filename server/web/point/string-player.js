@@ -12,7 +12,7 @@ import { colourName, EXAGGERATIONS, PlayerChoices, SPEEDS } from "./player-choic
 import { coloursOf } from "./string-colours.js";
 import { saveStrings } from "./string-file.js";
 
-/** How long the view and the time rest before the link holds them. */
+/** Rest of the view and the time before the link holds them. */
 const REST_MS = 200;
 
 /** @typedef {import("../data/snapshots.js").Frames} Frames */

@@ -26,7 +26,7 @@ const PARTS = [
   ["about", "Effects, accuracy, downloads", async () => (await import("./about.js")).about],
 ];
 
-/** How often a point that is not final yet is looked at. */
+/** Interval of looks at a point that is not final yet. */
 const POLL_MS = 3000;
 
 /** Views whose element is not made of panels. */

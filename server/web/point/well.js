@@ -8,7 +8,7 @@ import { pythonColumns, QUANTITIES, tableOf } from "./profiles.js";
 import { label, say, shown, title, unit } from "../data/units.js";
 import { nodeFrames } from "../data/well-frames.js";
 
-/** How many times the string's distance from the axis of the hole is drawn. */
+/** Factors by which the string's distance from the axis of the hole is multiplied. */
 const EXAGGERATIONS = ["1", "20", "100", "300"];
 const USUAL = 20;
 
@@ -150,7 +150,7 @@ export function spaceLayout() {
 }
 
 /**
- * How many times the distance from the axis is drawn, as the link says.
+ * Factor by which the distance from the axis is multiplied, from the link.
  * @param {URLSearchParams} query
  * @param {number} usual
  */
@@ -193,7 +193,7 @@ export function onNodes(columns, name, nodes) {
 }
 
 /**
- * Where the string lies, its distance from the axis multiplied.
+ * Path of the string, its distance from the axis multiplied.
  * @param {any} statics
  * @param {{north: number[], east: number[], down: number[]}} axis
  * @param {number} factor

@@ -48,7 +48,7 @@ const PROPOSED = {
   flow_rate: { values: [0.01, 0.04, 0.06] },
   mud_density: { from: 1200, to: 2100, count: 4 },
 };
-/** How long typing rests before the request is planned. */
+/** Rest of typing before the request is planned. */
 const REST_MS = 400;
 
 /** @type {[string, string][]} */

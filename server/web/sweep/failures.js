@@ -1,4 +1,4 @@
-// What failed in a sweep, by cause.
+// Failed points of a sweep, by cause.
 
 import { get } from "../data/api.js";
 import { fill, h } from "../ui/dom.js";
@@ -7,7 +7,7 @@ import { say, sayParameters } from "../data/units.js";
 
 const PAGE = 500;
 
-/** What a class of failure means for who reads it. @type {Record<string, string>} */
+/** Meaning of each class of failure, for readers. @type {Record<string, string>} */
 const MEANING = {
   physical: "the scenario has no solution, or the run left what can be simulated",
   infrastructure: "storage or database failed; a retry may help",

@@ -291,7 +291,7 @@ export class FinerGrid {
   }
 }
 
-/** How long the points of a dry run take, in words. @param {any} answer */
+/** Time that the points of a dry run take, in words. @param {any} answer */
 function sayTime(answer) {
   if (answer.known === answer.total) return "nothing is left to compute";
   if (answer.wall_time) return `about ${duration(answer.wall_time)} on the workers there are`;

@@ -1,33 +1,33 @@
-// What dragging does in parallel coordinates, for who has no mouse: fields for the stretches of axes to which points are kept, and buttons that
-// move an axis.
+// Parallel coordinates without a mouse: fields for the ranges to which points are filtered, and buttons that move
+// an axis.
 
 import { fill, h } from "../ui/dom.js";
 import { rounded } from "../ui/router.js";
 import { number, title } from "../data/units.js";
 
 const SIDES = ["from", "to"];
-/** Where an axis is moved, and by how many places. @type {[string, number][]} */
+/** Directions in which an axis is moved, with the places. @type {[string, number][]} */
 const MOVES = [
   ["left", -1],
   ["right", 1],
 ];
 
 /**
- * An axis in the unit in which it is shown: the ends of its values, and its stretches, whose ends may be infinite.
+ * An axis in the unit in which it is shown: the ends of its values, and its filters, whose ends may be infinite.
  * @typedef {{name: string, ends: number[], ranges: number[][]}} Axis
  */
 
 /**
  * The controls of all axes, a group for each.
- * @param {(name: string, ranges: number[][]) => void} onChange of an axis's stretches
+ * @param {(name: string, ranges: number[][]) => void} onChange of an axis' filters
  * @param {(name: string, places: number) => void} onMove of an axis, to the right or, where negative, to the left
  * @returns {{element: HTMLElement, show: (axes: Axis[]) => void}} `show` fills them with what holds
  */
 export function axisControls(onChange, onMove) {
   const body = h("div", {});
-  /** What the fields are for. */
+  /** Axes that the fields were made for. */
   let made = "";
-  /** Two for each stretch of an axis. @type {Map<string, HTMLInputElement[][]>} */
+  /** Two for each filter of an axis. @type {Map<string, HTMLInputElement[][]>} */
   const inputs = new Map();
 
   /** Takes what the fields of an axis say. @param {string} name */
@@ -52,7 +52,7 @@ export function axisControls(onChange, onMove) {
       rangesOf(axis).forEach((range, order) => {
         range.forEach((end, side) => {
           const input = inputs.get(axis.name)?.[order][side];
-          // What is being typed stays.
+          // A field that is being typed in stays.
           if (input && input !== document.activeElement)
             input.value = Number.isFinite(end) ? String(rounded(end)) : "";
         });
@@ -107,7 +107,7 @@ export function axisControls(onChange, onMove) {
   return { element: h("details", {}, h("summary", {}, "Keep points by numbers, move axes"), body), show };
 }
 
-/** The stretches of an axis; one that is to be given, where it has none. @param {Axis} axis */
+/** Filters of an axis; an empty one to be filled in if it has none. @param {Axis} axis */
 function rangesOf({ ranges }) {
   return ranges.length ? ranges : [[-Infinity, Infinity]];
 }

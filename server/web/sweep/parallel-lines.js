@@ -1,7 +1,7 @@
-// Which line of parallel coordinates the mouse is at. The drawing library tells it only of the very pixels of a line.
+// The line of parallel coordinates next to the mouse: the drawing library reports only the very pixels of a line.
 
 const SPACE = "http://www.w3.org/2000/svg";
-/** How far from a line the mouse may be [pixels]. */
+/** Greatest distance of the mouse from a line [pixels]. */
 const NEAR = 6;
 
 /**
@@ -57,7 +57,7 @@ function axesOf(place) {
       values.reduce((a, b) => Math.min(a, b), Infinity),
       values.reduce((a, b) => Math.max(a, b), -Infinity),
     ];
-    // Of one value alone an axis shows some that are near.
+    // An axis of a single value reaches a little beyond it.
     const spare = largest > least ? 0 : Math.abs(least) / 10 || 1;
     return {
       dimension: dimensions[index],
@@ -104,7 +104,7 @@ export function isKept(dimension, line) {
   );
 }
 
-/** The stretches of an axis to which points are kept; of one alone the drawing library has no list. @param {Dimension} dimension @returns {number[][]} */
+/** Filters of an axis; the drawing library has no list for a single one. @param {Dimension} dimension @returns {number[][]} */
 export function rangesOf({ constraintrange = [] }) {
   return /** @type {number[][]} */ (
     constraintrange.length && !Array.isArray(constraintrange[0]) ? [constraintrange] : constraintrange

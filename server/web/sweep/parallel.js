@@ -268,7 +268,7 @@ function writtenRange(name, range) {
   );
 }
 
-/** The least and the largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */
+/** Least and largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */
 function endsOf({ values }) {
   return [
     values.reduce((a, b) => Math.min(a, b), Infinity),
@@ -276,7 +276,7 @@ function endsOf({ values }) {
   ];
 }
 
-/** The stretches of an axis whose ends are infinite where they are at or beyond those of the values, which so need not be written. @param {import("./parallel-lines.js").Dimension} dimension */
+/** Filters of an axis, whose ends are infinite at or beyond the ends of its values, and then need not be written. @param {import("./parallel-lines.js").Dimension} dimension */
 function opened(dimension) {
   const [least, largest] = endsOf(dimension);
   const ranges = rangesOf(dimension).map(([from, to]) => [

@@ -1,4 +1,4 @@
-// Which of the swept parameters matters to a result.
+// Sensitivities of a result to the swept parameters.
 
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";

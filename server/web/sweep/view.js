@@ -30,7 +30,7 @@ const PARTS = [
   ["failures", "Failures", async () => (await import("./failures.js")).failures],
 ];
 
-/** Where the table stands among them: what is shown of a sweep that varies nothing. */
+/** Place of the table among them: the view of a sweep that varies nothing. */
 const TABLE = PARTS.findIndex(([name]) => name === "table");
 
 /** The least time between two readings of a table that is still growing. */
@@ -234,7 +234,7 @@ function warningsPart([first, ...others]) {
 }
 
 /**
- * How long the first of a sweep's complete points was computed [s]; null where its result does not say.
+ * Computing time of a sweep's first complete point [s]; `null` if its result lacks it.
  * @param {string} id
  * @param {AbortSignal} signal
  */

@@ -61,7 +61,7 @@ export function fill(parent, ...children) {
 }
 
 /**
- * What a control is called by those who do not see it.
+ * Accessible name of a control.
  * @param {Element} element
  */
 function nameOf(element) {

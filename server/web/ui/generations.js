@@ -1,4 +1,4 @@
-// Of several drawings of one thing the newest: an older one, whose answers come later, must not show what it found.
+// The newest of several drawings of one thing: an older one, whose answers arrive later, must not be shown.
 
 /** @returns {() => () => boolean} begins a drawing, and gives what says whether none has begun since */
 export function generations() {

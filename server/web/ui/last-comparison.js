@@ -2,7 +2,7 @@
 
 import { link } from "./router.js";
 
-/** How many points are compared at most. */
+/** Points that are compared, at most. */
 export const MOST = 6;
 
 const KEPT = "drillsweep.comparison";
@@ -30,7 +30,7 @@ export function comparedIn(query) {
 }
 
 /**
- * What leads from a point to a comparison: a new one, and where one was opened before, that one with this point added.
+ * Links from a point to a comparison: a new one, and the one opened last with this point added.
  * @param {string} key of the point
  * @returns {{text: string, href: string}[]}
  */

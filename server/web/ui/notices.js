@@ -35,7 +35,7 @@ export async function reported(work) {
 export function attend(work, signal) {
   work.catch((error) => {
     if (signal.aborted || (error instanceof Problem && error.status === 401)) return;
-    // What is down is said above the view, and asked for again there.
+    // The banner above the view reports a service that is down, and asks again.
     if (error instanceof Unreachable) return;
     if (!(error instanceof Problem)) console.error(error);
     notice(error instanceof Error ? error.message : String(error));

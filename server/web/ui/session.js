@@ -1,4 +1,4 @@
-// Who is logged in, and what that allows.
+// The session of the reader, and its permissions.
 
 import { connection, getNeeded, send } from "../data/api.js";
 import { h } from "./dom.js";
@@ -18,7 +18,7 @@ export function maySubmit() {
   return !current.tokens_required || current.scope === "submit" || current.scope === "admin";
 }
 
-/** What is said where something is not allowed. */
+/** Title of a control that is not allowed. */
 export const MAY_NOT = "Your token only allows reading";
 
 export async function loadSession() {

@@ -138,13 +138,13 @@ export function requestLines(asked, pythonLines) {
 export function bodyLines(path, body) {
   const text = JSON.stringify(body);
   return {
-    // What a refusal says of the body is written out, too.
+    // The refusal of a body is printed, too.
     curl: `curl -sS --fail-with-body ${curlToken()}${location.origin}${path} -H 'Content-Type: application/json' -d ${shell(text)}`,
     matlab: `json = weboptions(MediaType="application/json", ContentType="json", Timeout=90${matlabToken()});\nsweep = webwrite("${location.origin}${path}", '${text.replaceAll("'", "''")}', json);`,
   };
 }
 
-/** What curl shows a server that needs a token. */
+/** Header with the token, for curl. */
 function curlToken() {
   return session().tokens_required ? '-H "Authorization: Bearer $DRILLSWEEP_TOKEN" ' : "";
 }
@@ -164,7 +164,7 @@ function pairsOf({ query = {}, isDocument }) {
   return isDocument ? given : [...given, ["format", "csv"]];
 }
 
-/** What MATLAB's lines call the options of such a request. @param {Asked} one */
+/** Name of the options of a request in MATLAB's lines. @param {Asked} one */
 function optionsOf({ isDocument }) {
   return isDocument ? "json" : "csv";
 }

@@ -1,12 +1,12 @@
 // The frame: which view the link asks for, the session, settings, and what is said when the service is gone.
 
 import { answerAfter, connection, Problem, Unreachable } from "./data/api.js";
+import { apply, choose, settings, theme, unitSystem } from "./data/settings.js";
+import { loadQuantities } from "./data/units.js";
 import { fill, h } from "./ui/dom.js";
 import { reported } from "./ui/notices.js";
 import { arrive, route } from "./ui/router.js";
 import { loadSession, logIn, logOut, onLoginNeeded, session } from "./ui/session.js";
-import { apply, choose, settings, theme, unitSystem } from "./data/settings.js";
-import { loadQuantities } from "./data/units.js";
 
 /** The module of each view, by its name. @type {Record<string, () => Promise<{show: import("./ui/router.js").View}>>} */
 const VIEWS = {

@@ -1,16 +1,16 @@
 // Views with a picture for each point, side by side on one scale of colours, and rotation at the ends of the
 // string.
 
-import { each, Lacking, noteNode } from "./comparison.js";
-import { fill, h } from "../ui/dom.js";
-import { canvas, draw } from "../draw/plots.js";
 import { largestShown } from "../data/decimation.js";
+import { frames } from "../data/snapshots.js";
+import { shown } from "../data/units.js";
+import { canvas, draw } from "../draw/plots.js";
 import { contactMap } from "../point/contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE, twoPanels } from "../point/rotation.js";
 import { describe, drawSpectrogram, largestOf, RANGES } from "../point/spectrogram.js";
-import { frames } from "../data/snapshots.js";
 import { StringPlayer } from "../point/string-player.js";
-import { shown } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
+import { each, Lacking, noteNode } from "./comparison.js";
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
 /** @typedef {import("./comparison.js").Compared} Compared */

@@ -2,11 +2,11 @@
 
 import { get } from "../data/api.js";
 import { Biases } from "../data/biases.js";
-import { each, noteNode } from "./comparison.js";
-import { fill, h } from "../ui/dom.js";
-import { accuracyFacts, accuracyReasons, costFacts } from "../point/about.js";
 import { biasOver, recordedAs, STATISTICS } from "../data/statistics.js";
 import { say } from "../data/units.js";
+import { accuracyFacts, accuracyReasons, costFacts } from "../point/about.js";
+import { fill, h } from "../ui/dom.js";
+import { each, noteNode } from "./comparison.js";
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
 /** @typedef {import("./comparison.js").Compared} Compared */

@@ -1,10 +1,7 @@
 // Views of a comparison, by their names in the link.
 
-import { each, Lacking, noteNode } from "./comparison.js";
-import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
-import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
-import { h } from "../ui/dom.js";
 import { spectrumRange } from "../data/motion-requests.js";
+import { label, say, shown, title, unit } from "../data/units.js";
 import {
   holeTrace,
   orbitLayout,
@@ -16,8 +13,11 @@ import {
 import { draw, inks } from "../draw/plots.js";
 import { ACCOUNTS, ledger } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
+import { h } from "../ui/dom.js";
+import { each, Lacking, noteNode } from "./comparison.js";
+import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
+import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
-import { label, say, shown, title, unit } from "../data/units.js";
 
 /** Samples of a line. */
 const SHOWN = 6000;

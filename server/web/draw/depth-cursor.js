@@ -1,9 +1,9 @@
 // One depth at which a picture of profiles is read: where the mouse is, or where the keyboard moves a cursor.
 
-import { fill, h } from "../ui/dom.js";
-import { adjust, inks } from "./plots.js";
-import { rounded } from "../ui/router.js";
 import { say, unit } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
+import { rounded } from "../ui/router.js";
+import { adjust, inks } from "./plots.js";
 
 /** Keys that move the cursor, and by how many nodes; what is deeper is below, as in the picture. @type {Record<string, number>} */
 const STEPS = {

@@ -1,7 +1,7 @@
 // An orbit as seen looking downhole, the low side down, and the full spectrum of one.
 
-import { inks } from "./plots.js";
 import { shown, title, unit } from "../data/units.js";
+import { inks } from "./plots.js";
 
 /** Lines of a spectrum that are named in its picture. */
 const NAMED = 6;

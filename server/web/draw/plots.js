@@ -1,10 +1,10 @@
 // Pictures in the page's theme, with PNG and SVG to take away: sketched at once, and drawn by plotly as soon as that is compiled.
 
 import { isWaiting } from "../data/api.js";
-import { colourOf } from "./colours.js";
-import { h } from "../ui/dom.js";
-import { fetchAhead, isFlat, library, libraryAtHand } from "./library.js";
 import { settings, theme } from "../data/settings.js";
+import { h } from "../ui/dom.js";
+import { colourOf } from "./colours.js";
+import { fetchAhead, isFlat, library, libraryAtHand } from "./library.js";
 import { sketch } from "./sketch.js";
 import { forgetZoom, keepZoom, rested, wholeOf, zoomed } from "./zoom.js";
 

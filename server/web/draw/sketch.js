@@ -1,8 +1,8 @@
 // A flat picture on a canvas: what is seen until the drawing library has been compiled, drawn from what the library is given. It has axes,
 // values, colours and names, and does not answer to the mouse.
 
-import { colourOf } from "./colours.js";
 import { number } from "../data/units.js";
+import { colourOf } from "./colours.js";
 
 const KINDS = new Set(["scatter", "scattergl", "bar", "heatmap", "contour"]);
 /** Pixels between two ticks, about. */

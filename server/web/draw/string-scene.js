@@ -1,7 +1,7 @@
 // The string in its hole, seen from where the reader turns it: a picture that is drawn anew in each frame.
 
-import { colourOf } from "./colours.js";
 import { h } from "../ui/dom.js";
+import { colourOf } from "./colours.js";
 import { inks } from "./plots.js";
 
 /** @typedef {import("../data/well-frames.js").Vector} Vector */

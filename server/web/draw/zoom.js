@@ -1,8 +1,8 @@
 // The part of a picture that the reader has zoomed in to, kept in the link in the service's units: `zoom.map=x:0.01:0.02,y:1200:1500`,
 // or `zoom.well=camera:...` of a picture in space: its eye, its centre and, where its horizon is not level, what is upwards.
 
-import { keep, rounded, route } from "../ui/router.js";
 import { unit } from "../data/units.js";
+import { keep, rounded, route } from "../ui/router.js";
 
 /** Part of a range by which an end may differ from where it was drawn, and the picture counts as whole. */
 const SAME = 1e-6;

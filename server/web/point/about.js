@@ -1,8 +1,8 @@
 // Effects with reasons, accuracy, cost, and files to download.
 
 import { address, get } from "../data/api.js";
-import { fill, h } from "../ui/dom.js";
 import { bytes, duration, label, meaning, moment, number, say } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
 
 /** Files that are tables, which are served as CSV, too. */
 const TABLES = ["profile", "statics", "history", "contacts", "energy", "snapshots"];

@@ -1,9 +1,9 @@
 // Contacts over depth and time: the normal force of the wall on every node, from the snapshots.
 
 import { largestShown, maxima } from "../data/decimation.js";
-import { h } from "../ui/dom.js";
-import { canvas, colourBar, draw, SCALE } from "../draw/plots.js";
 import { shown, title, unit } from "../data/units.js";
+import { canvas, colourBar, draw, SCALE } from "../draw/plots.js";
+import { h } from "../ui/dom.js";
 
 /** Columns of the map; of more snapshots each column shows the largest force of several. */
 const COLUMNS = 500;

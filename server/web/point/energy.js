@@ -1,8 +1,8 @@
 // Energy by account: what was put in, where it went, and what the ledger misses.
 
-import { fill, h } from "../ui/dom.js";
-import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
 import { label, say, shown, unit } from "../data/units.js";
+import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
+import { fill, h } from "../ui/dom.js";
 
 const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
 const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];

@@ -1,12 +1,12 @@
 // Quantities over depth, side by side with one depth cursor.
 
+import { label, meaning, say, shown, title, unit } from "../data/units.js";
 import { DepthCursor, nearest } from "../draw/depth-cursor.js";
+import { canvas, draw, inks, LINES } from "../draw/plots.js";
 import { h } from "../ui/dom.js";
-import { python } from "../ui/snippets.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { canvas, draw, inks, LINES } from "../draw/plots.js";
-import { label, meaning, say, shown, title, unit } from "../data/units.js";
+import { python } from "../ui/snippets.js";
 
 /** Quantities over depth, and the table that has each. @type {[string, string][]} */
 export const QUANTITIES = [

@@ -1,12 +1,12 @@
 // Rotation speed and torque over time at both ends of the string: from the history, or else from the snapshots.
 
 import { Problem } from "../data/api.js";
-import { h } from "../ui/dom.js";
-import { python, pythonNode } from "../ui/snippets.js";
-import { generations } from "../ui/generations.js";
-import { canvas, draw, LINES } from "../draw/plots.js";
 import { frames, snapshotsOf } from "../data/snapshots.js";
 import { say, shown, title } from "../data/units.js";
+import { canvas, draw, LINES } from "../draw/plots.js";
+import { h } from "../ui/dom.js";
+import { generations } from "../ui/generations.js";
+import { python, pythonNode } from "../ui/snippets.js";
 
 /** Nodes of all snapshots together from which the lines are taken. */
 const TAKEN = 300_000;

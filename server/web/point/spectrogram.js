@@ -1,11 +1,11 @@
 // The full spectrum of a recorded node over time, forward and backward.
 
 import { Problem } from "../data/api.js";
-import { choice, fill, h } from "../ui/dom.js";
-import { pythonNode } from "../ui/snippets.js";
-import { attend } from "../ui/notices.js";
-import { canvas, colourBar, draw, inks, logTicks, SCALE } from "../draw/plots.js";
 import { say, shown, title, unit } from "../data/units.js";
+import { canvas, colourBar, draw, inks, logTicks, SCALE } from "../draw/plots.js";
+import { choice, fill, h } from "../ui/dom.js";
+import { attend } from "../ui/notices.js";
+import { pythonNode } from "../ui/snippets.js";
 
 /** Frequencies up to which spectrograms are shown [Hz]. */
 export const RANGES = ["5", "10", "20", "50", "100"];

@@ -1,11 +1,11 @@
 // The string moving in its hole, played from the snapshots of a run; below it the contacts over depth and time, rotation and torque.
 
+import { snapshotsOf } from "../data/snapshots.js";
 import { fill, h } from "../ui/dom.js";
 import { python } from "../ui/snippets.js";
 import { contactMap } from "./contacts.js";
-import { endsRequest, RECORD_ENDS, rotation } from "./rotation.js";
-import { snapshotsOf } from "../data/snapshots.js";
 import { withoutSnapshots } from "./no-snapshots.js";
+import { endsRequest, RECORD_ENDS, rotation } from "./rotation.js";
 import { StringPlayer } from "./string-player.js";
 
 /**

@@ -2,12 +2,12 @@
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
-import { waysToCompare } from "../ui/last-comparison.js";
-import { fill, h } from "../ui/dom.js";
-import { requestLines, snippets } from "../ui/snippets.js";
-import { keep, link } from "../ui/router.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
+import { waysToCompare } from "../ui/last-comparison.js";
+import { keep, link } from "../ui/router.js";
+import { requestLines, snippets } from "../ui/snippets.js";
 import { askedOf } from "./part.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */

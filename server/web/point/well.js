@@ -1,12 +1,12 @@
 // The well in space with the string in it at rest, coloured by a quantity.
 
+import { label, say, shown, title, unit } from "../data/units.js";
+import { nodeFrames } from "../data/well-frames.js";
+import { canvas, colourBar, draw, inks, lineScale } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { canvas, colourBar, draw, inks, lineScale } from "../draw/plots.js";
 import { pythonColumns, QUANTITIES, tableOf } from "./profiles.js";
-import { label, say, shown, title, unit } from "../data/units.js";
-import { nodeFrames } from "../data/well-frames.js";
 
 /** Factors by which the string's distance from the axis of the hole is multiplied. */
 const EXAGGERATIONS = ["1", "20", "100", "300"];

@@ -1,10 +1,10 @@
 // The fields of a scenario as a form, made from its schema: with units, limits and help. What differs from the scenario is a change.
 
 import { get } from "../data/api.js";
-import { fill, h } from "../ui/dom.js";
-import { attend } from "../ui/notices.js";
 import { unitSystem } from "../data/settings.js";
 import { number, say, servedUnit } from "../data/units.js";
+import { fill, h } from "../ui/dom.js";
+import { attend } from "../ui/notices.js";
 
 /** Fields that the form for new sweeps has elsewhere. */
 const ELSEWHERE = ["name", "accuracy", "well.survey"];

@@ -2,14 +2,14 @@
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
+import { distinct, SHORT, SweepTable, sweptBy } from "../data/sweep-table.js";
+import { label, number, say, title, unit } from "../data/units.js";
+import { canvas, colourBar, DASHES, draw, LINES } from "../draw/plots.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { canvas, colourBar, DASHES, draw, LINES } from "../draw/plots.js";
 import { go, link } from "../ui/router.js";
 import { preferred, undelayed } from "./part.js";
-import { distinct, SHORT, SweepTable, sweptBy } from "../data/sweep-table.js";
-import { label, number, say, title, unit } from "../data/units.js";
 
 /** Blue below, red above, apart by lightness as well for those who cannot tell them. */
 const DIVERGING = "RdBu";

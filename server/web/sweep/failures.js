@@ -1,9 +1,9 @@
 // Failed points of a sweep, by cause.
 
 import { get } from "../data/api.js";
+import { say, sayParameters } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { link } from "../ui/router.js";
-import { say, sayParameters } from "../data/units.js";
 
 const PAGE = 500;
 

@@ -1,11 +1,11 @@
 // A finer grid over a region of a map: its bounds and counts, what it would take, and the request that adds it to the sweep.
 
 import { Problem, send } from "../data/api.js";
+import { duration, label, say, title, unit } from "../data/units.js";
 import { debounced, fill, h } from "../ui/dom.js";
-import { bodyLines, python, snippets } from "../ui/snippets.js";
 import { notice } from "../ui/notices.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
-import { duration, label, say, title, unit } from "../data/units.js";
+import { bodyLines, python, snippets } from "../ui/snippets.js";
 
 const COUNT = 5;
 

@@ -1,17 +1,17 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
+import { ends, layered } from "../data/grid-layers.js";
+import { isUnsettled, SETTLING } from "../data/statistics.js";
+import { distinct, isText } from "../data/sweep-table.js";
+import { label, say, sayer, title, unit } from "../data/units.js";
+import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "../draw/plots.js";
+import { keyboard } from "../draw/point-cursor.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "../draw/plots.js";
 import { link } from "../ui/router.js";
-import { isUnsettled, SETTLING } from "../data/statistics.js";
-import { keyboard } from "../draw/point-cursor.js";
 import { FinerGrid } from "./finer-grid.js";
 import { MANY, preferred, undelayed } from "./part.js";
-import { ends, layered } from "../data/grid-layers.js";
-import { distinct, isText } from "../data/sweep-table.js";
-import { label, say, sayer, title, unit } from "../data/units.js";
 
 /** Designs that draw their points: these have no slices. */
 const DRAWN = ["latin_hypercube", "sobol"];

@@ -1,9 +1,9 @@
 // Parallel coordinates without a mouse: fields for the ranges to which points are filtered, and buttons that move
 // an axis.
 
+import { number, title } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { rounded } from "../ui/router.js";
-import { number, title } from "../data/units.js";
 
 const SIDES = ["from", "to"];
 /** Directions in which an axis is moved, with the places. @type {[string, number][]} */

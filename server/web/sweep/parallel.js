@@ -1,14 +1,14 @@
 // All swept parameters and a few results side by side, a line a point.
 
+import { label, say, shown, title, unit } from "../data/units.js";
+import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
+import { link, rounded } from "../ui/router.js";
 import { axisControls } from "./parallel-controls.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
-import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
-import { link, rounded } from "../ui/router.js";
 import { preferred, undelayed } from "./part.js";
-import { label, say, shown, title, unit } from "../data/units.js";
 
 const HOW =
   "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";

@@ -1,12 +1,12 @@
 // Clouds of points: any two columns against each other.
 
+import { isText } from "../data/sweep-table.js";
+import { label, say, shown, title } from "../data/units.js";
+import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { MANY, preferred, undelayed } from "./part.js";
-import { isText } from "../data/sweep-table.js";
-import { label, say, shown, title } from "../data/units.js";
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {{names: string[], x: string, y: string, colour: string, isLogX: boolean, isLogY: boolean}} Chosen */

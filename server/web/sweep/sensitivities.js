@@ -1,12 +1,12 @@
 // Sensitivities of a result to the swept parameters.
 
+import { LEAST_POINTS, shares } from "../data/sensitivity.js";
+import { label, title, unit } from "../data/units.js";
+import { canvas, draw, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
-import { canvas, draw, LINES } from "../draw/plots.js";
-import { LEAST_POINTS, shares } from "../data/sensitivity.js";
 import { preferred, undelayed } from "./part.js";
-import { label, title, unit } from "../data/units.js";
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("../data/sensitivity.js").Share} Share */

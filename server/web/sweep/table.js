@@ -1,12 +1,12 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
+import { isUnsettled, SETTLING } from "../data/statistics.js";
+import { label, meaning, number, title, unit } from "../data/units.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
-import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { preferred } from "./part.js";
-import { label, meaning, number, title, unit } from "../data/units.js";
 
 const ROW_PX = 30;
 const SPARE_ROWS = 12;

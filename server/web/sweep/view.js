@@ -3,16 +3,16 @@
 import { follow, get, isFinal, send } from "../data/api.js";
 import { Biases } from "../data/biases.js";
 import { Depths } from "../data/depths.js";
-import { choice, fill, h } from "../ui/dom.js";
-import { snippets } from "../ui/snippets.js";
-import { attend, reported, notice } from "../ui/notices.js";
 import { Pace } from "../data/pace.js";
-import { go, keep, link } from "../ui/router.js";
-import { MAY_NOT, maySubmit } from "../ui/session.js";
-import { progressPart, when } from "../ui/progress.js";
-import { sweepLines } from "./snippets.js";
 import { SweepTable, sweptBy } from "../data/sweep-table.js";
 import { label, say } from "../data/units.js";
+import { choice, fill, h } from "../ui/dom.js";
+import { attend, reported, notice } from "../ui/notices.js";
+import { progressPart, when } from "../ui/progress.js";
+import { go, keep, link } from "../ui/router.js";
+import { MAY_NOT, maySubmit } from "../ui/session.js";
+import { snippets } from "../ui/snippets.js";
+import { sweepLines } from "./snippets.js";
 
 /** @typedef {import("./part.js").Context} Context */
 

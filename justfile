@@ -24,9 +24,11 @@ check: python
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
-    npx --yes --package typescript@5.9.3 tsc --project server/web
-    {{ bin }}/ruff format --check api/python docs examples tests
-    {{ bin }}/ruff check api/python docs examples tests
+    npm ci --prefix server/web --no-audit --no-fund
+    npm --prefix server/web run check
+    npm --prefix server/web test
+    {{ bin }}/ruff format --check api/python docs examples server/web/tests tests
+    {{ bin }}/ruff check api/python docs examples server/web/tests tests
     cd api/python && {{ bin }}/mypy
 
 # Run all tests: Rust, then Python against the binary of the Rust tests
@@ -45,7 +47,7 @@ book: python
 # Format Rust and Python
 format: python
     cargo fmt --all
-    {{ bin }}/ruff format api/python docs examples tests
+    {{ bin }}/ruff format api/python docs examples server/web/tests tests
 
 # Set the version in all places that name it, and date its changes
 release version:
